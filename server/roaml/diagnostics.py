@@ -39,8 +39,8 @@ class Tag(enum.Enum):
 
 
 class Symbol(NamedTuple):
-    """A definition in a file, identified by its name instead of its position. `kind` is the kind of symbol that the
-    schemas assign to the value.
+    """A definition in a file, identified by its name instead of its position. `kind` is the kind of the
+    symbol.
 
     `scope` distinguishes equal names, for example by the thread that contains a state. It is empty for most kinds.
     """

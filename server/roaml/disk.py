@@ -37,8 +37,8 @@ class UnreadableReason(enum.Enum):
 
 
 class NotReadableError(OSError):
-    """Raised for a required file that does not exist, is of the wrong kind, or is too large. `problem` is the
-    reason."""
+    """Raised for a required file that does not exist, is not a regular file, cannot be read, or is too large. `problem`
+    is the reason."""
 
     def __init__(self, path: str, problem: UnreadableReason, most: int) -> None:
         words = f"it is larger than {most // MEGABYTE} MB" if problem is UnreadableReason.TOO_LARGE else problem.value
@@ -116,7 +116,8 @@ def _unreadable_reason(status: os.stat_result, most: int) -> UnreadableReason | 
 
 
 class Roots:
-    """The folders that contain the user's files. Links in them are followed only if their target is in one of them.
+    """The folders that contain the user's files. Links in folders of the workspace are followed only if their target is
+    in one of the folders.
 
     Args:
         folders: the folders of the workspace. The target of a link in them must be in one of `folders` or `trusted`.

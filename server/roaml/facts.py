@@ -3,7 +3,7 @@
 
 Messages are for people. A fix that needs more than the place of a finding reads the facts, never the message. A rule
 that offers this kind of fix defines its facts as a frozen record, which its `Rule` names. The fields are strings,
-integers, booleans, enums, tuples of one of these, or optional values of one of these.
+integers, Booleans, enums, tuples of one of these, or optional values of one of these.
 
 Facts are sent through LSP as JSON. A client may send back any JSON: `facts_from_json` validates it.
 """
@@ -30,7 +30,7 @@ def facts_to_json(facts: Facts) -> dict[str, Any]:
 
 
 def facts_from_json(type_: type[T], value: object) -> T | None:
-    """The facts in JSON that `facts_to_json` returned; `None` if the JSON does not fit."""
+    """The facts in JSON that `facts_to_json` returned; `None` if names or types in the JSON do not match `type_`."""
     hints = _hints(type_)
     if not isinstance(value, dict) or value.keys() != hints.keys():
         return None
@@ -41,7 +41,7 @@ def facts_from_json(type_: type[T], value: object) -> T | None:
 
 
 class _MismatchError(Exception):
-    """Raised for a value that does not fit the type of its field; never leaves this module."""
+    """Raised for a value that does not match the type of its field; never leaves this module."""
 
 
 def _hints(type_: Any) -> dict[str, Any]:

@@ -88,8 +88,8 @@ class ValuePart(RoleValue):
 
 
 class ProtocolPart(RoleValue):
-    """The kind of message that an element sends or receives: a part of a ROS interface or of the tree protocol, an
-    event, or the tick of a timer."""
+    """What an element sends or receives: a part of a ROS interface or of the protocol of tree nodes, an event, a value
+    of the blackboard, or the tick of a timer."""
 
     BLACKBOARD = "blackboard"
     BT_HALT = "bt-halt"

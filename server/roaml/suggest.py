@@ -19,7 +19,7 @@ from collections.abc import Iterable, Iterator, Sequence
 MAX_LENGTH = 80
 """The maximum number of characters of an unknown name that are compared."""
 _MIN_SIMILARITY = 0.6
-"""The minimum similarity as computed by `difflib`, between 0 and 1."""
+"""The minimum similarity as computed by `difflib`, from 0 to 1."""
 MAX_COMPARED = 40
 """The maximum number of candidates that `difflib` compares with a name; if there are more, the likely ones are selected
 first."""
@@ -88,7 +88,8 @@ class _Index:
     """An index of many names that finds the names similar to a given name without comparing all of them.
 
     Attributes:
-        by_lower: name in lower case -> name, without names that are too long to be similar to `MAX_LENGTH` letters.
+        by_lower: name in lower case -> name, without names that are too long to be similar to a name of `MAX_LENGTH`
+            characters.
     """
 
     def __init__(self, names: Iterable[str]) -> None:

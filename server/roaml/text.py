@@ -57,7 +57,7 @@ class Location(NamedTuple):
 
 
 class Position(NamedTuple):
-    """A zero-based line and a zero-based column, which counts code points."""
+    """A zero-based line and a zero-based column in code points."""
 
     line: int
     column: int
@@ -79,7 +79,8 @@ def computed(edits: Iterable[Edit]) -> tuple[TextEdit, ...]:
 
 
 def apply_edits(text: str, edits: tuple[TextEdit, ...]) -> str:
-    """`text` with all `edits` applied. Edits refer to the original text; if two overlap, the earlier one is applied."""
+    """`text` with `edits` applied. Edits refer to the original text; if two overlap, only the one that begins first is
+    applied."""
     parts: list[str] = []
     done = 0
     for edit in sorted(edits, key=lambda e: e.span):
@@ -103,7 +104,7 @@ class Decoded(Record, frozen=True):
     sources: tuple[int, ...] | None = None
 
     def offset(self, index: int) -> int:
-        """The source offset at which the character `index` begins; `len(text)` gives the end."""
+        """The source offset at which the character `index` begins; for `len(text)`, the offset of the end."""
         return self.base + index if self.sources is None else self.sources[index]
 
     def span(self, start: int, end: int) -> Span:

@@ -34,7 +34,7 @@ class Places(Record, frozen=True):
 
 class TomlError(ValueError):
     """Raised for text that is not valid TOML. The message is that of the parser without the position; `span` is the
-    position."""
+    character at the position."""
 
     def __init__(self, message: str, span: Span) -> None:
         super().__init__(message)

@@ -679,7 +679,10 @@ def test_deep_expressions(command: Command, tmp_path: Path) -> None:
         (("--confidence", "0"), "between 0 and 1"),
         (("--max-traces", "0"), "of at least 1"),
         (("--seed", "-1"), "from 0"),
-        (("--method", "sprt"), "a sequential test needs a number to compare with; set an expectation for `heads`"),
+        (
+            ("--method", "sprt"),
+            "a sequential test needs a probability that is compared with a number; set an expectation for `heads`",
+        ),
         (("--explain", "story.doc"), "does not end in"),
         (("--dask", "tcp://127.0.0.1:9"), "there is no Dask scheduler"),
     ],

@@ -66,7 +66,7 @@ def test_the_console_publishes_and_completes(client: Client) -> None:
 @pytest.mark.parametrize(
     ("fields", "reason"),
     [
-        ({"data": 300}, "`data` must be between 0 and 255, not 300"),
+        ({"data": 300}, "`data` must be from 0 to 255, not 300"),
         ({"data": 0.5}, "`data` must be an integer"),
         ({"data": True}, "`data` must be a number, not true"),
         ({"x": 1}, "there is no field `x`; the only field is `data`"),

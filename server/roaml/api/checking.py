@@ -24,7 +24,7 @@ class CheckResult(Record, frozen=True):
     """The result of `check`.
 
     Attributes:
-        diagnostics: sorted by file, in the order in which files were checked, then by position.
+        diagnostics: the findings, in the order of `files`, then by position.
         files: the files that were checked.
         problems: errors in the configuration, as sentences.
         snapshot: the state of the files from which the diagnostics were computed.
@@ -52,7 +52,7 @@ def check(
 
     A system file is checked together with all files that it names, and a folder with all systems and files in it. Any
     other file is checked as a part of the systems that name it. These systems are searched for in the configured roots;
-    if there are none, in the enclosing repository; if there is none, in the folder of the file.
+    without configured roots, in the enclosing repository; without a repository, in the folder of the file.
 
     Args:
         paths: the files and folders to check.
@@ -83,8 +83,8 @@ def check(
 def fix(result: CheckResult) -> dict[str, bytes]:
     """The texts of the checked files after all safe fixes have been applied. Nothing is written.
 
-    A safe fix removes nothing that has an effect and guesses nothing. Unchanged files and files that are not valid text
-    are left out.
+    A safe fix removes nothing that has an effect and guesses nothing. The result does not contain unchanged files
+    and files that are not valid UTF-8.
     """
     sources = {path: result.source(path) for path in result.files}
     fixable = (path for path, source in sources.items() if source.undecodable is None and _is_text(source.text))

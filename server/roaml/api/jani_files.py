@@ -14,7 +14,8 @@ from roaml.text import SourceFile, decode
 
 
 class PathError(ValueError):
-    """Raised for a path that cannot be read. The message contains the reason."""
+    """Raised for a path that cannot be read, or that is not a file of the required kind. The message contains the
+    reason."""
 
 
 class JaniError(ValueError):

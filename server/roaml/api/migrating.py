@@ -18,8 +18,8 @@ from roaml.record import replace
 
 
 class SharedFileError(ValueError):
-    """Raised if systems that are not migrated would break. `shared` maps each file that would change to the systems
-    that use the file and are not migrated."""
+    """Raised if systems that are not migrated would break. `shared` maps each file whose change would break systems to
+    these systems."""
 
     def __init__(self, shared: Mapping[str, tuple[str, ...]]) -> None:
         path, systems = next(iter(shared.items()))
@@ -98,7 +98,7 @@ def _broken(migrations: Iterable[Migration], migrated: frozenset[str], around: S
 
 def _around(systems: Iterable[str], analysis: Analysis, settings: Settings) -> Snapshot:
     """A snapshot of the files in the configured roots and in the repositories of `systems`. For a system outside of a
-    repository, the folder that contains all its files is used instead."""
+    repository, the innermost folder that contains all its files is used instead."""
     roots = dict.fromkeys(settings.roots)
     for system in systems:
         folders = {os.path.dirname(path) for path in analysis.files_of(system)}

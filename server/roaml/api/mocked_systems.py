@@ -25,7 +25,7 @@ class SystemMocks(Record, frozen=True):
     Attributes:
         texts: the changed system and tree files and the new plugins, by path; `load` and `target` accept them.
         planned: the new plugins.
-        missing: the types of the leaves without a plugin that no mock matches.
+        missing: the types of the leaves that have neither a plugin nor a matching mock.
         events: the number of nodes that read an event of the world, such as a new goal, and have a mock for it.
         unused: the mocks that match no node.
     """
@@ -42,8 +42,11 @@ def mock_system(
 ) -> SystemMocks:
     """Create mocks for the leaves of a system that have no plugin. No file is written.
 
+    Args:
+        settings, ros_paths: as for `check`.
+
     Raises:
-        PathError: the path is not a system file.
+        PathError: the path cannot be read, or is not a system file.
     """
     from roaml.mocks.mock import unused  # noqa: PLC0415 - a check starts faster without these
     from roaml.mocks.system_mocks import defaults, event_edits, listing, plan  # noqa: PLC0415

@@ -25,15 +25,16 @@ def session(
 
     Args:
         subject: the system or model to run.
-        property: the name of the property that is evaluated on the run; the first one if not given, and `stuck` if the
-            model has none.
+        property: the name of the property that is evaluated on the run; if not given, the first property of the model,
+            or `stuck` if the model has none.
         seed, trace: the run is the trace with the number `trace` that `verify` generates with this seed.
         saved: continue this session; its property, seed and trace override the arguments.
 
     Raises:
         PropertyError: a property does not exist.
         RunError: the saved decisions are not possible in this model.
-        FaultError: the model cannot be run, the property cannot be answered, or the run fails.
+        FaultError: the model cannot be run, the property cannot be answered, or a saved step executes an undefined
+            operation.
     """
     from roaml.simulation.session import Session  # noqa: PLC0415 - checking and translating start faster without it
 

@@ -28,7 +28,8 @@ from roaml.to_jani import translate
 
 
 class ModelError(ValueError):
-    """Raised if a system has errors and cannot be translated. `result` contains only these errors."""
+    """Raised if a system, or a tree without a system, has errors or cannot be translated. `result` contains only these
+    errors."""
 
     def __init__(self, result: CheckResult) -> None:
         first = result.diagnostics[0]
@@ -42,9 +43,9 @@ class LoadedSystem(Record, frozen=True):
 
     Attributes:
         path: the path of the system file.
-        properties: the properties in its JANI files, in their order.
-        observed: the properties in its XML files, in their order.
-        analysis: the analysis of its files.
+        properties: the properties in the JANI files of the system, in their order.
+        analysis: the models and findings of the files of the system.
+        observed: the properties in the XML files of the system, in their order.
     """
 
     path: str

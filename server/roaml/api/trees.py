@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 UNTRANSLATABLE = "untranslatable-tree"
-"""The code of the diagnostic that states why a tree without errors cannot be translated."""
+"""The code of the diagnostic with the reason why a tree without errors cannot be translated."""
 
 
 class LoadedTree(Record, frozen=True, eq=False):

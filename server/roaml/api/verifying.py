@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Verification of properties. Modules for it are imported only when they are used."""
+"""Verification of properties. The modules of the model checker are imported only when they are used."""
 
 from __future__ import annotations
 
@@ -44,7 +44,8 @@ def target(
         constants: `NAME=VALUE`, for constants that a JANI model declares without a value.
 
     Raises:
-        ConstantError: the constant or parameter is not declared, or the value does not fit.
+        ConstantError: a constant is not declared, or its value does not match its type; a system is given constants, or
+            a JANI model is given overrides.
         PathError: the file cannot be read, or is not a system file.
         ModelError: the system has errors.
         JaniError: the JANI model has errors.
@@ -74,7 +75,7 @@ def _expected(settings: Settings | None) -> Mapping[str, Comparison]:
 
 
 def as_target(subject: VerificationTarget | LoadedSystem | Model) -> VerificationTarget:
-    """The verification target of a system, which is translated for it, or of a JANI model."""
+    """The verification target of a system, which is translated, or of a JANI model; a target is returned as it is."""
     from roaml.verification.target import VerificationTarget, target_of  # noqa: PLC0415
 
     if isinstance(subject, VerificationTarget):
@@ -96,13 +97,13 @@ def checker(model: Model, properties: Iterable[str] | None = None) -> ModelCheck
     """A model, compiled for some of its properties, to generate traces step by step.
 
     Args:
-        properties: their names; all if not given. Every translated system also has the property `stuck`: that a trace
-            gets stuck (`roaml.smc.end.End.STUCK`).
+        properties: the names of the properties; all if not given. Every translated system also has the property
+            `stuck`: that a trace gets stuck (`roaml.smc.end.End.STUCK`). It must be named.
 
     Raises:
         PropertyError: a property does not exist.
-        FaultError: the model is of a kind that cannot be run; see `roaml.smc.fault`. Properties that cannot be answered
-            are in `refused`.
+        FaultError: the model is of a kind that cannot be run; see `roaml.smc.fault`. The errors of properties that
+            cannot be answered are in `ModelChecker.refused` instead.
     """
     from roaml.verification.verifier import checker_of  # noqa: PLC0415
 
@@ -124,7 +125,7 @@ def verifier(
     Args:
         subject, properties, options, expectations, only_uniform, exact_if_small: as for `verify`.
         example_traces: the number of traces for a result with exact values; `None` for the number that an estimate
-        needs.
+            needs.
 
     Raises:
         PropertyError, FaultError, ValueError: as for `verify`.
@@ -159,14 +160,15 @@ def verify(
 
     Args:
         subject: a system, a JANI model, or the result of `target`.
-        properties: their names; all if not given. Every system also has the property `stuck`: that a trace gets stuck.
+        properties: the names of the properties; all if not given. Every system also has the property `stuck`: that a
+            trace gets stuck. It must be named.
         options: confidence, width of the interval, seed and limits.
         jobs: the number of processes. It has no influence on the results.
         executor: an executor that runs the batches of traces, instead of `jobs` new processes.
         expectations: such as `alarm >= 0.95`; each adds a verdict to the result of its property.
         only_uniform: whether only uniform choices are considered. Otherwise, other schedulers are examined as well, and
-        the verdicts state whether they lead to other values. exact_if_small: whether a result also has exact values
-        (`Result.exact`), which decide its verdicts, if the model
+            the verdicts state whether they lead to other values.
+        exact_if_small: whether a result also has exact values (`Result.exact`), which decide its verdicts, if the model
             has few states.
 
     Raises:

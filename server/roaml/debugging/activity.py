@@ -40,7 +40,8 @@ class ActiveNode(Record, frozen=True):
 
 
 class ActiveEdge(Record, frozen=True):
-    """An edge of the ROS graph between the sender or receiver of a message and its topic, service or action."""
+    """An edge of the ROS graph between the sender or receiver of a message and its topic, service or action. `source`
+    and `target` are ids of nodes in the picture."""
 
     source: str
     target: str
@@ -69,7 +70,8 @@ def active_nodes(debugger: Debugger) -> Iterator[ActiveNode]:
 
 
 def active_edges(debugger: Debugger) -> Iterator[ActiveEdge]:
-    """The edges of the ROS graph with a message: from its sender, and to the receivers of the next step."""
+    """The edges of the ROS graph with a message that has not been received yet: from its sender, and to its receivers
+    if the next step receives it."""
     analysis, system = _sources(debugger)
     if analysis is None or system is None:
         return

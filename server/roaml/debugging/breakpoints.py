@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Breakpoints: where a run stops, and which steps reach them.
 
-A breakpoint on a statement, a handler or a node stops before the step that executes it. A breakpoint on the effect of a
-step stops after the step: a state is entered, a variable has changed, or a property is decided.
+A breakpoint on a statement, a handler, a node or an event stops before the step that executes, ticks, sends or receives
+it. A breakpoint on the effect of a step stops after the step: a state is entered, a variable has changed, or a property
+is decided.
 """
 
 from __future__ import annotations
@@ -33,7 +34,8 @@ class Line(NamedTuple):
 
 
 class ExceptionFilter(enum.Enum):
-    """An event that may happen anywhere in a model and at which the run stops."""
+    """A reason to stop that is independent of places in the sources: a property is violated or satisfied, a node
+    returns FAILURE, the next step is decided by chance, the run ends, or time advances."""
 
     VIOLATED = "violated"
     SATISFIED = "satisfied"
@@ -44,8 +46,8 @@ class ExceptionFilter(enum.Enum):
 
 
 class WatchedVariable(NamedTuple):
-    """A variable of an instance, or of the model (`instance` is -1). A struct consists of several variables of the
-    network."""
+    """A variable of an instance, or of the model (`instance` is -1). A struct is also one, although it consists of
+    several variables of the network."""
 
     instance: int
     name: str
@@ -58,9 +60,11 @@ class Breakpoint(Record, eq=False):
         number: identifies the breakpoint; 0 for a filter.
         name: its subject, for messages.
         condition: the run stops only if the condition is true. It is evaluated in the state in which the breakpoint
-        stops. required_hits: a function that returns whether the run stops at the hit with a given number, from 1.
-        message: a text that is logged instead of stopping; expressions are in braces. hits: the number of times that
-        the breakpoint was reached while its condition was true.
+            stops.
+        required_hits: a function that returns whether the run stops at the hit with a given number, from 1; `None` if
+            the run stops at all hits.
+        message: a text that is logged instead of stopping; expressions are in braces.
+        hits: the number of times that the breakpoint was reached while its condition was true.
     """
 
     number: int = 0
@@ -214,7 +218,7 @@ class BreakpointPlaces:
         return self._parts[key]
 
     def next_line(self, path: str, line: int) -> int | None:
-        """The first line from `line` on at which a run can stop."""
+        """The first line from `line` on at which a run can stop; `None` if there is none."""
         return next((candidate for candidate in self.by_path.get(path, ()) if candidate >= line), None)
 
 

@@ -32,12 +32,15 @@ from roaml.views.event_words import event_phrase, interface_name
 
 
 class Sendable(Record, frozen=True):
-    """An event that the user can send. Attributes:
-    name: the topic, service or action; for a plain event, its name.
-    text: a description such as "a message on the topic `/level`".
-    template: the fields with the values that they have if they are omitted.
-    types: the types of the fields.
-    is_free: whether the previous event of this name has been received, so that another one can be sent.
+    """An event that the user can send.
+
+    Attributes:
+        event: the name of the event in plain SCXML.
+        name: the topic, service or action; for a plain event, its name.
+        text: a description such as "a message on the topic `/level`".
+        template: the fields with the values that they have if they are omitted.
+        types: the types of the fields.
+        is_free: whether the previous event of this name has been received, so that another one can be sent.
     """
 
     event: str
@@ -96,7 +99,7 @@ def sending(session: Session, sources: Sources, name: str, fields: Value) -> Int
         hint = alternatives(close_names(name, names), names, "name")
         raise WatchError(f"no message can be sent to `{name}`: there is no such topic, service, action or event{hint}")
     if len(matches) > 1:
-        raise WatchError(f"`{name}` has several events; use one of {', '.join(form.event for form in matches)}")
+        raise WatchError(f"`{name}` has several events; use one of {', '.join(f'`{form.event}`' for form in matches)}")
     (form,) = matches
     if not form.is_free:
         raise WatchError(f"{form.text} has been sent but not received yet; continue until it is received")
@@ -107,7 +110,7 @@ def setting(session: Session, sources: Sources, variable: WatchedVariable, value
     """The change of the state that sets a variable or a blackboard entry.
 
     Raises:
-        WatchError: the value does not have the type of the variable.
+        WatchError: the value does not have the type of the variable, or is too large for it.
     """
     current = _stored(session, variable.instance)
     automaton = None if variable.instance < 0 else session.automata_of_model[variable.instance]
@@ -249,7 +252,7 @@ class _Cells:
             value = int(value)
             low, high = INTEGER_RANGES.get(str(type_), (-(2**63), 2**63 - 1))
             if not low <= value <= high:
-                raise WatchError(f"`{path}` must be between {low} and {high}, not {value}")
+                raise WatchError(f"`{path}` must be from {low} to {high}, not {value}")
         assert isinstance(value, (bool, int, float))
         self._put(name, index, value)
 

@@ -31,11 +31,12 @@ from roaml.smc.record import TraceStep, TraceVerdict
 MAX_STEPS = 200_000
 """The maximum number of steps of one movement. After that, the run stops and can be continued."""
 PORTION_S = 0.02
-"""The time in s after which a movement returns to its caller, which then looks for requests."""
+"""The time in s after which a movement returns to its caller, which then handles the requests of the client."""
 
 
 class Unit(enum.Enum):
-    """The unit of a movement, which ends earlier at a breakpoint."""
+    """Where a movement ends if no breakpoint ends it earlier: after a step of the network, after a machine has handled
+    an event completely, after a tick of the tree, or at the end of the run."""
 
     STEP = "step"
     TURN = "turn"
@@ -64,7 +65,7 @@ class Stop(Record, frozen=True):
         thread: the number of the thread that takes the next step, or that has reached the breakpoint.
         text: a description of what has happened, if the reason alone is not enough.
         breakpoints: the numbers of the breakpoints that were reached.
-        filter: the name of the exception filter, if the reason is an exception.
+        filter: the name of the exception filter, or `fault` for an undefined operation, if the reason is an exception.
     """
 
     reason: StopReason
@@ -92,7 +93,8 @@ class Debugger:
         log: receives the messages of log points.
 
     Attributes:
-        fault: the reason why the next step cannot be taken: the model executes an undefined operation.
+        fault: the undefined operation because of which the next step cannot be taken; `None` if there is none.
+        before: the values before the last movement; `None` if there was none.
     """
 
     def __init__(self, session: Session, sources: Sources, verdicts: Verdicts, log: Log) -> None:
@@ -126,7 +128,7 @@ class Debugger:
         return {thread.instance: thread.number for thread in self.threads if thread.instance >= 0}
 
     def breakpoints_changed(self) -> None:
-        """Update the debugger after a change of `breakpoints`. The caller must call this."""
+        """Update the debugger. Must be called after each change of `breakpoints`."""
         self._matcher = None
 
     # ------------------------------------------------------------ the state
@@ -172,7 +174,7 @@ class Debugger:
         return next((self.stacks.stack(known) for known in self.threads if known.number == thread), [])
 
     def scope(self, instance: int) -> Scope:
-        """The values of names in expressions, as an instance sees them."""
+        """The values of the names that expressions in an instance can use."""
         return self.values.names(Frame(0, "", None, instance, 0, FrameRole.STATEMENT))
 
     @property
@@ -191,7 +193,7 @@ class Debugger:
         self._movement = _Movement(unit, forwards, self.session.position, is_first=not stops_here)
 
     def interrupt(self) -> Stop:
-        """End the movement here."""
+        """End the movement at the position that it has reached; return the stop."""
         self._settle()
         return self._stop(StopReason.PAUSE)
 

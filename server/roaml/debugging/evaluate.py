@@ -204,7 +204,7 @@ def _call(expr: Call, scope: Scope) -> Value:
         case _:
             raise WatchError("only functions of `Math` can be called")
     if name == "random":
-        raise WatchError("`Math.random()` has no value here; it draws one when it is executed")
+        raise WatchError("`Math.random()` has no value here, because each execution draws a new number")
     given = len(expr.arguments)
     if not len(function.parameters) - function.optional <= given <= len(function.parameters):
         raise WatchError(f"`{function.signature}` does not take {given} arguments")

@@ -47,7 +47,7 @@ class Frame(Record, frozen=True):
 
     Attributes:
         origin: the place of the statement, handler, state or node.
-        instance: the automaton whose variables the frame shows; -1 if it has none.
+        instance: the number of the automaton whose variables the frame shows; -1 if there is none.
         node: the number of the node of the tree; 0 for a machine.
     """
 

@@ -17,7 +17,7 @@ class StateRow(Record, frozen=True):
 
     Attributes:
         value: for readers; "" for a row that only groups other rows.
-        before: its value in the earlier state; `None` if it is the same.
+        before: the value in the earlier state; `None` if it is the same, or the row did not exist.
         has_changed: whether the value, or one of the rows below, differs from the earlier state.
     """
 
@@ -30,7 +30,7 @@ class StateRow(Record, frozen=True):
 
 def overview(session: Session, sources: Sources, step: int, earlier: int) -> tuple[StateRow, ...]:
     """The state after `step` steps. Values that differ from the state after `earlier` steps are marked. Both steps have
-    been taken in this run. The session moves to them.
+    been taken in this run. The session is at position `step` afterwards.
     """
     before = _texts(_values(session, sources, earlier))
     after = _texts(_values(session, sources, step))

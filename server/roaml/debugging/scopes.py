@@ -33,7 +33,7 @@ class ScopeEntry(Record, frozen=True):
     """A named value of a scope.
 
     Attributes:
-        type: the declared type, for readers.
+        type: the declared type, or another description of the value, for users.
         expression: an expression with this value; "" if there is none.
         variable: the variable that a data breakpoint on the entry watches; `None` if it cannot have one.
     """
@@ -53,7 +53,7 @@ class ScopeHint(Vocabulary):
 
 
 class ScopeEntries(Record, frozen=True):
-    """A scope of a frame. `hint` is its kind; `None` for a scope that all frames have."""
+    """A scope of a frame. `hint` is its kind in DAP; `None` for a scope that all frames have."""
 
     name: str
     entries: tuple[ScopeEntry, ...]
@@ -61,7 +61,8 @@ class ScopeEntries(Record, frozen=True):
 
 
 class Values:
-    """All values at the position of a session."""
+    """The values at the position of a session: variables, messages, ports, statuses of nodes, and verdicts; as scopes
+    of frames, and by name for expressions."""
 
     def __init__(
         self,

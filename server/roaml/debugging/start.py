@@ -49,7 +49,7 @@ def start(sources: Sources, begin: Start, log: Log, is_cancelled: Callable[[], b
     Raises:
         StartError: there is no such trace, or `is_cancelled` was true during the search for it.
         PropertyError: the model has no such property.
-        FaultError: the model cannot be run.
+        FaultError: the model cannot be run, or the property cannot be decided.
         RunError: the saved decisions are not possible in the model.
     """
     name = begin.property if begin.saved is None else begin.saved.property
@@ -86,6 +86,6 @@ def _nth(recorder: Recorder, begin: Start, name: str, is_cancelled: Callable[[],
         if is_cancelled():
             raise StartError("the search for a trace was cancelled")
     count = begin.nth - missing
-    holds = "does not hold" if begin.verdict is TraceVerdict.FAILED else "holds"
-    counted = f"`{name}` {holds} in only {count} of {MAX_TRACES:,} traces with seed {begin.seed}"
+    relation = "violate" if begin.verdict is TraceVerdict.FAILED else "satisfy"
+    counted = f"only {count} of {MAX_TRACES:,} traces with seed {begin.seed} {relation} `{name}`"
     raise StartError(f"{counted}, but trace {begin.nth} of these is requested; use another seed")

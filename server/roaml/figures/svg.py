@@ -15,14 +15,19 @@ from roaml.figures.themes import THEMES, style_sheet
 MARGIN = 16.0
 _CORNER = 6.0
 _HEAD = (9.0, 4.5)
-"""The length and half the width of an arrow head."""
+"""The length and half the width of an arrow head, in pixels."""
 
 
 PICTURE_STYLES, TIMELINE_STYLES = ("figure.css",), ("figure.css", "timeline.css")
 
 
 def svg_file(drawing: Drawing, title: str, theme: str = "light", styles: tuple[str, ...] = PICTURE_STYLES) -> str:
-    """The text of an SVG file."""
+    """The text of an SVG file.
+
+    Args:
+        theme: one of `THEMES`.
+        styles: the names of the style sheets.
+    """
     width, height = drawing.size.width + 2 * MARGIN, drawing.size.height + 2 * MARGIN
     area = f'x="{_n(-MARGIN)}" y="{_n(-MARGIN)}" width="{_n(width)}" height="{_n(height)}"'
     return (
@@ -107,7 +112,7 @@ def _rectangle(box: Box, radius: float, role: str) -> str:
 
 
 def path(points: Sequence[Point], radius: float = _CORNER) -> str:
-    """A polyline with round corners, as the `d` of a path."""
+    """A polyline as the attribute `d` of a `<path>` in SVG, with corners of a radius in pixels."""
     if not radius:
         return "M " + " L ".join(f"{_n(point.x)} {_n(point.y)}" for point in points)
     parts = [f"M {_n(points[0].x)} {_n(points[0].y)}"]

@@ -52,7 +52,7 @@ letter, a character."""
 
 
 def text_width(text: str, size: float, *, bold: bool = False) -> float:
-    """The width of one line of text."""
+    """The width of one line of text, in pixels, as `size`."""
     widths = _WIDTHS[bold]
     return size * sum(widths.get(character) or _other_width(character) for character in text)
 

@@ -30,7 +30,7 @@ BEHAVIORTREE_CPP = "behaviortree_cpp"
 """The library that is available in all trees."""
 
 LIBRARIES = ("nav2",)
-"""The names of the other libraries, as in settings."""
+"""The names of the other libraries, as users write them in settings."""
 
 
 @functools.cache
@@ -45,7 +45,8 @@ def library(name: str) -> Library:
 
 
 def node_in_libraries(name: str) -> Node | None:
-    """The declaration of a node in one of `LIBRARIES`, used or not; `None` if there is none."""
+    """The declaration of a node in one of `LIBRARIES`, whether or not the settings name the library; `None` if there is
+    none."""
     return next((library(known).nodes[name] for known in LIBRARIES if name in library(known).nodes), None)
 
 

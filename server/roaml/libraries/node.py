@@ -22,7 +22,7 @@ class PortLimits(Record, frozen=True):
     """The numbers that are useful values of a port (docs/spec/lone-trees.md#limits).
 
     Attributes:
-        minimum: the least useful number; `None` if there is no minimum.
+        minimum: the lower bound of the useful numbers; `None` if there is none.
         is_exclusive: whether `minimum` itself is not useful.
         special: the numbers below the minimum that have a special meaning.
         counts_children: whether the number is a number of children: at least 1, or at most -1, where -1 means all
@@ -70,15 +70,15 @@ class Node(Record, frozen=True, dict=True):
 
     Attributes:
         library: the name of its library, "" for nodes of a `<TreeNodesModel>`.
-        behaviour: the name of the library whose node it is, even if a `<TreeNodesModel>` describes it; "" if its
-            behaviour is not known.
+        behaviour: the name of the library that defines the behaviour of the node, even if a `<TreeNodesModel>` declares
+            the node; "" if the behaviour is not known.
         children: the minimum and maximum number of children.
         since: the first version of the library that has the node, "" if all supported versions have it.
         until: the first version that no longer has the node, or "".
-        succeeds: whether it always returns SUCCESS in trees that set its ports as the library's own trees do.
-        running: whether its first tick returns RUNNING: `True` is always, `False` is never, `None` is not known.
-        program_only: whether its translation exists only for trees whose nodes are executed as the library executes
-            them (docs/spec/nodes.md#library).
+        succeeds: whether the node always returns SUCCESS in trees that set its ports as the library's own trees do.
+        running: whether the first tick returns RUNNING: `True` is always, `False` is never, `None` is not known.
+        program_only: whether the translation of the node exists only for trees whose nodes are executed as the library
+            executes them (docs/spec/nodes.md#library).
         in_systems: how the node differs in trees of systems, as a sentence, or "".
     """
 
@@ -105,7 +105,7 @@ class Node(Record, frozen=True, dict=True):
 
 
 class Renamed(Record, frozen=True):
-    """A name of version 3, and the name that replaces it."""
+    """The name of a node in version 3 of the library, and the name that replaces it in version 4."""
 
     name: str
     now: str
@@ -132,7 +132,8 @@ class Library(Record, frozen=True):
 
     Attributes:
         renamed: the names of version 3 that other names replace.
-        foreign: the names of nodes in other libraries of behavior trees, with the names of these nodes in this library.
+        foreign: the names of nodes in other libraries of behavior trees, with the names of the corresponding nodes in
+            this library.
         absent: the names that are known not to be nodes.
         entries: the blackboard entries set by the program that executes a tree.
     """

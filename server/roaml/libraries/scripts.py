@@ -11,9 +11,9 @@ from roaml.libraries import BEHAVIORTREE_CPP, library
 SCRIPT = "script"
 """The type of ports that contain scripts."""
 CONDITIONS = ("_failureIf", "_successIf", "_skipIf", "_while")
-"""The attributes with conditions that are evaluated before a node is ticked."""
+"""The attributes with conditions that are evaluated before a node is ticked; `_while` also while it is RUNNING."""
 AFTERWARDS = ("_onSuccess", "_onFailure", "_onHalted", "_post")
-"""The attributes with scripts that are executed after a node has ended."""
+"""The attributes with scripts that are executed after a node has ended or was halted."""
 CONDITION_NODES = ("Precondition", "ScriptCondition")
 """The nodes whose script is a condition."""
 

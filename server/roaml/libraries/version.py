@@ -7,13 +7,13 @@ import re
 from typing import NamedTuple
 
 _LATEST = 999
-"""The number of the patch that represents the latest one of a minor version."""
+"""The number that represents the latest patch of a minor version, or the latest minor version."""
 
 _TEXT = re.compile(r"4\.([0-9]{1,3})(?:\.([0-9]{1,3}))?\Z", re.ASCII)
 
 
 class Version(NamedTuple):
-    """A version of the library. Versions are ordered."""
+    """A version of BehaviorTree.CPP. Versions are ordered."""
 
     major: int
     minor: int

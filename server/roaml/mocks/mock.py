@@ -26,7 +26,7 @@ class Mock(Record, frozen=True):
     Attributes:
         pattern: the name of a node or of its type; `*` matches any text and `?` any character.
         probability: the probability of SUCCESS or, for nodes that depend on the world, of their event at a tick.
-        duration: how long an action is RUNNING, in ms.
+        duration: the time for which an action is RUNNING, in ms.
     """
 
     pattern: str
@@ -48,7 +48,7 @@ def read_mock(text: str) -> Mock:
     except ValueError:
         probability = -1.0
     if not 0 <= probability <= 1:
-        raise MockError(f"`{match['probability']}` in `{text.strip()}` is not a probability between 0 and 1")
+        raise MockError(f"`{match['probability']}` in `{text.strip()}` is not a probability from 0 to 1")
     if match["duration"] is None:
         return Mock(match["name"], probability)
     duration = _DURATION.match(match["duration"].strip())
@@ -71,10 +71,10 @@ def read_mocks(text: str) -> tuple[Mock, ...]:
 
 def mock_for(mocks: Sequence[Mock], name: str, type_: str, succeeds: bool = False) -> Mock | None:
     """The mock for a node: the mock with the name of the node as pattern, otherwise the mock with the type of the node
-    as pattern, otherwise the first mock whose pattern matches, with `*` as the last one. `None` if no mock matches.
+    as pattern, otherwise the first mock whose pattern matches, otherwise the mock `*`. `None` if no mock matches.
 
     Args:
-        succeeds: whether the node is known to always succeed; `*` does not apply to these nodes.
+        succeeds: whether the node is known to always succeed. Then a mock with the probability 1 replaces the mock `*`.
     """
     for exact in (name, type_):
         for mock in mocks:

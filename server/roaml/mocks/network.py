@@ -48,7 +48,7 @@ DEFAULT_MAX_TIME = 600 * 10**9
 TICKS = "ticks"
 """The name of the variable in which the automaton of the tree root counts the ticks."""
 MAX_TEXT_LENGTH = 100
-"""The maximum length of a text in the blackboard."""
+"""The maximum length of a text in the blackboard, in characters."""
 
 
 class MockOptions(Record, frozen=True):
@@ -59,7 +59,7 @@ class MockOptions(Record, frozen=True):
         entries: entries of the root blackboard, with the texts to which the program that executes the tree sets them.
         rate: the number of ticks per second.
         max_time: the limit of the simulated time, in ns.
-        counts: whether mocks count their answers, for measurements.
+        counts: whether the model counts ticks and the answers of mocks, for measurements.
     """
 
     mocks: tuple[Mock, ...] = ()
@@ -73,7 +73,8 @@ class MockedLeaf(Record, frozen=True, eq=False):
     """A leaf with its mock.
 
     Attributes:
-        duration: how long the leaf is RUNNING, in ticks; `None` for conditions and synchronous actions.
+        probability: the probability of SUCCESS.
+        duration: the number of ticks for which the leaf is RUNNING; `None` for conditions and synchronous actions.
         is_known: whether the leaf has no mock because its library declares that it always succeeds.
     """
 
@@ -87,7 +88,7 @@ class MockedTree(Record, frozen=True, eq=False):
     """The translation of a tree with mocks.
 
     Attributes:
-        leaves: the leaves that have mocks.
+        leaves: the leaves that are replaced by mocks, including those that always succeed.
         assumed: the nodes that depend on the world and have no mock; their event has `EVENT_PROBABILITY`.
     """
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Creates plugins in HL-SCXML that answer like mocks."""
+"""Creates plugins in HL-SCXML that return the statuses of mocks."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ class MockPort(Record, frozen=True):
 
     Attributes:
         type: the type in HL-SCXML, such as `int32`.
-        is_output: whether the mock writes it when it succeeds.
+        key: the name of the port.
+        is_output: whether the mock writes the port when it succeeds.
         values: the possible values of an output, as expressions; all have the same probability.
     """
 
@@ -28,12 +29,12 @@ class MockPort(Record, frozen=True):
 
 
 def mock_plugin(name: str, mock: Mock, rate: Fraction, ports: Sequence[MockPort] = (), *, is_condition: bool) -> str:
-    """The document of a plugin that answers like a mock.
+    """The text of a plugin in HL-SCXML that returns the statuses of a mock.
 
     Args:
         name: the name of the plugin, which is the type of the node.
         rate: the ticks of the tree per second; the plugin counts ticks.
-        is_condition: whether it always answers within the tick.
+        is_condition: whether the plugin never returns RUNNING, and draws a new status for each tick.
     """
     duration = 0 if is_condition else ticks_of(mock.duration, rate)
     return "\n".join(_Plugin(name, mock.probability, duration, tuple(ports), is_condition).lines()) + "\n"
@@ -83,7 +84,7 @@ class _Plugin(Record, frozen=True):
         return [f'    <state id="{name}">', *(f"        {line}" for line in body), "    </state>"]
 
     def drawn(self, succeeded: str, failed: str) -> list[str]:
-        """The transition with the random answer and the random outputs."""
+        """The handler of a tick that returns a random status and, with SUCCESS, writes random outputs."""
         outcomes: list[tuple[float, str, list[str]]] = []
         if self.success > 0:
             for share, outputs in self.outputs():

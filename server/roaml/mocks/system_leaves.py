@@ -30,6 +30,8 @@ class SystemLeaf(Record, frozen=True):
 
     Attributes:
         names: the names of its nodes; a node without a name has the name of the type.
+        is_condition: whether the leaves never return RUNNING.
+        succeeds: whether a declaration states that the leaves always succeed.
         ports: all ports that nodes of the type set.
         optional: the ports that some of the nodes do not set.
     """
@@ -47,11 +49,11 @@ _Slot: TypeAlias = tuple[str, str]
 
 
 def leaves_without_plugins(system: System, declared: Callable[[str], Node | None]) -> tuple[SystemLeaf, ...]:
-    """The types of leaves without a plugin, in the order of the tree. Types whose names no machine can have are left
-    out.
+    """The types of leaves without a plugin, in the order of the tree, except types whose names are not valid names of
+    machines.
 
     Args:
-        declared: the declaration of a type of nodes in models, if there is one.
+        declared: returns the declaration of a type of nodes in `<TreeNodesModel>`; `None` if there is none.
     """
     by_type: dict[str, list[Instance]] = {}
     for instance in system.instances:
@@ -132,7 +134,7 @@ class _Types(Record, dict=True):
             if len(variables) < len(bound):
                 is_output = False  # a constant can be given to an input only
             elif not is_output and not all(map(self.has_writer, variables)):
-                # The program that runs the tree sets it. Mocks read nothing, so any value will do.
+                # The program that runs the tree sets the entry. Mocks read nothing, so any value is valid.
                 yield MockPort(key, type_, is_output=True, values=_values(type_)[:1])
                 continue
             yield MockPort(key, type_, is_output, _values(type_) if is_output else ())
@@ -170,7 +172,7 @@ class _Types(Record, dict=True):
 
 
 def _simple(type_: str) -> str | None:
-    """The HL-SCXML type for a C++ type, which is given by its normal name; `None` if there is none."""
+    """The HL-SCXML type for the normalised name of a C++ type; `None` if there is none."""
     if type_ in _TYPES:
         return _TYPES[type_]
     return type_ if type_ in BASE_TYPES else None

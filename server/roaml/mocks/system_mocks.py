@@ -20,7 +20,7 @@ from roaml.xml_syntax import Element
 
 
 class PlannedMock(Record, frozen=True):
-    """A plugin for a type of leaves. `path` is the path of its file, which need not exist."""
+    """A plugin for a type of leaves. `path` is the path of its file, which need not exist; `text` is its content."""
 
     leaf: SystemLeaf
     mock: Mock
@@ -31,7 +31,7 @@ class PlannedMock(Record, frozen=True):
 def plan(
     leaves: Iterable[SystemLeaf], mocks: Sequence[Mock], rate: Fraction, paths: Mapping[str, str]
 ) -> tuple[list[PlannedMock], list[SystemLeaf]]:
-    """The plugins for leaves, and the leaves that no mock fits.
+    """The plugins for leaves, and the leaves without a matching mock.
 
     Args:
         rate: the ticks of the tree per second.
@@ -51,8 +51,8 @@ def plan(
 
 
 def listing(section: Element, sources: Iterable[str]) -> TextEdit:
-    """The edit that adds plugins to a section of a system file. It inserts them on the line where the section ends, so
-    that all lines keep their numbers."""
+    """The edit that adds plugins to the `<behavior_tree>` section of a system file. It inserts them on the line where
+    the section ends, so that all lines keep their numbers."""
     close = section.close_name_span
     at = section.open_span.end if close is None else close.start - len("</")
     entries = "".join(f'<input type="bt-plugin-ascxml" src={quoteattr(source)} />' for source in sources)
@@ -84,7 +84,8 @@ _DEFAULTS = {"bool": "false", "string": "", "float32": "0.0", "float64": "0.0"}
 
 
 def event_edits(system: System, files: Mapping[str, TreeFile], mocks: Sequence[Mock]) -> dict[str, list[TextEdit]]:
-    """The edits, by file, that set the probabilities of events of the world to those of the mocks."""
+    """The edits, by file, that set the probabilities of the events of the world that nodes read, such as a new goal, to
+    those of the mocks."""
     exact = [mock for mock in mocks if mock.pattern != ALL]
     edits: dict[str, dict[int, TextEdit]] = {}
     for instance in system.instances:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Builds the executed tree of a forest: it contains a node once for each use, with the entries to which its names refer
-(docs/spec/mocks.md#blackboard)."""
+"""Builds the executed tree of a forest: it contains each node once for each use of its tree, with the blackboard
+entries to which names in this use refer (docs/spec/mocks.md#blackboard)."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ MAX_DEPTH = 200
 
 
 class TreeFrame(Record, frozen=True, eq=False):
-    """One use of a tree, which determines the entries to which names in the tree refer.
+    """One use of a tree, which determines the blackboard entries to which names in the tree refer.
 
     Attributes:
-        prefix: the prefix of the full names of its own entries.
+        prefix: the prefix of the full names of the entries that belong to this use.
         remapped: names in the tree, with the full names of the outer entries to which they refer.
-        autoremap: whether all other names refer to the entries of `outer`.
+        autoremap: whether all other names, except those that begin with `_`, refer to the entries of `outer`.
         outer: the frame of the tree that contains this one; `None` for the main tree.
         trees: the names of this tree and of the trees that contain it.
     """
@@ -91,7 +91,8 @@ class _Unfolder(Record):
 
     def tree(self, path: str, tree: Tree, frame: TreeFrame, depth: int) -> int:
         if len(tree.roots) != 1:
-            raise TreeRefusal(Location(path, tree.element.name_span), "a tree needs exactly one root node")
+            place = Location(path, tree.element.name_span)
+            raise TreeRefusal(place, f"a tree needs exactly one root node, not {len(tree.roots)}")
         return self.node(path, tree.roots[0], frame, depth)
 
     def node(self, path: str, node: TreeNode, frame: TreeFrame, depth: int) -> int:

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The possible next steps, with descriptions.
 
-Each combination of enabled edges of a synchronisation vector is a choice. If the seed decides, all choices are equally
-probable, as in `verify`. The outcomes of a choice are the combinations of destinations, drawn by their probabilities.
+Each combination of enabled edges of a synchronisation vector is a choice. Vectors with the same effect are one choice.
+If the seed decides, all combinations are equally probable, as in `verify`. The outcomes of a choice are the
+combinations of destinations, drawn by their probabilities.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ class Outcome(Record, frozen=True):
 
     Attributes:
         probability: the probability of the outcome if the choice is taken.
-        text: the difference from other outcomes; "" if the choice has only one.
+        text: a description of the assignments, states and events of this outcome; "" if the choice has only one.
         decision: the decision that takes the choice with this outcome.
     """
 
@@ -51,7 +52,7 @@ class Choice(Record, frozen=True):
     Attributes:
         number: the number in the list of choices, from 1.
         text: a description of what each automaton does.
-        automata: the names of the automata that take part, acting ones first.
+        automata: the names of the automata that take part; those that only buffer an event are last.
         probability: the probability of this choice if the seed decides.
         outcomes: at least one; outcomes with probability 0 are omitted.
         origin: the place in the source of the edge of the first automaton.
@@ -68,8 +69,8 @@ class Choice(Record, frozen=True):
 
 
 class _Part(Record, frozen=True):
-    """An automaton that takes part in a step, with the first way of its edge and the probabilities of its
-    destinations."""
+    """An automaton that takes part in a step, with its edge, the number of the first destination of this edge in the
+    kernel, and the probabilities of the destinations."""
 
     automaton: Automaton
     edge: Edge

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A change of the state by the user, which is not a step of the model: a message is sent, or a variable is set."""
+"""A change of the state by the user, which is not a step of the model: an event is sent, or variables are set."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Intervention(Record, frozen=True):
     Attributes:
         event: the event that is sent; "" if only variables are set.
         values: the variables of the network that are set, with their values. The value of an array contains all
-        elements.
+            elements.
     """
 
     event: str

@@ -35,8 +35,8 @@ class Decision(Record, frozen=True):
 
     Attributes:
         vector: the number of the synchronisation vector in `roaml.smc.compile.Legend`.
-        picks: for each participating automaton, the number of its edge among its enabled edges for the action.
-        ways: for each participating automaton, the number of the destination.
+        picks: for each participating automaton, the number of its edge among its enabled edges for the action, from 0.
+        ways: for each participating automaton, the number of the destination among those of its edge, from 0.
     """
 
     vector: int
@@ -48,8 +48,8 @@ ByHand = Decision | Intervention
 
 
 class EnabledEdges(NamedTuple):
-    """The enabled edges of an automaton for an action. Each has the number of its first destination in the kernel, and
-    the probabilities of its destinations."""
+    """The enabled edges of an automaton for an action. `edges` contains, for each edge, the number of its first
+    destination in the kernel, and the probabilities of its destinations."""
 
     instance: int
     edges: tuple[tuple[int, tuple[float, ...]], ...]
@@ -72,8 +72,8 @@ class Run:
     """A run, and a position in it.
 
     Args:
-        decisions: the decisions of the first steps; `None` for a step that the seed decides, which decides all later
-            ones.
+        decisions: the decisions of the first steps; `None` for a step that the seed decides. The seed decides all later
+            steps.
 
     Attributes:
         start: the variables of the model before the first step.
@@ -137,7 +137,8 @@ class Run:
     # ------------------------------------------------------------ moving
 
     def advance(self, decision: ByHand | None = None) -> TraceStep | None:
-        """Take a step. If it differs from the step taken here before, the steps after the position are discarded.
+        """Take a step. If its decision differs from that of the step taken here before, the steps after the position
+        are discarded.
 
         Returns:
             The step; `None` if no step is possible, or no step changes anything.
@@ -238,9 +239,12 @@ class Run:
     def _check_possible(self, decision: ByHand) -> None:
         if isinstance(decision, Intervention):
             if not is_possible(self.legend, self._reader.variables, decision):
-                raise RunError("the model has no such event or variable, or the value does not fit")
+                raise RunError(
+                    "the model has no such event or variable, or a value does not match the type of its variable"
+                )
             if decision.event and not self.is_free(decision.event):
-                raise RunError("the previous message of this kind has not been received yet")
+                event = decision.event
+                raise RunError(f"the previous event `{event}` has not been received yet; continue until it is received")
             return
         for enabled in self.enabled():
             if enabled.vector == decision.vector:
@@ -253,8 +257,8 @@ class Run:
         raise RunError(f"the decision for step {self.position + 1} is not possible in this state")
 
     def _learn(self, status: int) -> None:
-        """Store the verdict on the property after a step. A decided property stays decided. A state that the user has
-        changed decides nothing."""
+        """Store the verdict on the property after a step. A decided property stays decided. After a change by the
+        user, no property is decided any more."""
         if status == FAULTY or (self.status == UNKNOWN and not self.is_changed):
             self.status = status
             self._check()

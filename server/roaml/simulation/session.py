@@ -30,7 +30,7 @@ ENGINE_VERSION = 1
 
 
 class SavedSession(Record, frozen=True):
-    """Everything that determines a run, except for the model.
+    """Everything that determines a run, except for the model, and a position in the run.
 
     Attributes:
         property: the name of the property that is evaluated on the run.
@@ -77,7 +77,9 @@ class SavedSession(Record, frozen=True):
         try:
             value = json.loads(text)
             if value["format"] != FORMAT_VERSION or value["engine"] != ENGINE_VERSION:
-                raise ValueError("this session was saved by another version of the program")
+                raise ValueError(
+                    "this session was saved by another version of the program; save it again with this version"
+                )
             decisions: list[ByHand | None] = []
             for row in value["decisions"]:
                 if isinstance(row, int) and 0 < row <= MAX_STEPS - len(decisions):
@@ -89,7 +91,7 @@ class SavedSession(Record, frozen=True):
                     decisions.append(Decision(int(row["vector"]), picks, ways))
             position = int(value["position"])
             if not 0 <= position <= len(decisions):
-                raise ValueError("the position is outside of the run")
+                raise ValueError(f"the position must be from 0 to {len(decisions)}, not {position}")
             return SavedSession(
                 str(value["property"]), int(value["seed"]), int(value["trace"]), position, tuple(decisions)
             )
@@ -155,7 +157,7 @@ class Session:
 
     @property
     def verdict(self) -> TraceVerdict:
-        """The verdict on the property."""
+        """The verdict on the property at the position."""
         return VERDICTS[self._run.status]
 
     @property
@@ -194,7 +196,7 @@ class Session:
 
     @property
     def clock(self) -> tuple[str, ...]:
-        """The variables with the time of the model."""
+        """The variables with the time of the model; empty if it has no clock."""
         return self._clock or ()
 
     @property
@@ -226,7 +228,7 @@ class Session:
 
     @property
     def actions(self) -> list[str | None]:
-        """The actions of the model; `None` for steps without one."""
+        """The action of each synchronisation vector of the model; `None` for a vector without an action."""
         return [action for _, action in self._run.legend.vectors]
 
     @property
@@ -248,7 +250,7 @@ class Session:
         return self._run.values()
 
     def choices(self) -> tuple[Choice, ...]:
-        """The possible next steps."""
+        """The possible next steps, at most `MAX_CHOICES`."""
         return tuple(choices(self._run.enabled(), self._run.legend, self._follower.events))
 
     def state(self) -> SystemState:
@@ -293,8 +295,9 @@ class Session:
         """Take one step of the network of automata.
 
         Args:
-            choice: the step to take; the seed decides if `None`.
-            outcome: the outcome of the choice; a hash of the seed and the position decides if `None`.
+            choice: the step to take; `None` repeats the step taken here before or, if there is none, lets the seed
+                decide.
+            outcome: the outcome of the choice; `None` if a hash of the seed, the trace and the position decides.
 
         Returns:
             The step; `None` if no step changes anything.
@@ -408,8 +411,11 @@ class Session:
         return self.go_on(lambda _: (self._follower.time or 0.0) >= seconds, limit)
 
     def until_sent(self, event: str, limit: int = MAX_STEPS) -> bool:
-        """Take steps until an event is sent; return whether it was sent. `name` is that of the event in plain SCXML, or
-        of its topic, service or action."""
+        """Take steps until an event is sent; return whether it was sent.
+
+        Args:
+            event: its name in plain SCXML, or the name of its topic, service or action.
+        """
         events = self.events_named(event)
         return self.go_on(lambda step: sent_by(step.action or "") in events, limit)
 

@@ -12,7 +12,7 @@ from roaml.smc.record import Plain
 
 
 class NodeStatus(enum.Enum):
-    """The status of a tree node as in BehaviorTree.CPP; `TICKED` until its tick has returned."""
+    """The status of a tree node as in BehaviorTree.CPP; `TICKED` from a tick until the node returns a status."""
 
     IDLE = "IDLE"
     TICKED = "TICKED"
@@ -22,16 +22,16 @@ class NodeStatus(enum.Enum):
 
 
 class MachineState(Record, frozen=True):
-    """A state machine.
+    """The state of a state machine or of a plugin of the tree.
 
     Attributes:
-        name: the name of the machine in the model; `automaton` is the name of its automaton.
+        name: the name of the machine for users; `automaton` is the name of its automaton.
         state: its current state; while it handles an event, the state in which it received the event.
         variables: its own variables.
         handles: the name of the event that it handles; "" while it waits for one.
         origin: the place in the source of its state, or of the statement that it executes next.
         event: the event that it handles, with the name of the client of a service or action.
-        handler: the place of the handler of this event.
+        handler: the place of the handler of this event; `None` if there is no event.
     """
 
     name: str
@@ -58,6 +58,7 @@ class EventState(Record, frozen=True):
     Attributes:
         name: the name of the event, without the name of the client of a service or action.
         text: a description such as "a message on the topic `/level`".
+        sender: the name of the sender for users; "" if there is none.
         step: the number of the step that sent it.
         is_waiting: whether it has not been received yet.
     """
@@ -78,9 +79,10 @@ class SystemState(Record, frozen=True):
         time: the time in s; `None` if the model has no clock.
         machines: the state machines and the plugins of the tree.
         nodes: all nodes of the tree, ordered by their numbers.
-        events: the last event of each kind, such as the message of a topic or the request of a service, in the order of
-        sending. blackboard: the entries of the blackboard. shared: the global variables of a JANI model that belong to
-        no event.
+        events: each event that was sent, such as the message of a topic or the request of a service, as it was last
+            sent; in the order of sending.
+        blackboard: the entries of the blackboard.
+        shared: the global variables of the model that belong to no event.
     """
 
     step: int

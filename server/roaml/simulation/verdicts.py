@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The verdicts of a run on several properties, in addition to the property of its session."""
+"""The verdicts of a run on several properties, in addition to the property that its session evaluates."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ from roaml.record import Record
 from roaml.timeline.record import Lane, LaneKind, Plot, SentMessage, Timeline
 
 LANE, PLOT, AXIS, MESSAGES = 26.0, 54.0, 24.0, 22.0
-"""The heights of a lane, a plot, the axis, and the row with the names of messages."""
+"""The heights of a lane, a plot, the axis, and the row with the names of messages, in pixels."""
 _SPAN, _MARGIN = 20.0, 8.0
 _LEAST = 3.0
 """The minimum width of a state, in pixels. Adjacent states that are narrower are drawn as one."""
@@ -46,9 +46,9 @@ class View(Record, frozen=True):
     """The part of a timeline that is drawn.
 
     Attributes:
-        start, end: on the axis, in s or steps.
-        width: of the drawing, in pixels.
-        top, bottom: the rows between which something is drawn, in pixels of the whole timeline.
+        start, end: the ends of the drawn range of the axis, in s or steps.
+        width: the width of the drawing, in pixels.
+        top, bottom: the vertical range whose rows are drawn, in pixels from the top of the timeline.
         cursor: the position of the run as a number of steps; -1 to draw none.
     """
 
@@ -62,7 +62,7 @@ class View(Record, frozen=True):
 
 
 def extent(timeline: Timeline, axis: Axis) -> float:
-    """The end of a timeline on an axis."""
+    """The end of a timeline on an axis, in s or steps."""
     return timeline.times[-1] if axis is Axis.TIME and timeline.times else float(timeline.count)
 
 
@@ -72,7 +72,8 @@ def position_of(timeline: Timeline, axis: Axis, step: int) -> float:
 
 
 def step_at(timeline: Timeline, axis: Axis, position: float) -> int:
-    """The number of steps taken at a position on an axis: at most those of the run."""
+    """The number of steps that have been taken at a position on an axis, in s or steps; at most the steps of the
+    run."""
     if axis is Axis.TIME and timeline.times:
         return max(0, bisect_right(timeline.times, position) - 1)
     return max(0, min(timeline.count, math.floor(position)))
@@ -96,7 +97,7 @@ def draw_names(timeline: Timeline, width: float) -> Drawing:
 
 
 def draw_timeline(timeline: Timeline, view: View) -> Drawing:
-    """The rows over the axis, without their names."""
+    """The axis with the rows below it, without the names of the rows."""
     painter = _Painter(timeline, view)
     return Drawing(Extent(view.width, height_of(timeline)), tuple(painter.groups()), {})
 
@@ -112,7 +113,7 @@ class _Painter:
         return (position_of(self._timeline, self._view.axis, step) - self._view.start) * self._scale
 
     def _first_step(self, x: float) -> int:
-        """The first step at or right of a pixel."""
+        """The number of the first step at or right of a horizontal position in pixels."""
         position = self._view.start + x / self._scale
         if self._view.axis is Axis.TIME and self._timeline.times:
             return bisect_left(self._timeline.times, position)
@@ -182,7 +183,7 @@ class _Painter:
                 continue
             first, left = number, x
             while end - x < _LEAST and x <= right:
-                # The next state, without those that begin in the same pixel.
+                # Skip the states that begin in the same pixel.
                 number = max(number + 1, bisect_left(starts, self._first_step(x + 1.0), number) - 1)
                 if number == len(starts):
                     x = self._end
@@ -325,7 +326,7 @@ def _text(text: str, x: float, middle: float, width: float, role: str, *, bold: 
 
 
 def _fitting(text: str, width: float, *, bold: bool = False) -> str:
-    """The text, shortened to a width; "" if less than three characters fit."""
+    """The text, shortened to a width in pixels; "" if fewer than three characters fit."""
     if text_width(text, SMALL, bold=bold) <= width:
         return text
     while len(text) > 3 and text_width(text + ELLIPSIS, SMALL, bold=bold) > width:

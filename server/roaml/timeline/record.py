@@ -42,9 +42,9 @@ class Lane(Record):
     """The states of a machine or plugin, or the statuses of a tree node.
 
     Attributes:
-        starts: the numbers of the steps after which the state is another one, beginning with 0.
+        starts: the numbers of the steps that changed the state; the first is 0, for the initial state.
         states: the state after each of these steps.
-        ranks: the different states, numbered in the order in which they are entered first.
+        ranks: state -> its number, from 0, in the order in which states are first entered.
     """
 
     name: str
@@ -65,8 +65,8 @@ class SentMessage(Record, frozen=True):
 
     Attributes:
         name: the name of the topic, service or action, or of the event.
-        sent, received: the numbers of the steps.
-        sender, receivers: indexes of lanes.
+        sent, received: the numbers of the steps that sent and received the event.
+        sender, receivers: the indexes of the lanes in `Timeline.lanes`.
     """
 
     name: str
@@ -77,7 +77,8 @@ class SentMessage(Record, frozen=True):
 
 
 class Plot(Record):
-    """The values of a variable that is a number or a truth value, after the steps that change them."""
+    """The values of a variable that is a number or a Boolean, each with the number of the step that assigned it; the
+    first is the value before the run, with step 0. `is_flag` states whether the variable is a Boolean."""
 
     name: str
     is_flag: bool
@@ -89,8 +90,10 @@ class Timeline:
     """The content of a timeline.
 
     Attributes:
+        count: the number of steps that have been read.
         times: the time in s before the first step, and after each step; empty if the model has no clock.
-        messages: in the order in which they are received.
+        lanes: first those of the machines, then those of the tree nodes.
+        messages: the messages that have been received, in this order.
     """
 
     def __init__(self, session: Session) -> None:
@@ -144,7 +147,7 @@ class Timeline:
 
     @property
     def plots(self) -> list[Plot]:
-        """The plots of the variables that change in the run, ordered by machine."""
+        """The plots of the variables that change in the run, ordered by automaton and name."""
         return [self._plots[key] for key in sorted(self._plots)]
 
     def follow(self, session: Session) -> None:

@@ -23,7 +23,7 @@ class Counterexample(Record, frozen=True):
 
     Attributes:
         heading: a summary of the trace, in one sentence.
-        verdict: the verdict of the trace; `PASSED` if that contradicts the expectation.
+        verdict: the verdict of the trace on the property.
         trace: the number of the trace.
         lines: one line for each turn of an automaton.
     """

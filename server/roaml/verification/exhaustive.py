@@ -16,13 +16,13 @@ from roaml.verification.results import Exact, Proof, ShortestTrace
 from roaml.verification.schedulers import is_minimised
 
 _SLACK = 1e-6
-"""The tolerance for a number that is compared with `≥`, `≤` or `=`, because numbers in models are rounded."""
+"""The tolerance of comparisons with `≥` and `≤`, because numbers in models are rounded, and the default for `=`."""
 _ESTIMATE = "omit --exhaustive to estimate the value from traces with uniform choices"
-"""What to do if all states cannot be explored, or do not answer the property."""
+"""The remedy if a limit ends the exploration, or if only traces can answer the property."""
 
 
 class UndecidedError(Exception):
-    """There is no answer from all states; the message contains the reason."""
+    """The states of the model do not answer a property; the message contains the reason."""
 
 
 def exact_values(
@@ -33,9 +33,12 @@ def exact_values(
 ) -> Exact:
     """The exact values of a property, from all states.
 
+    Args:
+        watch: see `roaml.explicit.space.explore`.
+
     Raises:
-        UndecidedError: a limit was reached, or the property has no value.
-        FaultError: an undefined operation is executed in some state.
+        UndecidedError: a limit was reached, or the property has assumptions or no value that can be computed.
+        FaultError: an undefined operation is executed in a reachable state.
     """
     if property_.question.is_conditional:
         raise UndecidedError(f"a minimum or maximum given assumptions cannot be computed from all states; {_ESTIMATE}")
@@ -67,7 +70,7 @@ def exact_values(
 
 
 def _proof(space: Space, values: GoalValues) -> Proof | None:
-    """What the exploration of all states proves in addition to a probability of 0 or 1 (see `Exact`)."""
+    """What the exploration of all states proves in addition to a probability of 0 or 1 (see `Exact.proof`)."""
     goal = space.compiled_property.goal
     if space.compiled_property.question.is_reward or len(goal.left) != 1 or goal.lower[0] == AT_END:
         return None

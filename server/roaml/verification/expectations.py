@@ -50,8 +50,8 @@ class Verdict(Record, frozen=True):
     Attributes:
         is_certain: whether the verdict is the same for the whole interval.
         is_uniform: whether the expectation is met under uniform choices and not known to be met under all schedulers.
-        under: a phrase for the scheduler under which it is not met; "" if only one scheduler is considered.
-        unanimous: the number of traces and the bound of the interval, if no trace contradicts an expected 0 or 1.
+        under: a phrase that follows `NOT MET`, such as `under uniform choices` or `so far`; "" if there is none.
+        unanimous: the number of traces and the other bound of the interval, if no trace contradicts an expected 0 or 1.
     """
 
     expectation: Expectation
@@ -131,7 +131,8 @@ def check_range(expectation: Expectation, question: Question) -> None:
 
 
 def is_possible(expectation: Expectation, question: Question) -> bool:
-    """Whether the value of a property can be equal to the number of an expectation, or near it."""
+    """Whether the value of a property can be compared with the number of an expectation: for a probability, only with 0
+    to 1."""
     return question.is_reward or 0 <= expectation.threshold.number <= 1
 
 
@@ -163,5 +164,5 @@ def check_expectation(expectation: Expectation, answer: Answer) -> Verdict:
 
 
 def _rounded(bound: float) -> float:
-    """A bound of the interval with three digits, rounded away from the expected 0 or 1."""
+    """A bound of the interval with three digits after the point, rounded away from the expected 0 or 1."""
     return math.floor(bound * 1000) / 1000 if bound > 0.5 else math.ceil(bound * 1000) / 1000

@@ -13,7 +13,7 @@ class Refusal(Record, frozen=True):
 
     Attributes:
         code: the rule whose document explains the reason.
-        place: its place in the files; `None` if unknown.
+        place: the position of the cause; `None` if it is unknown.
     """
 
     code: str

@@ -53,7 +53,7 @@ class ShortestTrace(Record, frozen=True):
 
 
 EXACT_WIDTH = 1e-6
-"""The maximum width of bounds that are one value; for values above 1, it is relative."""
+"""The maximum distance between the bounds of two values that are regarded as equal; relative for values above 1."""
 
 
 class Proof(Enum):
@@ -64,11 +64,11 @@ class Proof(Enum):
 
 
 class Exact(PartlyCompared, frozen=True):
-    """The values from all states.
+    """The exact values of a property, computed from all states.
 
     Attributes:
         minimum, maximum: the extreme values over all schedulers, enclosed by bounds.
-        uniform: the value with uniform choices.
+        uniform: the value with uniform choices, enclosed by bounds.
         states: the number of states.
         is_precise: whether the bounds are as close as intended: at most 0.0001 percent.
         proof: for a property about one condition that is always or never reached: whether the condition holds in all
@@ -107,8 +107,8 @@ class Exact(PartlyCompared, frozen=True):
         return is_same(self.minimum, self.maximum) and is_same(self.minimum, self.uniform)
 
     def asked_value(self, question: Question, *, only_uniform: bool) -> tuple[Bounds, float]:
-        """The value that a property asks for, with its bounds: its minimum or its maximum; with `only_uniform`, its
-        value under uniform choices."""
+        """The bounds and the value of the minimum or maximum that a property asks for; with `only_uniform`, those for
+        uniform choices."""
         if only_uniform:
             return self.uniform, self.average
         return (self.minimum, self.least) if is_minimised(question) else (self.maximum, self.greatest)
@@ -127,7 +127,8 @@ def is_same(a: Bounds, b: Bounds) -> bool:
 
 
 def _value(bounds: Bounds) -> float:
-    """The value that is enclosed by bounds: an end of the bounds that is exact, otherwise their middle."""
+    """A number for the value that bounds enclose: 0 or 1 if one of them is within the bounds, otherwise their middle;
+    NaN if only one bound is infinite."""
     if bounds.lower == bounds.upper:
         return bounds.lower
     if math.isinf(bounds.upper) or math.isinf(bounds.lower):
@@ -136,12 +137,12 @@ def _value(bounds: Bounds) -> float:
 
 
 class SampledResult(Record, frozen=True):
-    """The probability under a scheduler that was sampled for the minimum or the maximum.
+    """The probability under the scheduler that was selected for the minimum or the maximum among sampled schedulers.
 
     Attributes:
         side: whether it is the minimum or the maximum.
         scheduler: the number of the scheduler; `words` describes it.
-        stuck: the traces that got stuck, if any.
+        stuck: the traces under this scheduler that got stuck; `None` if there are none.
     """
 
     side: Side
@@ -181,17 +182,19 @@ class Result(PartlyCompared, frozen=True):
 
     Attributes:
         answer: the answer of traces with uniform choices; `None` if only other schedulers or exact values were
-            requested. If there are exact values, too, these traces are examples.
+            requested. If the result also has exact values, the traces of the answer are examples.
         verdicts: one for each expectation.
         seconds: the duration of the verification, in s.
         is_interrupted: whether the work was ended before the answer was complete.
         sampled: the results of traces with sampled schedulers.
-        tried: the number of schedulers from which these were selected.
-        stuck: the traces that got stuck, if any.
+        tried: the number of sampled schedulers from which those of `sampled` were selected.
+        stuck: the traces that got stuck; `None` if there are none.
+        exact: the values from all states; `None` if they were not computed.
         choices: what is known about schedulers other than the uniform one; `None` if only uniform choices are
             considered.
-        refusal: the reason why there is no answer; `fault` is its cause.
-        undecided: the reason why the exploration of all states could not decide the property.
+        refusal: the reason why there is no answer; `None` if there is one.
+        undecided: the reason why the exploration of all states could not decide the property; "" if it could.
+        fault: the error that is the cause of `refusal`.
         traces: the traces of `answer`, which can be simulated again.
         comment: a description of what the property requires; "" if the model contains none.
     """
@@ -216,7 +219,7 @@ class Result(PartlyCompared, frozen=True):
 
     @property
     def includes_stuck(self) -> bool:
-        """Whether the question is about stuck traces."""
+        """Whether the result is about the property `stuck`, which asks whether traces get stuck."""
         traces = () if self.exact is None else self.exact.traces
         questions = [answer.question for answer in self._answers()] + [
             t.space.compiled_property.question for t in traces
@@ -237,7 +240,7 @@ class Result(PartlyCompared, frozen=True):
 
     @property
     def epsilon(self) -> float:
-        """The difference that `==` allows."""
+        """The difference that `==` allows; 0 if there is no answer of traces."""
         return next((answer.options.epsilon for answer in self._answers()), 0.0)
 
     @property

@@ -58,7 +58,8 @@ def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | No
 
 
 def _missed_by(question: Question, extreme: Extreme | None) -> str:
-    """A phrase for the extreme that violates an expectation; "" if none does."""
+    """A phrase for the scheduler or the extreme that violates an expectation; for uniform choices if no other is
+    known."""
     if extreme is None or extreme.method is ExtremeMethod.UNIFORM:
         return "under uniform choices"
     if extreme.is_exact:
@@ -72,7 +73,7 @@ def is_minimised(question: Question) -> bool:
 
 
 def may_differ(choices: Choices | None) -> bool:
-    """Whether schedulers other than the uniform one may have another value, as far as is known."""
+    """Whether it is unknown if the value depends on the scheduler."""
     return choices is not None and not choices.agreement and not choices.differ
 
 

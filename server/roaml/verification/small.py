@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Exact values of properties of models with few states, computed without a request of the user. All limits are numbers
 of states, bytes and operations, and not times, so the speed of the machine does not determine whether a property is
-answered exactly. At these limits, exploring the states takes less time than a tenth of the default traces of most
-systems.
+answered exactly. At these limits, exploring the states of most systems takes less than a tenth of the time of the
+default number of traces.
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ EXAMPLE_TRACES = 200
 
 
 def values_if_small(checker: ModelChecker, property_: CompiledProperty) -> Exact | None:
-    """The exact values of a property; `None` if the model is too large, or if only traces can answer the property."""
+    """The exact values of a property; `None` if the model is too large, if an undefined operation is executed, or if
+    only traces can answer the property."""
     if property_.question.is_conditional:
         return None
     try:

@@ -42,14 +42,14 @@ class StuckLevel(Vocabulary):
 
 
 class Stuck(Record, frozen=True):
-    """The traces of one question that got stuck.
+    """The traces of one answer that got stuck.
 
     Attributes:
         count: the number of stuck traces.
         traces: the number of all traces.
         seen: the shortest stuck trace.
-        time: the time of the model at its end, in s; `None` if the model has no clock.
-        waits: the waiting automata at its end.
+        time: the time of the model at the end of `seen`, in s; `None` if the model has no clock.
+        waits: the waiting automata at the end of `seen`.
     """
 
     count: int
@@ -88,8 +88,8 @@ Chain: TypeAlias = tuple[tuple[str, str, str], ...]
 
 
 def chain_of(waiting: Sequence[Wait]) -> Chain:
-    """The chain of waiting automata: the automata, their locations, and the events that they wait for. Traces that get
-    stuck in the same way at different times have equal chains."""
+    """The chain of waiting automata: for each its name, its location, and the automaton that it waits for, "" if none.
+    Traces that get stuck in the same way at different times have equal chains."""
     return tuple((wait.automaton, wait.location, wait.whom) for wait in waiting)
 
 
@@ -97,10 +97,11 @@ class StuckResult(Record, frozen=True):
     """The result of the check for stuck traces.
 
     Attributes:
-        answer: the answer of the traces that were generated for the check; `None` if there were none.
-        stuck: the shortest example, from these traces or from those of a property.
-        level: whether it is a warning or an error.
-        fault: the message about an undefined operation in one of these traces; then there is no answer.
+        answer: the answer of the traces that were generated for the check; `None` if there were none, or `fault` is
+            set.
+        stuck: the stuck traces with the shortest example, from the check or from a property; `None` if none got stuck.
+        level: whether stuck traces are a warning or an error.
+        fault: the message about an undefined operation in a trace of the check; "" if there was none.
     """
 
     answer: Answer | None

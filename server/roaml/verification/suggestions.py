@@ -13,10 +13,10 @@ from roaml.verification.verifier import with_expectations
 
 
 def suggestions(result: Result) -> tuple[str, ...]:
-    """The expectations that a result of traces meets, such as `>= 0.97`: the strictest first, lower bounds first.
+    """The expectations that a result meets, such as `>= 0.97`: the strictest first, lower bounds before upper ones.
 
     If no trace contradicts a probability of 1 or 0, the expectation with this number is the first. The numbers of all
-    others are outside of the interval, so that their verdict is certain.
+    others are at the ends of the interval, rounded outwards, so that their verdict is certain.
     """
     return tuple(text for text in _candidates(result) if _is_met(result, text))
 

@@ -34,10 +34,10 @@ class VerificationTarget(Record, frozen=True):
     Attributes:
         path: the file that the user has named; "" for a model that was not read from a file.
         files: all files that were read, `path` first.
-        source_of: path -> the text of the file of an origin; `None` if it is unknown.
-        clock: the variables for seconds and nanoseconds, if the model has them.
-        assumptions: property -> the property which states that its assumptions hold, if it has any.
-        expectations: property -> the expected values, from the file of the property and from the configuration.
+        source_of: the path of an origin -> the text of the file; `None` if it is unknown.
+        clock: the variables with the seconds and nanoseconds of the time; `None` if the model has none.
+        assumptions: the name of a property with assumptions -> the property which states that these hold.
+        expectations: the expected values of the properties, from their files and from the configuration.
     """
 
     path: str
@@ -80,7 +80,7 @@ def target_of(
     """A model as a target, with its clock if it has one, and with observers for nested formulas.
 
     Args:
-        conditional: the properties with assumptions.
+        conditional: the names of the properties with assumptions.
         clock_step: the step of the clock in ns, if it is known.
     """
     if any(is_nested(formula) for property_ in model.properties for formula in walk(property_.expression)):

@@ -79,7 +79,8 @@ class OutcomeShare(Record, frozen=True):
 
 
 class Quantile(Record, frozen=True):
-    """The time in s within which a share of the traces has ended, with its interval; infinite if it is unknown."""
+    """The time in s within which a share of the successful traces has ended, with its confidence interval. Its upper
+    end is infinite if there are too few traces."""
 
     share: float
     value: float
@@ -98,15 +99,17 @@ class TreeOutcome(Record, frozen=True, eq=False):
     """The measurements of all traces of a tree.
 
     Attributes:
+        traces: the number of traces.
+        confidence: the confidence level of all intervals.
         success, failure: the outcomes of the tree; `failure` includes trees that were skipped.
-        unfinished: the traces in which the tree had not ended at the end of time.
-        exceptions: the traces in which a node got stuck, because the library throws an exception there.
+        unfinished: the number of traces in which the tree had not ended at the end of time.
+        exceptions: the number of traces in which a node got stuck, because the library throws an exception there.
         time: the time until the tree succeeds, in s; `None` if it never does.
         quantiles: the quantiles of this time.
-        counts: node and counter -> the expected number for a trace.
+        counts: nodes, their counters, and the expected value of each counter at the end of a trace.
         influences: the influences of the leaves, the greatest first; leaves whose mock never or always succeeds are
             omitted. Empty if all traces had the same outcome, which shows no influence.
-        shortest: the number of the shortest trace that fails; `None` if there is none.
+        shortest: the number of the shortest trace that does not succeed; `None` if there is none.
     """
 
     traces: int
@@ -195,13 +198,13 @@ class _Measuring:
         )
 
     def trace(self, number: int) -> tuple[int, int, bool]:
-        """The result of a trace: the status that the tree returned last (0 or RUNNING if it has not ended), the number
+        """The result of a trace: the status that the tree returned last (0 if it has not ended), the number
         of steps, and whether a node has got stuck."""
         verdict = self.kernel.begin(self.options.seed, number, 0)
         if verdict == UNKNOWN:
             verdict = self.kernel.advance(self.options.max_steps)
         if verdict == FAULTY:
-            raise ValueError(f"trace {number} fails")
+            raise ValueError(f"trace {number} executes an undefined operation")
         answer = self.integer(self.status) if verdict == TRUE else 0
         is_stuck = (
             verdict == FALSE and self.clock_time() < self.mocked.options.max_time / 1e9 - 2 / self.mocked.options.rate
@@ -246,8 +249,8 @@ class _Measuring:
 
 
 def quantile(share: float, values: Sequence[float], confidence: float) -> Quantile:
-    """A quantile of sorted values, with a distribution-free confidence interval. Its ends are two of the values. If
-    there are too few values, they are 0 and infinity."""
+    """A quantile of sorted values, with a distribution-free confidence interval. Its ends are two of the values;
+    if there are too few values, the lower end is 0, and the upper end is infinite."""
     count = len(values)
     tail = (1 - confidence) / 2
 

@@ -32,19 +32,20 @@ from roaml.views.ends import marks, observer_outputs
 
 
 class NoThresholdError(ValueError):
-    """A sequential test is requested for a property that is not compared with a number."""
+    """A sequential test is requested for a property that is not a probability compared with a number."""
 
 
 def checker_of(target: VerificationTarget, properties: Iterable[str] | None = None) -> ModelChecker:
     """A model, compiled for some of its properties.
 
     Args:
-        properties: their names; `None` for all. `stuck` asks whether traces get stuck (`roaml.smc.end.End.STUCK`),
-            which is possible for every translated system.
+        properties: the names of the properties; `None` for all. The name `stuck` asks whether traces get stuck
+            (`roaml.smc.end.End.STUCK`); every translated system has this property.
 
     Raises:
         PropertyError: the model has no property with one of the names.
-        FaultError: the model is of an unsupported kind; see `roaml.smc.fault`. Unsupported properties are in `refused`.
+        FaultError: the model is of an unsupported kind; see `roaml.smc.fault`. The errors of unsupported
+            properties are in `ModelChecker.refused` instead.
     """
     ends = marks(target.model)
     if properties is None:
@@ -111,7 +112,8 @@ def verifier_of(
 
 
 def expectations_of(property_: CompiledProperty, given: Iterable[Expectation]) -> tuple[Expectation, ...]:
-    """The expectations of a property: its own, and those in `given` that are about it."""
+    """The expectations of a property: its own comparison with a number, if it has one, and those in `given` about
+    it."""
     name, threshold = property_.question.name, property_.question.threshold
     about_it = tuple(dict.fromkeys(expectation for expectation in given if expectation.name == name))
     if threshold is None or any(expectation.threshold == threshold for expectation in about_it):
@@ -154,8 +156,10 @@ class Verifier(Record, frozen=True):
     """A target with compiled properties, and their expectations; see `verifier_of`.
 
     Attributes:
+        only_uniform: whether only uniform choices are considered, not the minimum or maximum over all schedulers.
         exact_if_small: whether the result of a property contains exact values if the model has few states (`small`).
-        example_traces: the number of traces that are generated for such a result; `None` for as many as for others.
+        example_traces: the number of traces that are generated for a result with exact values; `None` for the number
+            that an estimate needs.
     """
 
     target: VerificationTarget
@@ -172,7 +176,8 @@ class Verifier(Record, frozen=True):
         return self.checker.names
 
     def question(self, name: str) -> CompiledProperty:
-        """The question about a property. For a sequential test, its value is compared with the first expected number.
+        """The compiled property with a name. For a sequential test, its value is compared with the number of its first
+        expectation.
 
         Raises:
             FaultError: the property cannot be decided.
@@ -187,7 +192,7 @@ class Verifier(Record, frozen=True):
         return property_
 
     def expected(self, property_: CompiledProperty) -> tuple[Expectation, ...]:
-        """The expectations of a property: its own, those of the verifier, and those of the target."""
+        """The expectations of a property: those of the property itself, of the verifier, and of the target."""
         return expectations_of(property_, (*self.expectations, *self.target.expectations))
 
     def verify(self, name: str, pool: Pool) -> Result:
@@ -230,8 +235,8 @@ class Verifier(Record, frozen=True):
         watch: Watch | None = None,
         pulse: Pulse | None = None,
     ) -> Result:
-        """The result of a property, from traces with uniform choices; with exact values if they are requested and the
-        model is small.
+        """The result of a property, from traces with uniform choices; with exact values if they are requested, the
+        model is small, and no trace can get stuck.
 
         Args:
             tally: the state to continue from; it is updated after each batch. After an interruption, `interrupted`
@@ -241,7 +246,7 @@ class Verifier(Record, frozen=True):
 
         Raises:
             FaultError: a trace executed an undefined operation.
-            NoThresholdError: a sequential test is requested, and there is no number to compare with.
+            NoThresholdError: see `check_method`.
             WorkersLostError: processes end repeatedly.
         """
         self.check_method(property_)
@@ -307,14 +312,15 @@ class Verifier(Record, frozen=True):
         return results
 
     def _small(self, property_: CompiledProperty) -> Exact | None:
-        """The exact values of a property of a small model, for its result or to compare schedulers."""
+        """The exact values of a property, for its result or to compare schedulers; `None` if neither needs them, or if
+        the model is too large."""
         if self.exact_if_small or (self._considers_choices(property_) and not self.checker.is_deterministic):
             return values_if_small(self.checker, property_)
         return None
 
     def _shown(self, small: Exact | None) -> Exact | None:
-        """The exact values that the result contains. If traces can get stuck, it contains none, because the value is
-        doubtful and traces are needed as examples."""
+        """The exact values that the result contains. If traces can get stuck, the result contains none, because the
+        value is doubtful and traces are needed as examples."""
         return None if not self.exact_if_small or small is None or small.can_get_stuck else small
 
     def _trace_options(self, exact: Exact | None) -> Options:
@@ -350,15 +356,16 @@ class Verifier(Record, frozen=True):
         return not (self.only_uniform or property_.question.is_stuck or property_.question.is_conditional)
 
     def check_method(self, property_: CompiledProperty) -> None:
-        """Check that a sequential test has a number to compare with, if one is requested.
+        """Check that a property can be decided by a sequential test, if that is the requested method.
 
         Raises:
-            NoThresholdError: it has no such number.
+            NoThresholdError: the property is a reward, or is not compared with a number.
         """
         question = property_.question
         if self.options.method is EstimationMethod.SPRT and (question.threshold is None or question.is_reward):
             raise NoThresholdError(
-                f"a sequential test needs a number to compare with; set an expectation for `{question.name}`"
+                f"a sequential test needs a probability that is compared with a number; set an expectation for "
+                f"`{question.name}`, or use another method"
             )
 
     def interrupted(self, property_: CompiledProperty, tally: Tally, seconds: float) -> Result:
@@ -408,7 +415,7 @@ class Verifier(Record, frozen=True):
     def exhaustive(
         self, property_: CompiledProperty, limits: StateLimits, watch: Callable[[int, int], None] | None = None
     ) -> Result:
-        """The exact values of a property, from all states; undecided if a limit ends the exploration.
+        """The exact values of a property, from all states; `Result.undecided` if there are none (see `exact_values`).
 
         Args:
             watch: called with the number of states, and the number of those whose steps are known.
@@ -431,7 +438,7 @@ class Verifier(Record, frozen=True):
         return Result(property_.question.name, None, verdicts, seconds, exact=exact, comment=_comment(property_))
 
     def check_stuck(self, level: StuckLevel = StuckLevel.WARNING, pulse: Pulse | None = None) -> StuckResult:
-        """Generate traces to check whether the system gets stuck; see `stuck.can_be_stuck`."""
+        """Generate traces to check whether the system gets stuck. `stuck.can_be_stuck` must be true for the model."""
         return stuck.check_stuck(self.target, self.checker, self.options, level, pulse)
 
     def _with_verdicts(

@@ -37,13 +37,14 @@ _TREE_EVENTS = {
 
 
 def name_of(automaton: str) -> str:
-    """The name of an automaton for users. A node of a tree has its name and its number."""
+    """The name of an automaton for users; for a node of the tree, its name and number, such as `Wait (bt_1003)`."""
     node = NODE_AUTOMATON.fullmatch(automaton)
     return f"{node[2]} (bt_{node[1]})" if node else automaton
 
 
 def actor(automaton: str) -> str:
-    """A phrase for an automaton that is not the buffer of an event, without backquotes around its name."""
+    """A phrase for an automaton that does not buffer an event, without backquotes around the name of a machine or
+    node."""
     role = automaton_role(automaton)
     match role:
         case Role.MACHINE:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Why a trace of a translated system has ended, determined from its final state (`roaml.smc.end`).
+"""Why a trace of a translated system has ended (`roaml.smc.end`), determined from its final state.
 
 If the clock has ended, the maximum time is reached. If the root of the tree has ended, the tree has finished. Otherwise
 a clock that does not advance, or an event that is not received, means that automata wait for one another. In a system
@@ -64,7 +64,8 @@ def _mark(automaton: Automaton, location: str) -> End:
 
 
 def observer_outputs(model: Model) -> Mapping[str, ObserverOutputs]:
-    """Property -> the variables of its observer that its formula does not read (docs/spec/jani.md#observers)."""
+    """Property -> what its observers report in addition to the variables that its formula reads
+    (docs/spec/jani.md#observers)."""
     variables = {variable.name for variable in model.variables}
     observers = {automaton.name for automaton in model.automata}
     outputs = {}

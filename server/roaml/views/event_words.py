@@ -47,7 +47,7 @@ def event_phrase(event: str, clients: Collection[str], role: Role = Role.MACHINE
     """A phrase for an event.
 
     Args:
-        clients: the automata of the system; the name of an event may end with the name of such an automaton.
+        clients: the names of the automata of the system; the name of an event may end with one of them.
         role: the role of the automaton that waits for the event, or receives it.
         taken: whether this automaton receives the tick of a timer, instead of waiting for the timer.
     """
@@ -71,7 +71,7 @@ def interface_name(event: str, clients: Collection[str]) -> str:
     """The name of the topic, service or action of an event, with a leading `/`; "" if the event has none.
 
     Args:
-        clients: the automata of the system.
+        clients: the names of the automata of the system.
     """
     interface = read_interface_event(event, clients)
     return "" if interface is None else _ros_name(interface)

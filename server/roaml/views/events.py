@@ -53,7 +53,9 @@ class EventReader:
         return name in self._events
 
     def carries_event(self, variable: str) -> bool:
-        """Whether a variable of the model belongs to an event: it contains one of its parameters."""
+        """Whether a variable of the model belongs to an event: it contains a parameter, a length, or whether the event
+            is
+        valid."""
         return variable in self._of_events
 
     def parameters(self, event: str) -> dict[str, Plain]:

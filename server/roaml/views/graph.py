@@ -15,7 +15,8 @@ class Kind(enum.Enum):
 
 
 class GraphNode(Record, frozen=True):
-    """A node of a diagram. `lines` are the lines of its label; `minor` nodes are drawn less prominently."""
+    """A node of a diagram. `lines` are the lines of its label; `minor` nodes, which the
+    translation added, are drawn in grey."""
 
     id: str
     lines: tuple[str, ...]
@@ -29,7 +30,7 @@ class GraphLink(Record, frozen=True):
 
 
 class Graph(Record, frozen=True):
-    """A diagram. `initial` is the initial node; "" if there is none."""
+    """A diagram. `initial` is the id of the initial node; "" if there is none."""
 
     kind: Kind
     title: str

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A diagram of the states and transitions of a state machine, before its translation."""
+"""Diagrams of the states and transitions of a state machine in HL-SCXML."""
 
 from __future__ import annotations
 

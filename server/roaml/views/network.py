@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A diagram of the JANI network: the automata and the events that they exchange. Links represent buffers of events."""
+"""A diagram of the JANI network: the automata and the events that they exchange. A link is labelled
+with the events that one automaton sends to another; the automata that buffer events are not shown."""
 
 from __future__ import annotations
 

@@ -38,8 +38,8 @@ def observed_property(observer: str, property_: str) -> str:
     """The name of the property of an observer.
 
     Args:
-        property_: the property that a trace is explained for. Its observers have its name without some characters; the
-            other observers belong to its assumptions and have their names.
+        property_: the name of the property for which a trace is explained. Its observer has this name with `_` instead
+            of some characters; the other observers have the names of assumptions.
     """
     prefix = observer.removesuffix(OBSERVER_SUFFIX)
     return property_ if prefix.rstrip("_") == _UNSAFE.sub("_", property_).rstrip("_") else prefix

@@ -21,19 +21,20 @@ from roaml.views.values import shown_value
 from roaml.views.waiting import Wait, help_line, waits
 
 MAX_CHARACTERS = 60
+"""The maximum number of characters of the states or the parameters of an event in a line."""
 FIRST, LAST = 30, 50
-"""The maximum number of turns that are shown. If there are more turns, those in the middle are folded."""
+"""The numbers of turns that are shown at the beginning and at the end. The turns between them are folded."""
 
 PlaceOf = Callable[[Origin], str]
 """File and line of an origin, as text for users."""
 
 
 class StoryLine(NamedTuple):
-    """The turn of one automaton from one event to the next. `details` are its effects.
+    """The turn of one automaton: its steps from one event to the next. `details` are the effects of the turn.
 
     `place` and `origin` are the place of the turn, as a phrase and as a position in the text; `location` is the
     location after the turn. `automaton` is the name of the automaton in the model, and `who` its name for users. Both
-    are "" for folded turns. `step` and `last_step` are the numbers of its first and last step.
+    are "" for folded turns. `step` and `last_step` are the numbers of the first and last step of the turn.
     """
 
     step: int
@@ -136,7 +137,8 @@ def heading(story: Story) -> str:
 
 
 def as_mermaid(story: Story, place_of: PlaceOf, first: int = 0) -> str:
-    """A sequence diagram. An event is an arrow from its sender to its receiver, at the time when it is received.
+    """A sequence diagram in Mermaid. An event is an arrow from its sender to its receiver, at the time when it is
+    received.
 
     Args:
         first: turns that end before this step are left out.
@@ -185,7 +187,7 @@ def _mermaid(story: Story, place_of: PlaceOf, first: int) -> Iterator[str]:
 
 
 def as_html(stories: Sequence[Story], place_of: PlaceOf, title: str) -> str:
-    """A self-contained HTML page. Each line contains its place."""
+    """A self-contained HTML page. Each line of an explanation contains the place of its turn in the sources."""
     parts = [_section(story, place_of) for story in stories]
     return _PAGE.format(title=html.escape(title), body="\n".join(parts))
 
@@ -230,7 +232,7 @@ ul {{ margin: .2em 0 0; padding-left: 1.2em; }} pre {{ background: #f6f8fa; padd
 
 
 def _folded(story: Story, shown_turns: Sequence[Turn]) -> range:
-    """The indexes of the turns that are folded, and not shown."""
+    """The indexes of the turns for which one line with their number is shown."""
     return range(0) if story.is_whole else range(FIRST, len(shown_turns) - LAST)
 
 

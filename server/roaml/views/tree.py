@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A diagram of the executed tree: every node with its number, its plugin and its ports."""
+"""A diagram of the executed tree of a system: every node with its name, plugin, ports and number."""
 
 from __future__ import annotations
 

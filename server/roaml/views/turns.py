@@ -40,15 +40,19 @@ class Turn(Record):
     """The steps of one automaton from one event to the next.
 
     Attributes:
-        number: the number of its first step.
+        number: the number of the first step.
+        time: the time after the first step, in s; `None` if the model has no clock.
         heard: the received event with which the turn begins; `None` if there is none.
-        action: the action with which it begins together with other automata, if that is not an event.
-        parts: the parts of the automaton in its steps.
-        changes: the changes of its own variables, and of variables of the model that do not belong to an event.
+        action: the action that the automaton executes together with others in the first step; `None` if the step
+            receives an event, or no other automaton takes part.
+        parts: the part of the automaton in each step.
+        changes: the changes of the variables of the automaton, and of variables of the model that do not belong to an
+            event.
         messages: the events that the automaton has sent.
-        last: the number of its last step.
-        ends: whether the trace ends with this turn.
-        observed: the property of the automaton if it is an observer; otherwise "".
+        matters: whether one of the steps is relevant for the property.
+        last: the number of the last step.
+        ends: whether the automaton takes part in the last step of the trace.
+        observed: the name of the observed property if the automaton is an observer; otherwise "".
         observation: what an observer observes.
         phrases: phrases for those variables of the automaton that the translation has added, by their names.
     """
@@ -91,7 +95,7 @@ class Turn(Record):
 
     @property
     def effects(self) -> tuple[str, ...]:
-        """What the turn of an observer means for its property."""
+        """Phrases for what the turn of an observer means for its property, such as `the property is violated`."""
         return tuple(effects(self.changes))
 
     @property
@@ -150,7 +154,7 @@ class Message(Record, frozen=True):
     Attributes:
         name: the name of the event, without the name of the client of a service or action; a phrase for the tick of a
             timer.
-        sender: `None` if no automaton has sent it.
+        sender: the turn that sent the event; `None` if no automaton has sent it.
     """
 
     event: str
@@ -189,7 +193,7 @@ def _is_shown(turn: Turn, inner: Collection[int], observers: Collection[str]) ->
 
 
 class _Reader:
-    """Reads the steps in their order, and stores the state after each.
+    """Reads the steps of a trace in their order, and divides them into turns.
 
     Attributes:
         inner: the nodes of BehaviorTree.CPP that tick children, and the automaton that ticks the root. Their turns are

@@ -46,8 +46,10 @@ class Wait(NamedTuple):
 
     Attributes:
         origin: the place in the source where it waits.
-        automaton, location, role: its name in the model, its location, and its role in the system.
-        whom: the automaton for which it waits; "" if there is none.
+        who: the name of the automaton for users.
+        what: the description, a phrase that continues `who`.
+        automaton, location, role: the name of the automaton in the model, its location, and its role in the system.
+        whom: the names for users of the automata for which it waits, joined by `and`; "" if there are none.
         unanswered: tick or halt if it waits for the answer to one of these; `origin` is then the place in the tree
             of the node that must answer.
         for_timer: whether it waits for a timer.
@@ -69,8 +71,9 @@ class _Link(Record, frozen=True):
 
     Attributes:
         action: the action that the previous automaton waits for; "" for the first one.
-        event: the event; "" if it waits for a condition, `None` if it never executes the action.
-        others: the next automata, and the action that each must execute.
+        event: the event; "" if the automaton waits for a condition, `None` if it never executes the action.
+        is_taken: whether the automaton waits until the event is received, instead of until it is sent.
+        others: the numbers of the next automata, and the action that each must execute.
     """
 
     automaton: int
@@ -95,7 +98,8 @@ NEEDS_TIME = "answer-needs-time"
 
 
 def rule(waiting: Sequence[Wait]) -> str:
-    """The rule that documents the problem, if a node must answer the tree and waits for a timer; "" otherwise."""
+    """The rule that documents the problem, if time cannot pass because a node that must answer the tree waits for a
+    timer; "" otherwise."""
     is_late = any(wait.unanswered for wait in waiting) and any(wait.for_timer for wait in waiting)
     return NEEDS_TIME if is_late and any(wait.role is Role.CLOCK for wait in waiting) else ""
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Layered layout of a graph with orthogonal lines and labels (see the package)."""
+"""Layered layout of a graph with orthogonal lines and labels; `roaml.figures.layout` describes its steps."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from roaml.record import Record
 LAYER_DISTANCE = 30.0
 TRACK_MARGIN = 18.0
 TRACK_DISTANCE = 10.0
-"""Distances between layers: the minimum distance of two layers; of a track from a layer; of two tracks."""
+"""Distances between layers, in pixels: the minimum distance of two layers; of a track from a layer; of two tracks."""
 
 
 def layered(nodes: Mapping[str, Extent], links: Sequence[Link], direction: LayoutDirection, aspect: float) -> Layout:

@@ -10,6 +10,7 @@ from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.layout.graph import Layout, Link, Route
 
 DISTANCE = 48.0
+"""The distance between parts that are not connected, in pixels."""
 
 
 def components(names: Iterable[str], links: Sequence[Link]) -> Iterator[tuple[list[str], list[int]]]:
@@ -43,7 +44,12 @@ def components(names: Iterable[str], links: Sequence[Link]) -> Iterator[tuple[li
 
 
 def shelves(sizes: Sequence[Extent], aspect: float, distance: float = DISTANCE) -> tuple[list[Point], Extent]:
-    """Place boxes in rows, in their order. Return the place of each box, and the size of the whole."""
+    """Place boxes in rows, in their order. Return the place of each box, and the size of all rows.
+
+    Args:
+        aspect: the desired ratio of width to height.
+        distance: the distance between boxes, in pixels.
+    """
     area = sum((size.width + distance) * (size.height + distance) for size in sizes)
     limit = max([size.width for size in sizes] + [math.sqrt(area * aspect)])
     places: list[Point] = []
@@ -58,7 +64,13 @@ def shelves(sizes: Sequence[Extent], aspect: float, distance: float = DISTANCE) 
 
 
 def pack(parts: Sequence[tuple[Layout, Sequence[int]]], links: int, aspect: float) -> Layout:
-    """Several layouts side by side, as one layout. Each comes with the indexes of its links among all `links`."""
+    """Several layouts side by side, as one layout.
+
+    Args:
+        parts: each layout, with the indexes of its links in the whole graph.
+        links: the number of links of the whole graph.
+        aspect: the desired ratio of width to height.
+    """
     places, size = shelves([layout.size for layout, _ in parts], aspect)
     boxes: dict[str, Box] = {}
     routes: dict[int, Route] = {}

@@ -13,7 +13,8 @@ from roaml.figures.layout.vertices import Vertex, VertexKind
 PORT_DISTANCE = 16.0
 PORT_MARGIN = 12.0
 LABEL_MARGIN = 7.0
-"""The distance between two lines at a node, and between a line and a corner of a node or a label, in pixels."""
+"""The minimum distances, in pixels: of two lines at a node; of a line from a corner of a node; of a line from a corner
+of a label."""
 _SWEEPS = 6
 
 

@@ -25,11 +25,12 @@ class Vertex(Record, frozen=True):
 NODE_DISTANCE = 28.0
 LABEL_DISTANCE = 18.0
 LINE_DISTANCE = 14.0
-"""Distances between neighbours in a layer, in pixels: of two nodes, of a label from others, of two lines."""
+"""Distances between neighbours in a layer, in pixels: of two nodes, of a label from a node or line or of a node from a
+line, of two lines."""
 
 
 def distance(left: Vertex, right: Vertex) -> float:
-    """The minimum distance between the borders of two neighbours in a layer."""
+    """The minimum distance between the borders of two neighbours in a layer, in pixels."""
     kinds = {left.kind, right.kind}
     if kinds == {VertexKind.PASSING}:
         return LINE_DISTANCE
