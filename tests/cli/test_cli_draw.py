@@ -96,3 +96,26 @@ def test_nothing_to_draw(
     assert alone.exists()
     assert run(["draw", *arguments]) == 2
     assert (message or "the file contains no behavior tree") in capsys.readouterr().err
+
+
+def test_mocks(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    shutil.copytree(EXAMPLES / "fetch_tree", tmp_path / "fetch_tree")
+    path = str(tmp_path / "fetch_tree" / "fetch.xml")
+    assert "mock: 0.9 in 8 s" in texts(drawn(capsys, path)), "the file beside the tree"
+    given = texts(drawn(capsys, path, "--mock", "*: 0.5 in 3 s"))
+    assert given.count("mock: 0.5 in 3 s") == 5
+    assert "in 8 s" not in given
+    other = tmp_path / "other.mocks"
+    other.write_text("CloseGripper: 0.25\n", encoding="utf-8")
+    listed = texts(drawn(capsys, path, "--mocks", str(other)))
+    assert (listed.count("mock:"), listed.count("mock: 0.25")) == (1, 1)
+
+
+def test_mocks_that_cannot_be_drawn(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for arguments, message in (
+        (("robot/main.xml", "--mock", "*: 0.5"), "add --tree to draw the tree of a system"),
+        (("robot/tree.xml", "--mock", "0.5"), "is not a mock"),
+        (("robot/tree.xml", "--mocks", "none.mocks"), "none.mocks"),
+    ):
+        assert run(["draw", *arguments, "-o", "-"]) == 2
+        assert message in capsys.readouterr().err

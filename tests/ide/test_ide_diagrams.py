@@ -14,6 +14,7 @@ from ide_models import CORNERS, ROBOT, load, system_file
 from fixture import split_files
 from roaml.ide.diagrams import DiagramNodeKind, EdgeKind, Picture, collapsed, machine_picture, ros_picture, tree_picture
 from roaml.ide.picture_edits import PictureAction
+from roaml.mocks.mock import read_mock
 from roaml.project.analysis import Analysis
 from roaml.text import Location
 
@@ -161,6 +162,58 @@ def test_conditions_and_what_subtrees_are_given(tmp_path: Path) -> None:
         "S",
         "Grasp | _while = true | at = {S__at}",
     ]
+
+
+MOCKED = """<root BTCPP_format="4" main_tree_to_execute="M"><BehaviorTree ID="M"><Sequence>
+    <DistanceController distance="1.0"><PlannerSelector selected_planner="{p}" default_planner="G" topic_name="t"/>
+    </DistanceController><RateController hz="1.0"><Sleep msec="10"/></RateController>
+    <FollowPath path="{path}"/><IsStuck/><SubTree ID="S"/></Sequence></BehaviorTree>
+    <BehaviorTree ID="S"><Fallback><Own name="mine"/><Condition ID="Seen"/></Fallback></BehaviorTree></root>"""
+MOCKS = """
+*: 0.95 in 1500 ms  # all others
+mine: 0.5 in 250 ms
+Distance*: 0.25
+"""
+
+
+def mocks_shown(picture: Picture | None) -> dict[str, str]:
+    assert picture is not None
+    return {node.label: detail for node in picture.nodes for detail in node.details if detail.startswith("mock")}
+
+
+def test_mocks_of_leaves(tmp_path: Path) -> None:
+    """Nodes of BehaviorTree.CPP need none; a selector of Nav2 succeeds; `*` does not apply to events of the world."""
+    analysis = load(tmp_path, {"tree.xml": MOCKED, "tree.mocks": MOCKS})
+    path = str(tmp_path / "tree.xml")
+    assert mocks_shown(tree_picture(analysis, path)) == {
+        "DistanceController": "mock: event 0.25",
+        "PlannerSelector": "mock: 1",
+        "FollowPath": "mock: 0.95 in 1.5 s",
+        "IsStuck": "mock: 0.95",
+        "mine : Own": "mock: 0.5 in 250 ms",
+        "Seen": "mock: 0.95",
+    }
+    assert mocks_shown(tree_picture(analysis, path, ())) == {}
+    assert mocks_shown(tree_picture(analysis, path, (read_mock("mine: 1"),))) == {
+        "mine : Own": "mock: 1",
+        "PlannerSelector": "mock: 1",
+    }
+
+
+def test_a_file_of_mocks_that_is_not_valid_is_not_shown(tmp_path: Path) -> None:
+    analysis = load(tmp_path, {"tree.xml": MOCKED, "tree.mocks": "FollowPath 0.5"})
+    assert mocks_shown(tree_picture(analysis, str(tmp_path / "tree.xml"))) == {}
+
+
+def test_mocks_of_leaves_of_a_system(tmp_path: Path) -> None:
+    """Leaves with a plugin have no mock."""
+    files = split_files(ROBOT)
+    files["tree.xml"] = files["tree.xml"].replace("</Sequence>", '<Look name="twice"/></Sequence>', 1)
+    analysis = load(tmp_path, files)
+    mocks = (read_mock("*: 0.9 in 1 s"),)
+    main = str(tmp_path / "main.xml")
+    assert mocks_shown(tree_picture(analysis, main)) == {}
+    assert mocks_shown(tree_picture(analysis, main, mocks)) == {"twice : Look": "mock: 0.9 in 1 s"}
 
 
 def test_collapsed_nodes(tmp_path: Path) -> None:

@@ -71,6 +71,24 @@ def test_mocks_from_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     assert measured["time"]["value"] == pytest.approx(63)
 
 
+def test_the_file_beside_a_tree_has_its_mocks(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tree(tmp_path, "<Sequence><Drive/><Ask/></Sequence>")
+    beside = tmp_path / "tree.mocks"
+    beside.write_text("Drive: 1 in 3 s\nAsk: 1\n", encoding="utf-8")
+    assert run(["verify", path]) == 0
+    printed = capsys.readouterr()
+    assert "50% within 3.1 s" in printed.out
+    assert re.search(r"with the mocks of \S*tree\.mocks\n", printed.err)
+    assert run(["verify", path, "--mock", "*: 1 in 1 s"]) == 0
+    printed = capsys.readouterr()
+    assert "50% within 2.1 s" in printed.out
+    assert "with the mocks of" not in printed.err
+    beside.write_text("Drive", encoding="utf-8")
+    assert "`Drive` is not a mock" in refused(capsys, path)
+    beside.write_bytes(b"\xff")
+    assert "not valid UTF-8" in refused(capsys, path)
+
+
 def test_leaves_without_mocks_are_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tree(tmp_path, "<Sequence><Drive/><Load/><Drive/><Sleep msec='10'/></Sequence>")
     message = refused(capsys, path, "--mock", "Load: 1")

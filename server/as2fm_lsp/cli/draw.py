@@ -11,12 +11,15 @@ from collections.abc import Sequence
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.exit_status import CLEAN, USAGE
+from as2fm_lsp.cli.mock_arguments import mocks_in
+from as2fm_lsp.cli.mock_options import add_mocks
 from as2fm_lsp.cli.output import complain, print_text
 from roaml import api
 from roaml.figures.layout import LayoutDirection
 from roaml.figures.svg import svg_file
 from roaml.figures.themes import THEMES
-from roaml.ide.diagrams import PAGE, DiagramKind, draw, draw_for, picture_of
+from roaml.ide.diagrams import PAGE, DiagramKind, draw, draw_for, picture_of, tree_picture
+from roaml.mocks.mock import MockError
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.project.configuration import find_settings
@@ -33,6 +36,7 @@ examples:
   as2fm-lsp draw main.xml --machine Arm -o arm.svg
   as2fm-lsp draw main.xml --machines -o machines.svg
   as2fm-lsp draw main.xml --tree --theme dark -o tree.svg
+  as2fm-lsp draw tree.xml --mock "*: 0.9 in 1 s"     with the mocks of the leaves
   as2fm-lsp draw tree.xml --direction down -o - | rsvg-convert -o tree.png
 
 exit status: 0 drawn, 2 usage error, 3 internal error
@@ -57,7 +61,13 @@ def run(arguments: Sequence[str]) -> int:
         if options.machine not in machines:
             return _fail(_unknown_machine(options.machine, machines, options.file))
         drawn = machines[options.machine]
-    picture = picture_of(kind, analysis, drawn)
+    try:
+        mocks = mocks_in(options)
+    except (MockError, OSError) as error:
+        return _fail(str(error))
+    if mocks and kind is not DiagramKind.TREE:
+        return _fail("mocks are for the leaves of behavior trees; add --tree to draw the tree of a system")
+    picture = tree_picture(analysis, drawn, mocks) if mocks else picture_of(kind, analysis, drawn)
     if picture is None or not picture.nodes:
         return _fail(f"{options.file}: {_NOTHING[kind]}")
     drawing = (
@@ -148,6 +158,7 @@ def parser() -> ArgumentParser:
         choices=tuple(direction.value for direction in LayoutDirection),
         help="the direction of the edges (default: the one in which the drawing fits a page of 4:3 better)",
     )
+    add_mocks(result)
     return result
 
 

@@ -8,7 +8,9 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from as2fm_lsp.cli.formats.report import shown_path
+from as2fm_lsp.cli.output import complain
 from roaml.mocks.mock import Mock, MockError, read_mock, read_mocks
+from roaml.project.mock_files import mocks_path
 
 MAX_NAMES = 8
 """The maximum number of types of leaves in a message."""
@@ -22,12 +24,28 @@ def mocks_in(options: argparse.Namespace) -> tuple[Mock, ...]:
         OSError: the file cannot be read.
     """
     mocks = tuple(read_mock(text) for text in options.mock)
-    if options.mocks is None:
-        return mocks
+    return mocks if options.mocks is None else mocks + _mocks_of(options.mocks)
+
+
+def mocks_for_tree(options: argparse.Namespace, tree: str) -> tuple[Mock, ...]:
+    """The mocks for a tree that belongs to no system: those that the arguments declare, otherwise those in the file
+    beside the tree, if there is one.
+
+    Raises:
+        MockError: as for `mocks_in`.
+    """
+    path = mocks_path(tree)
+    if options.mock or options.mocks is not None or not Path(path).is_file():
+        return mocks_in(options)
+    complain(f"with the mocks of {shown_path(path)}")
+    return _mocks_of(path)
+
+
+def _mocks_of(path: str) -> tuple[Mock, ...]:
     try:
-        return mocks + read_mocks(Path(options.mocks).read_text(encoding="utf-8"))
+        return read_mocks(Path(path).read_text(encoding="utf-8"))
     except UnicodeDecodeError:
-        raise MockError(f"{options.mocks}: not valid UTF-8; fix the encoding") from None
+        raise MockError(f"{path}: not valid UTF-8; fix the encoding") from None
 
 
 def missing_mocks(path: str, types: Iterable[str]) -> MockError:

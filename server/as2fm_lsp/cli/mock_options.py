@@ -16,6 +16,14 @@ MAX_RATE = 10_000
 
 
 def add_mock_options(parser: argparse.ArgumentParser) -> None:
+    add = add_mocks(parser).add_argument
+    add("--entry", action="append", default=[], metavar="NAME=VALUE", help="the blackboard entry NAME has this "
+        "value at the start; may be repeated")  # fmt: skip
+    add("--tick-rate", type=_rate, metavar="HZ", help="tick rate of the tree, in Hz (10)")
+
+
+def add_mocks(parser: argparse.ArgumentParser) -> argparse._ArgumentGroup:
+    """Add the options that declare mocks, and return their group."""
     group = parser.add_argument_group(
         "mocks", "for trees without a system, and for leaves that have no plugin in a system"
     )
@@ -23,10 +31,9 @@ def add_mock_options(parser: argparse.ArgumentParser) -> None:
     add("--mock", action="append", default=[], metavar="'NODE: P in TIME'", help="leaves with this name or type "
         "succeed with probability P; actions are RUNNING for TIME before; `*` in NODE matches any text; may be "
         "repeated")  # fmt: skip
-    add("--mocks", metavar="FILE", help="read mocks from a file, one in each line")
-    add("--entry", action="append", default=[], metavar="NAME=VALUE", help="the blackboard entry NAME has this "
-        "value at the start; may be repeated")  # fmt: skip
-    add("--tick-rate", type=_rate, metavar="HZ", help="tick rate of the tree, in Hz (10)")
+    add("--mocks", metavar="FILE", help="read mocks from a file, one in each line (default without --mock: the file "
+        "TREE.mocks beside TREE.xml, if there is one)")  # fmt: skip
+    return group
 
 
 def has_mock_options(options: argparse.Namespace) -> bool:

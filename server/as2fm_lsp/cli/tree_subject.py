@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import argparse
 
-from as2fm_lsp.cli.mock_arguments import missing_mocks, mocks_in
+from as2fm_lsp.cli.mock_arguments import missing_mocks, mocks_for_tree
 from as2fm_lsp.cli.output import complain
 from roaml.api.trees import LoadedTree, load_tree
 from roaml.mocks.mock import MockError, unused
@@ -29,7 +29,7 @@ def load_subject(options: argparse.Namespace, settings: Settings, *, counts: boo
         if not equals or not name.strip():
             raise MockError(f"`{text}` does not set an entry; write it as NAME=VALUE")
         entries[name.strip()] = value.strip()
-    mocks = mocks_in(options)
+    mocks = mocks_for_tree(options, options.main)
     rate, max_time = options.tick_rate or DEFAULT_RATE, options.max_time or DEFAULT_MAX_TIME
     chosen = MockOptions(mocks, entries, rate, max_time, counts)
     try:

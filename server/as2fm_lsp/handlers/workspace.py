@@ -11,9 +11,10 @@ from lsprotocol import types
 from as2fm_lsp.context import Context
 from roaml.model.config_files import CONFIG_FILES
 from roaml.model.kinds import EXTENSIONS, PROJECT_EXTENSION
+from roaml.project.mock_files import MOCKS_EXTENSION
 
 WATCHED = (
-    *(f"**/*{extension}" for extension in (*EXTENSIONS, PROJECT_EXTENSION)),
+    *(f"**/*{extension}" for extension in (*EXTENSIONS, PROJECT_EXTENSION, MOCKS_EXTENSION)),
     *(f"**/{name}" for name in CONFIG_FILES),
 )
 """Patterns of the files whose changes on the disk are relevant."""

@@ -96,6 +96,11 @@ class Node(Record, frozen=True, dict=True):
     succeeds: bool = False
     behaviour: str = ""
 
+    @property
+    def is_synchronous(self) -> bool:
+        """Whether a leaf of this type is known to return SUCCESS or FAILURE within the tick."""
+        return self.kind is NodeKind.CONDITION or self.running is False
+
     @cached_property
     def port_by_name(self) -> Mapping[str, Port]:
         return {port.name: port for port in self.ports}

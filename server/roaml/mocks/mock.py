@@ -33,6 +33,18 @@ class Mock(Record, frozen=True):
     probability: float
     duration: Fraction = Fraction(0)
 
+    def behaviour(self, *, is_instant: bool = False) -> str:
+        """The probability and the duration, as they are written in a mock: `0.9 in 2 s`.
+
+        Args:
+            is_instant: whether the node ignores the duration, such as a condition.
+        """
+        share = f"{self.probability:g}"
+        if is_instant or not self.duration:
+            return share
+        seconds = self.duration / 1000
+        return f"{share} in {float(self.duration):g} ms" if seconds < 1 else f"{share} in {float(seconds):g} s"
+
 
 def read_mock(text: str) -> Mock:
     """The mock in a text such as `FollowPath: 0.9 in 2 s`.

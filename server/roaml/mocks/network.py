@@ -35,7 +35,6 @@ from roaml.mocks.unfolding import unfold
 from roaml.model.expand import ROOT_NUMBER
 from roaml.model.timing import period
 from roaml.record import Record, field
-from roaml.roles import NodeKind
 from roaml.scxml.events import EventRole, Role, ScxmlEvent
 from roaml.scxml.model import Assign, Automaton, Data, Network, Send, State, Statement, Target, Transition
 from roaml.scxml.names import TIMER_PREFIX, TREE_HAS_FINISHED, TREE_ROOT_PREFIX, TreeEventKind
@@ -196,11 +195,9 @@ class _Builder:
     def mock(self, node: ExecutedNode, known: dict[str, Known]) -> NodeProgram:
         mock = self.find_mock(node)
         assert mock is not None
-        is_condition = node.node.element.name == "Condition" or (
-            node.known is not None and (node.known.kind is NodeKind.CONDITION or node.known.running is False)
-        )
         known["success"] = mock.probability
-        duration = None if is_condition else ticks_of(mock.duration, self.options.rate)
+        is_instant = node.node.element.name == "Condition" or (node.known is not None and node.known.is_synchronous)
+        duration = None if is_instant else ticks_of(mock.duration, self.options.rate)
         if duration is not None:
             known["DURATION"] = duration
         self.leaves.append(MockedLeaf(node, mock.probability, duration, mock not in self.options.mocks))

@@ -15,7 +15,6 @@ from roaml.mocks.plugin import MockPort
 from roaml.model.expand import Instance, PortConstant, Reference
 from roaml.model.system import System
 from roaml.record import Record, field
-from roaml.roles import NodeKind
 from roaml.scxml.names import safe_name
 
 OPAQUE = "int32"
@@ -76,9 +75,7 @@ def leaves_without_plugins(system: System, declared: Callable[[str], Node | None
 
 
 def _is_condition(nodes: list[Instance], known: Node | None) -> bool:
-    if known is not None and (known.kind is NodeKind.CONDITION or known.running is False):
-        return True
-    return all(node.condition for node in nodes)
+    return bool(known and known.is_synchronous) or all(node.condition for node in nodes)
 
 
 class _Types(Record, dict=True):

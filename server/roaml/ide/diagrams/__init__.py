@@ -47,5 +47,6 @@ _MAKERS: Mapping[DiagramKind, Callable[[Analysis, str], Picture | None]] = {
 
 
 def picture_of(kind: DiagramKind, analysis: Analysis, path: str) -> Picture | None:
-    """The diagram of a file; `None` if the file has no diagram of this kind."""
+    """The diagram of a file; `None` if the file has no diagram of this kind. A tree that belongs to no system shows the
+    mocks in the file beside it."""
     return _MAKERS[kind](analysis, path)

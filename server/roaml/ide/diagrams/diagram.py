@@ -12,6 +12,9 @@ import enum
 from roaml.record import Record
 from roaml.text import Location
 
+MOCK = "mock: "
+"""The beginning of the line with the mock of a leaf, in which its probability and its duration follow."""
+
 
 class DiagramKind(enum.Enum):
     """What a diagram shows."""

@@ -6,17 +6,21 @@ A tree file that belongs to no system is drawn as well, but the directions of th
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 
 from roaml.forest.entries import entry_of, is_autoremapped
 from roaml.forest.ports import ports_of as node_ports
-from roaml.ide.diagrams.diagram import DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
+from roaml.ide.diagrams.diagram import MOCK, DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
+from roaml.libraries import BEHAVIORTREE_CPP, Node, library, node_in_libraries
+from roaml.libraries.node import WORLD_NODES
+from roaml.mocks.mock import ALL, Mock, mock_for
 from roaml.model.expand import Frame, Instance, Reference, TreeUse, expand, node_at, tree_called
 from roaml.model.kinds import FileKind
 from roaml.model.system import System, builtin_plugins
 from roaml.model.tree import EXPLICIT, TreeFile, TreeNode
 from roaml.project.analysis import Analysis
+from roaml.project.mock_files import mocks_beside
 from roaml.roles import Direction
 from roaml.text import Location
 from roaml.views.tree import ports_of, title_of
@@ -32,9 +36,14 @@ _KINDS: Mapping[str, DiagramNodeKind] = {
 }
 
 
-def tree_picture(analysis: Analysis, path: str) -> Picture | None:
+def tree_picture(analysis: Analysis, path: str, mocks: Sequence[Mock] | None = None) -> Picture | None:
     """The diagram of the tree of a system, or of a tree file that belongs to no system; `None` if there is no tree.
-    `path` is any file of the system, or the tree file."""
+
+    Args:
+        path: any file of the system, or the tree file.
+        mocks: the mocks of leaves that are not described otherwise. `None`: those in the file beside a tree that
+            belongs to no system.
+    """
     system = next((owner for s in analysis.systems_of(path) if s and (owner := analysis.system(s))), None)
     if system is not None and (system.tree_paths or analysis.kind(path) is not FileKind.TREE):
         paths, instances, uses = system.tree_paths, system.instances, system.tree_uses
@@ -44,7 +53,9 @@ def tree_picture(analysis: Analysis, path: str) -> Picture | None:
         instances, uses = expansion.instances, expansion.uses
     if not paths:
         return None
-    drawn = _Tree(analysis, paths, instances, uses, system)
+    if mocks is None:
+        mocks = mocks_beside(analysis, paths[0]) if system is None else ()
+    drawn = _Tree(analysis, paths, instances, uses, system, mocks)
     title = paths[0].replace("\\", "/").rpartition("/")[2]
     return Picture(title, tuple(drawn.nodes()), tuple(drawn.edges()))
 
@@ -57,11 +68,14 @@ class _Tree:
         instances: tuple[Instance, ...],
         uses: tuple[TreeUse, ...],
         system: System | None,
+        mocks: Sequence[Mock],
     ) -> None:
         self.instances = instances
         self.uses = uses
         self.use_of = {instance.number: instance.use for instance in instances}
         self.system = system
+        self.mocks = mocks
+        self.events = [mock for mock in mocks if mock.pattern != ALL]
         self.files: dict[str, TreeFile] = {path: file for path in paths if (file := analysis.tree(path)) is not None}
         self.described = {model.id.value: model.kind for f in self.files.values() for model in f.models if model.id}
         lone = {path: analysis.forest(path) for path in self.files} if system is None else {}
@@ -79,7 +93,8 @@ class _Tree:
             place = Location(instance.source.path, node.element.span) if node else None
             initial = instance.parent is None
             kind = self.kind(instance, node)
-            yield DiagramNode(str(instance.number), kind, title_of(instance), ports_of(instance), "", initial, place)
+            details = (*ports_of(instance), *self.mock(instance, kind))
+            yield DiagramNode(str(instance.number), kind, title_of(instance), details, "", initial, place)
         variables: dict[str, Location | None] = {}
         for instance, key, variable in self.bound():
             variables.setdefault(variable, self.place(instance, key))
@@ -169,6 +184,27 @@ class _Tree:
 
     def declared(self, instance: Instance) -> str:
         """The kind of a node in a tree without a system, if a library or a model declares it; otherwise ""."""
-        forest = self.forests.get(instance.source.path)
-        node = forest.node(instance.plugin) if forest is not None else None
+        node = self.declaration(instance)
         return node.kind.value if node is not None else ""
+
+    def declaration(self, instance: Instance) -> Node | None:
+        """The declaration of a node in a tree without a system."""
+        forest = self.forests.get(instance.source.path)
+        return forest.node(instance.plugin) if forest is not None else None
+
+    def mock(self, instance: Instance, kind: DiagramNodeKind) -> Iterator[str]:
+        """The line with the mock of a leaf, or of a node that depends on an event of the world."""
+        if not self.mocks or (self.system is not None and self.system.plugin(instance.plugin)[0]):
+            return
+        known = self.declaration(instance) or node_in_libraries(instance.plugin)
+        if instance.plugin in WORLD_NODES:
+            event = mock_for(self.events, instance.name, instance.plugin)
+            if event is not None:
+                yield f"{MOCK}event {event.behaviour(is_instant=True)}"
+            return
+        if instance.children or instance.plugin in library(BEHAVIORTREE_CPP).nodes:
+            return
+        mock = mock_for(self.mocks, instance.name, instance.plugin, known is not None and known.succeeds)
+        if mock is not None:
+            is_instant = kind is DiagramNodeKind.CONDITION or (known is not None and known.is_synchronous)
+            yield MOCK + mock.behaviour(is_instant=is_instant)

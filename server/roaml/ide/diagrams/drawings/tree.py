@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The drawing of a behavior tree.
 
-A node is a card with the symbol and the color of its kind, its name, its plugin and its number. Its ports, conditions
-and scripts are further rows of the card. The entries of the blackboard are drawn below the tree.
+A node is a card with the symbol and the color of its kind, its name, its plugin and its number. Its ports, conditions,
+scripts and mock are further rows of the card. The entries of the blackboard are drawn below the tree.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from roaml.figures.drawing import Drawing, Group, Item, Outline, Polyline, Shape
 from roaml.figures.geometry import Box, Extent
 from roaml.figures.layout import LayoutDirection, tidy_tree
 from roaml.figures.layout.packing import shelves
-from roaml.ide.diagrams.diagram import DiagramNode, DiagramNodeKind, EdgeKind, Picture
+from roaml.ide.diagrams.diagram import MOCK, DiagramNode, DiagramNodeKind, EdgeKind, Picture
 from roaml.ide.diagrams.drawings.cards import Card, Row, TextLine, is_shortened, paragraph, title
 from roaml.ide.diagrams.drawings.glyphs import BADGE, badge
 
@@ -99,8 +99,8 @@ def _card(picture: Picture, node: DiagramNode) -> Card:
 
 
 def _ports(picture: Picture, node: DiagramNode) -> Iterator[Row]:
-    """The rows of the ports, conditions and scripts. The row of a port that is bound to the blackboard represents an
-    edge."""
+    """The rows of the ports, conditions, scripts and mocks. The row of a port that is bound to the blackboard
+    represents an edge."""
     bound: dict[str, list[int]] = {}
     for number, edge in enumerate(picture.edges):
         if edge.kind in (EdgeKind.READS, EdgeKind.WRITES) and node.id in (edge.source, edge.target):
@@ -109,12 +109,14 @@ def _ports(picture: Picture, node: DiagramNode) -> Iterator[Row]:
         name, _, value = text.partition(" = ")
         edges = tuple(bound.get(name, ()))
         is_script = name.startswith("_")  # names of ports begin with a letter
+        is_mock = text.startswith(MOCK)
         is_bound = bool(edges) or (node.kind is DiagramNodeKind.SUBTREE and value.startswith("{"))
-        lines = paragraph(text, PORT_WIDTH, "text" if is_bound or is_script else "muted", limit=MAX_PORT_LINES)
+        has_bar = is_bound or is_script or is_mock
+        lines = paragraph(text, PORT_WIDTH, "text" if has_bar else "muted", limit=MAX_PORT_LINES)
         hint = text if is_shortened(lines, text) else ""
         kind = " ".join(picture.edges[number].kind.value for number in edges)
-        tone = Tone.CONDITION if is_script else Tone.BLACKBOARD
-        yield Row(lines, tone, kind, edges, has_bar=is_bound or is_script, hint=hint)
+        tone = Tone.CHANCE if is_mock else Tone.CONDITION if is_script else Tone.BLACKBOARD
+        yield Row(lines, tone, kind, edges, has_bar=has_bar, hint=hint)
 
 
 def _node(node: DiagramNode, index: int, card: Card, box: Box) -> Group:
