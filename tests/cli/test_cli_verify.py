@@ -565,7 +565,7 @@ def test_unreadable_files(command: Command, tmp_path: Path) -> None:
     [
         ({"ref": "x", "value": "y"}, "no variable `y`", '"y"'),
         ({"ref": "x", "value": True}, "`x` must be an int, not a bool", '"value": true'),
-        ({"ref": "x", "value": at("v", 7)}, "index 7 is outside of the array, which has 2 elements", '"op": "aa"'),
+        ({"ref": "x", "value": at("v", 7)}, "index 7 is outside of the array, whose length is 2", '"op": "aa"'),
         ({"ref": "x", "value": op("%", 1, "x")}, "division by zero", '"op": "%"'),
         ({"ref": "x", "value": op("+", "big", 1)}, "integer overflow", '"op": "+"'),
         ({"ref": at("v", op("-", "x", 1)), "value": 1}, "index -1 is outside of the array", '"op": "aa"'),

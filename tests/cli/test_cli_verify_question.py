@@ -276,7 +276,7 @@ def test_states_that_are_not_the_initial_ones_are_named(command: Command, tmp_pa
     assert done.status == 1
     assert "probability" not in row
     what = f"`{states}`" if states else "a condition"
-    expected = f'`states` of the filter is {what}, but traces begin in the initial states; write {{"op": "initial"}}'
+    expected = f'`states` of the filter is {what}, but traces begin in the initial states; write `{{"op": "initial"}}`'
     assert row["error"]["message"].startswith(expected)
 
 
@@ -357,18 +357,18 @@ def test_constants(command: Command, tmp_path: Path) -> None:
     assert (done.status, done.err) == (0, "")
     without = command("verify", name, *given[2:])
     assert without.status == 1
-    assert "the constant `N` has no value; give one with --constant N=VALUE" in without.err
+    assert "the constant `N` has no value; give one with `--constant N=VALUE`" in without.err
 
 
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ("N", "a constant must have the form `N=20`, not `N`"),
-        ("N=", "a constant must have the form `N=20`"),
-        ("N=2.5", "the constant `N` must be a whole number, not `2.5`"),
-        ("N=99999999999999999999", "the constant `N` must be a whole number"),
-        ("p=nan", "the constant `p` must be a number, not `nan`"),
-        ("p=1e999", "the constant `p` must be a number, not `1e999`"),
+        ("N", "a constant must have the form `NAME=VALUE`, such as `N=20`, not `N`"),
+        ("N=", "a constant must have the form `NAME=VALUE`"),
+        ("N=2.5", "the constant `N` must be a whole number of 64 bits, not `2.5`"),
+        ("N=99999999999999999999", "the constant `N` must be a whole number of 64 bits"),
+        ("p=nan", "the constant `p` must be a finite number, not `nan`"),
+        ("p=1e999", "the constant `p` must be a finite number, not `1e999`"),
         ("on=1", "the constant `on` must be true or false, not `1`"),
         ("k=0", "the constant `k` must be at least 1, not `0`"),
         ("k=21", "the constant `k` must be at most 20, not `21`"),
@@ -501,7 +501,7 @@ def test_the_interval_of_a_sequential_test_holds_whenever_it_stops(command: Comm
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (("--method", "fixed"), "the method `fixed` needs a number of traces (--max-traces)"),
+        (("--method", "fixed"), "the method `fixed` needs a number of traces; use `--max-traces`"),
         (("--epsilon", "1e-300"), "expected a number of at least 1e-09"),
         (("--epsilon", "1e-300", "--method", "okamoto"), "expected a number of at least 1e-09"),
         (("--epsilon", "nan"), "expected a number between 0 and 1"),

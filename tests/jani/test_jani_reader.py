@@ -116,7 +116,7 @@ SYNTAX = [
     ("variables", "[{'name': 'n', 'type': ⟦{⟧'kind': 'array'}}]", "an array type needs `base`"),
     ("variables", "[{'name': 'n', 'type': 'int', 'transient': ⟦1⟧}]", "`transient` must be true or false"),
     ("guard", "⟦null⟧", "an expression must be a number, true, false, a name or an object `{ }`, not null"),
-    ("guard", "⟦1e999⟧", "this number is too large"),
+    ("guard", "⟦1e999⟧", "this number is too large; the greatest real number is about 1.8e308"),
     ("guard", "⟦''⟧", "a name must not be empty"),
     ("guard", "⟦{⟧}", "an expression needs `op`"),
     ("guard", "{'op': ⟦1⟧}", "`op` must be a string, not a number"),
@@ -134,7 +134,7 @@ SYNTAX = [
     (
         "guard",
         "{'op': '=', 'left': {'distribution': 'Uniform', 'args': ⟦[1]⟧}, 'right': 1}",
-        "`Uniform` needs 2 arguments, not 1",
+        "wrong number of arguments of `Uniform`: 1 instead of 2",
     ),
     ("guard", "{'op': '=', 'left': {'op': 'av', 'elements': ⟦1⟧}, 'right': 'a'}", "`elements` must be a list"),
     (
@@ -151,7 +151,11 @@ SYNTAX = [
     ("assignments", "[{'ref': 'n', 'value': 1, 'index': ⟦true⟧}]", "`index` must be a whole number, not true"),
     ("assignments", "[{'ref': 'n', 'value': 1, '⟦guard⟧': 1}]", "an assignment has no member `guard`"),
     ("edges", "[⟦{⟧'location': 'idle'}]", "an edge needs `destinations`"),
-    ("syncs", "[{'synchronise': ⟦['go', null]⟧}]", "the vector has 2 entries, but the system has 1 elements"),
+    (
+        "syncs",
+        "[{'synchronise': ⟦['go', null]⟧}]",
+        "the vector must have an entry for each element of the system: 1, not 2",
+    ),
     ("syncs", "[{'synchronise': [⟦1⟧]}]", "an action must be a string or null, not a number"),
     (
         "property",
@@ -261,7 +265,7 @@ TYPES = [
     (
         "guard",
         "{'op': '=', 'left': ⟦{'op': 'call', 'function': 'f', 'args': []}⟧, 'right': 1}",
-        "`f` takes 1 arguments, not 0",
+        "wrong number of arguments of `f`: 0 instead of 1",
     ),
     (
         "guard",
@@ -329,9 +333,9 @@ TYPES = [
     (
         "property",
         "⟦{'op': 'F', 'exp': 'ok'}⟧",
-        "a property cannot be a formula about paths; use it in `Pmin` or `Pmax`",
+        "a property cannot be a path formula; use it in `Pmin` or `Pmax`",
     ),
-    ("property", "{'op': 'Pmin', 'exp': ⟦'ok'⟧}", "`Pmin` needs a formula about paths, with `F`, `G` or `U`"),
+    ("property", "{'op': 'Pmin', 'exp': ⟦'ok'⟧}", "`Pmin` needs a path formula, such as one with `F`, `G` or `U`"),
     (
         "property",
         "{'op': 'Pmax', 'exp': {'op': 'U', 'left': ⟦'n'⟧, 'right': 'ok'}}",

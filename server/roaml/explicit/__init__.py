@@ -5,6 +5,7 @@
 - `search`: the states and their choices, in flat memory, computed by the kernel of `roaml.smc` (compiled by Cython).
 - `solver`: components, end components and certified bounds of values (compiled by Cython).
 - `space`: runs a search within limits.
-- `values`: the values of a question: minimum, maximum and uniform value.
+- `values`: the value that a property asks for: its minimum and maximum over all schedulers, and its value under uniform
+  choices.
 - `path`: the shortest trace to a state, as a `Recording`.
 """

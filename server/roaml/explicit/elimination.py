@@ -20,7 +20,7 @@ INFINITE = float("inf")
 MAX_ROUNDS = 200
 """The maximum number of policies; in most cases there are fewer than ten."""
 MAX_STEPS = 1e12
-"""The maximum mean number of steps; beyond it, rounding errors would invalidate the proof."""
+"""The maximum mean number of steps until the end; beyond it, rounding errors would invalidate the proof."""
 IMPROVEMENT = 1e-12
 """The relative improvement that a choice must bring to replace another one. Smaller improvements are due to
 rounding."""
@@ -31,7 +31,8 @@ ROUNDING = 4e-16
 class SmallProcess:
     """States with choices, each of which has an immediate value and leads to states or to the end.
 
-    A choice is built by setting the numbers at the index `choices`, and by calls of `add_entry` and `end_choice`.
+    A choice is built by setting `leaves` and `gain` at the index `choices`, and by calls of `add_entry` and
+    `end_choice`. `end_state` follows the last choice of a state.
 
     Args:
         size: the number of states.
@@ -88,7 +89,8 @@ class SmallProcess:
             mode: MAXIMUM or MINIMUM.
 
         Returns:
-            The greatest possible distance of a value from the solution; infinite if the process need not end.
+            The greatest possible distance of a value from the solution; infinite if no bound was found, for example
+            because the process need not end.
         """
         self.counts_steps = 1
         if self._iterate(self.steps, MAXIMUM) == 0:

@@ -15,7 +15,13 @@ from roaml.smc.record import Recorder, Recording, TraceStep
 
 
 class PathStep(NamedTuple):
-    """A step: the vector, and the edge and the destination of each of its slots that have an effect."""
+    """A step.
+
+    Attributes:
+        vector: the number of the synchronisation vector.
+        edges: for each slot of the vector that has an effect, the number of its edge among the enabled edges.
+        ways: for each of these slots, the number of the destination of the edge.
+    """
 
     vector: int
     edges: list[int]
@@ -23,7 +29,7 @@ class PathStep(NamedTuple):
 
 
 class Path(Record, frozen=True):
-    """The steps to a state, and the status of the goal there."""
+    """The steps to a state, and the verdict on the goal for a trace with these steps."""
 
     state: int
     steps: tuple[PathStep, ...]

@@ -3,7 +3,8 @@
 
 - Plain Python; Cython compiles it with the types in `search.pxd`, like the kernel, whose code computes the successors.
 - A state is packed into words of 64 bits. A *cell* (see `tables`) gets as many bits as its values so far require: none
-  while its value does not change. If a value does not fit, all states are packed again.
+  while its value does not change. If a value does not fit, the cell gets more bits, for which all states may have to be
+  packed again.
 - A hash table with open addressing contains the numbers of the states, each with half of the hash of the state.
 - The choices of a state are a sequence of 32-bit words. A word that is not negative is a choice with one destination.
   Other choices have n destinations, a weight other than 1, or a reward. These choices consist of `-n`, the number of
@@ -29,11 +30,11 @@ HASH_2 = 0xBF58476D1CE4E5B9
 UINT32_MASK = 0xFFFFFFFF
 MAX_INT64 = 0x7FFFFFFFFFFFFFFF
 SPARE_BITS_FROM_STATES = 4096
-"""With this number of states or more, cells get more bits than they need, because packing all states again is slow."""
+"""With more states than this, cells get more bits than they need, because packing all states again is slow."""
 SAMPLED_TRACES, SAMPLED_STEPS = 32, 1000
 """The numbers of random traces, and of steps in each, from which the values that cells will have are estimated."""
 MAX_COUNTED_STATES = 0x7FFFFFF0
-"""States and distinct numbers are counted with 31 bits."""
+"""The maximum number of states: numbers of states have 31 bits."""
 
 FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
 TIME, STUCK = 1, 3
@@ -60,14 +61,17 @@ class StateSearch:
 
     Args:
         kernel: the kernel for the program and the goal.
+        tables: the tables for the program.
         steps: the number of steps that the goal distinguishes, 0 if none.
         lower: if positive, the goal is one until with this lower bound, and the solver counts the steps.
         depth: states after this number of steps are not expanded; no limit if negative.
+        most_states, most_bytes: the maximum number of states, and the maximum memory in bytes.
+        most_choices: the maximum number of combinations of edges and destinations in one state.
 
     Attributes:
         count: the number of states.
         expanded: the number of states whose choices are known; they are the first ones.
-        problem: the state whose choices could not be computed.
+        problem: the state whose choices could not be computed; -1 if there is none.
     """
 
     def __init__(
@@ -237,7 +241,7 @@ class StateSearch:
     def steps_to(self, state: int, successor: int) -> tuple[int, list[int], list[int]] | None:
         """A choice by which `successor` is reached from `state`; `None` if there is none. It consists of the vector
         and, for each slot that has an effect, the number of the edge among the enabled edges, and the number of the
-        way."""
+        destination of the edge."""
         self._visit(state)
         self.label[state] = self._judged()
         for i in range(self.kernel.enabled_count):
@@ -319,7 +323,8 @@ class StateSearch:
         return value - UINT64_MASK - 1 if value > MAX_INT64 else value
 
     def _widen(self) -> None:
-        """Give the cell `misfit` enough bits for `misfit_value`, and pack all states again."""
+        """Give the cell `misfit` enough bits for `misfit_value`. All states are packed again, unless the cell had no
+        bits and finds unused ones."""
         cell = self.misfit
         self.misfit = -1
         self._keep_layout()
@@ -473,7 +478,7 @@ class StateSearch:
 
     def _find(self, parent: int) -> int:
         """The number of the state with the key `following`, which is added if it has not been reached before. -1 if
-        there are too many states."""
+        this would exceed the maximum number of states or the maximum memory."""
         value = HASH_2
         for i in range(self.words):
             value = ((value ^ self.following[i]) * HASH_1) & UINT64_MASK

@@ -28,7 +28,10 @@ INFINITE = float("inf")
 RELATIVE_TOLERANCE = 1e-8
 """The relative distance of the bounds at which a component is solved."""
 MIN_TOLERANCE = 1e-16
+"""The relative change of values below which further steps are useless. If bounds are not proved then, they stay
+wide."""
 ROUNDING = 1e-15
+"""The relative difference up to which two values are regarded as equal."""
 MAX_PROOF_STEPS = 100
 """The number of steps after which the attempt to prove upper bounds is given up."""
 MAX_DIRECT_STATES = 2_500
@@ -324,7 +327,8 @@ class Solver:
             self.order[i] = self.spare[i]
 
     def _stays(self, at: int, own: int, free: int) -> int:
-        """Whether the choice at an index of the code does not leave the set `own`."""
+        """Whether the choice at the index `at` of the code does not leave the set `own` and, with `free`, has no
+        reward."""
         size = self.code[at]
         if size >= 0:
             return 1 if self.set_of[size] == own else 0
@@ -627,7 +631,7 @@ class Solver:
 
     def _best(self, state: int, values: Any, own: int) -> float:
         """The value of the best choice of a state. Choices that do not leave the merged state `own` are ignored. If no
-        choice is left, the value is `INFINITE` or `-INFINITE`."""
+        choice is left, the value is `-INFINITE` (MAXIMUM), `INFINITE` (MINIMUM) or 0 (MEAN)."""
         best = INFINITE if self.mode == MINIMUM else -INFINITE
         total = 0.0
         weights = 0.0

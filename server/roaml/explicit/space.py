@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Explores the states of a model for a question, within limits."""
+"""Explores the states of a model for a property, within limits."""
 
 from __future__ import annotations
 
@@ -26,6 +26,7 @@ STRIDE = 16_384
 SHORT_STRIDE = 64
 """The number of states that are expanded between two calls of a watch if the number of transitions is limited."""
 MAX_STATES = 0x7FFFFFF0
+"""The maximum number of states that a search can number."""
 MAX_COMBINATIONS = 1 << 20
 """The maximum number of combinations of edges and destinations in one state. Exploring this many takes some seconds."""
 
@@ -40,7 +41,8 @@ class StateLimits(Record, frozen=True):
             edges on one action there are kⁿ.
         transitions: the number of transitions; if it is exceeded, the search ends at its next check. `None` if there is
             no limit.
-        work: the maximum number of additions for each value of a question; `None` for the limit of the solver.
+        work: the maximum number of additions for each value that a property asks for; `None` for the limit of the
+            solver.
     """
 
     states: int = MAX_STATES
@@ -69,7 +71,8 @@ class Space(Record, frozen=True):
 
     Attributes:
         search: the states and their choices.
-        fault_at: the state in which an undefined operation was executed, -1 if none; the states are incomplete then.
+        fault_at: the state in which an undefined operation was executed, which ended the search early; -1 if there was
+            none.
         problem: the undefined operation.
     """
 
@@ -103,7 +106,7 @@ def explore(
         modules: the modules of the kernel and of the search, for tests.
 
     Raises:
-        LimitError: there are more states than allowed.
+        LimitError: a limit was exceeded.
     """
     kernel_module, search_module = modules or _modules()
     compiled = checker.compiled(property_)
@@ -165,8 +168,8 @@ def _transient(checker: ModelChecker) -> list[Storage]:
 
 
 def _modules() -> tuple[Any, Any]:
-    """The modules of the kernel and of the search. Both are compiled, or neither, because Python cannot read the data
-    of a compiled kernel."""
+    """The modules of the kernel and of the search. A search that is not compiled gets a kernel that is not compiled,
+    because Python cannot read the data of a compiled kernel."""
     if kernel.compiled() and not engine.compiled():
         from roaml.explicit.plain import plain_kernel  # noqa: PLC0415
 

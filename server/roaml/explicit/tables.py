@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tables about a program for a search: which cells each way writes, and which cells guards read.
+"""Tables about a program for a search: which cells each way writes, and which cells belong to variables that guards or
+properties read.
 
 A state consists of numbered *cells*: the location of each instance, the integer variables, the real ones, the status of
 each until of the goal, and the number of steps, if the goal depends on it.
@@ -25,7 +26,8 @@ class Tables(Record, frozen=True, eq=False):
     Attributes:
         way_start, way_cell: the cells of variables that each way writes.
         settled: the cells that any step can change: those of transient variables and of accumulated rewards.
-        cell_watch: for each cell of a variable, its number among the watched variables, or -1.
+        cell_watch: for each cell of a location or variable, the number of the variable among the watched variables, or
+            -1.
     """
 
     way_start: Ints

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The value of a question over all states: its minimum and maximum over all schedulers, and with uniform choices."""
+"""Computes the value that a property asks for from all states of the model: its minimum and maximum over all
+schedulers, and its value under uniform choices."""
 
 from __future__ import annotations
 
@@ -17,18 +18,21 @@ NOTHING, AS_JUDGED, NEGATED = 0, 1, 2
 _OPEN_SHARE = 1e-6
 """The maximum probability of traces that the end of the model's time leaves undecided and that are neglected."""
 
-_TOO_MUCH_WORK = "computing its values takes too many operations"
+_TOO_MUCH_WORK = "the computation of its values takes too many operations"
 
 
 class NoValueError(Exception):
-    """A question has no value; the message contains the reason."""
+    """Raised if the value that a property asks for does not exist or takes too long to compute. The message states the
+    reason."""
 
 
 class GoalValues(Record, frozen=True):
-    """The values of a question, enclosed by bounds.
+    """The values that a property asks for, enclosed by bounds.
 
     Attributes:
-        is_precise: whether all bounds are as close as intended.
+        minimum, maximum: the bounds of the extreme values over all schedulers.
+        uniform: the bounds of the value under uniform choices.
+        is_precise: whether the bounds of all three values are as close as intended.
     """
 
     minimum: Bounds
@@ -38,14 +42,14 @@ class GoalValues(Record, frozen=True):
 
 
 def values_of(space: Space, modules: Any = None, work: int | None = None) -> GoalValues:
-    """The values of the question of a space.
+    """The values that the property of `space` asks for.
 
     Args:
         modules: the module of the solver, for tests.
         work: the maximum number of additions for each value; `None` for the limit of the solver.
 
     Raises:
-        NoValueError: the question has no value, or a value needs more work.
+        NoValueError: a value does not exist, or its computation needs more work.
     """
     return _Question(space, modules or solver, work).values()
 
@@ -66,8 +70,8 @@ class _Question:
             _, share = self.solver(MAXIMUM).probability(UNKNOWN, codes.OPEN, NOTHING)
             if share > _OPEN_SHARE:
                 raise NoValueError(
-                    "the time ends (max_time) before a deadline of the property; the probability of such traces is up "
-                    f"to {share:.6g}"
+                    "the time ends (`max_time`) before a deadline of the property; the probability of this is up to "
+                    f"{share:.6g}"
                 )
         minimum, maximum, uniform = (self.bounds(mode) for mode in (MINIMUM, MAXIMUM, MEAN))
         return GoalValues(minimum, maximum, uniform, self.is_precise)

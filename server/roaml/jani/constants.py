@@ -16,7 +16,7 @@ from roaml.suggest import nearest_name
 
 _INTEGER = re.compile(r"[+-]?[0-9]{1,19}")
 _REAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,3})?")
-_TYPE_PHRASES: dict[BasicType, str] = {BOOL: "true or false", INT: "a whole number", REAL: "a number"}
+_TYPE_PHRASES: dict[BasicType, str] = {BOOL: "true or false", INT: "a whole number of 64 bits", REAL: "a finite number"}
 
 
 def with_constants(model: Model, texts: Iterable[str]) -> Model:
@@ -33,7 +33,7 @@ def with_constants(model: Model, texts: Iterable[str]) -> Model:
     for text in texts:
         name, equals, value = (part.strip() for part in text.partition("="))
         if not name or not equals or not value:
-            raise ValueError(f"a constant must have the form `N=20`, not `{text}`")
+            raise ValueError(f"a constant must have the form `NAME=VALUE`, such as `N=20`, not `{text}`")
         if name in given:
             raise ValueError(f"the constant `{name}` is given twice")
         given[name] = value
@@ -48,7 +48,7 @@ def with_constants(model: Model, texts: Iterable[str]) -> Model:
             )
             raise ValueError(f"there is no constant `{name}`; {hint}")
         if known[name].value is not None:
-            raise ValueError(f"the constant `{name}` has a value in the model, which --constant cannot change")
+            raise ValueError(f"the constant `{name}` has a value in the model, which `--constant` cannot change")
     values: dict[str, Value] = {}
     constants = []
     for constant in model.constants:
@@ -78,7 +78,7 @@ def _value(constant: Constant, text: str, known: dict[str, Value]) -> Expression
     if value is None:
         type_phrase = _TYPE_PHRASES.get(base) if isinstance(base, BasicType) else None
         if type_phrase is None:
-            raise ValueError(f"the constant `{constant.name}` has a type whose values --constant does not support")
+            raise ValueError(f"the constant `{constant.name}` has a type whose values `--constant` does not support")
         raise ValueError(f"the constant `{constant.name}` must be {type_phrase}, not `{text}`")
     if isinstance(type_, BoundedType):
         for end, is_lower in ((type_.lower, True), (type_.upper, False)):

@@ -138,7 +138,7 @@ class Derivative(CommentedNode, frozen=True):
 
 
 class Missing(Node, frozen=True):
-    """A part that cannot be read. A finding of the reader states the reason. A model with such a part is not
+    """A part that cannot be read. A finding of the reader states the reason. A model with a missing part cannot be
     written."""
 
 

@@ -115,7 +115,7 @@ class Inference:
         """Report `node` if its kind or type `kind` does not fit `target`. `subject` is a phrase for `node` in the
         message."""
         if isinstance(kind, PathKind):
-            self.notes.type(span_of(node), f"{subject} cannot be a formula about paths; use it in `Pmin` or `Pmax`")
+            self.notes.type(span_of(node), f"{subject} cannot be a path formula; use it in `Pmin` or `Pmax`")
         elif not fits(kind, target):
             needed = "true or false" if target is BOOL else "a number" if target is REAL else describe(target)
             self.notes.type(span_of(node), f"{subject} must be {needed}, not {describe(kind)}")
@@ -291,7 +291,9 @@ class Inference:
                 self.notes.unknown("function", node.function, span_of(node), self.scope.functions, fix=False)
             return UNKNOWN
         if len(types) != len(function.parameters):
-            message = f"`{node.function}` takes {len(function.parameters)} arguments, not {len(types)}"
+            message = (
+                f"wrong number of arguments of `{node.function}`: {len(types)} instead of {len(function.parameters)}"
+            )
             self.notes.type(span_of(node), message)
             return function.type
         for parameter, argument, type_ in zip(function.parameters, node.arguments, types, strict=True):
@@ -324,7 +326,7 @@ class Inference:
                 path_kind: Kind = yield self.formula(path)
                 if not isinstance(path_kind, (PathKind, UnknownType)):
                     name = node.operator.value if isinstance(node, Probability) else node.quantifier.value
-                    self.notes.type(span_of(path), f"`{name}` needs a formula about paths, with `F`, `G` or `U`")
+                    self.notes.type(span_of(path), f"`{name}` needs a path formula, such as one with `F`, `G` or `U`")
                 return REAL if isinstance(node, Probability) else BOOL
             case Expectation():
                 yield self.expectation(node)

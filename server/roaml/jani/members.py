@@ -2,8 +2,8 @@
 """Reads the members of JSON objects that must have a certain shape, and reports everything that does not fit.
 
 - A member is reported at most once: a member that is not valid JSON or has the wrong kind is treated as missing.
-- An unknown member is an error, because it may change the meaning of the model. Only members that are known to be
-  comments (`HARMLESS`) are ignored if JANI does not define them.
+- An unknown member is an error, because it may change the meaning of the model; in an open shape, it is a warning. Only
+  members that are known to be comments (`HARMLESS`) are ignored if JANI does not define them.
 """
 
 from __future__ import annotations
@@ -27,7 +27,8 @@ class ObjectShape(NamedTuple):
         phrase: the kind of the object with its article, for messages.
         required: the names of the members that it must have.
         allowed: the names of all members that it may have.
-        is_open: whether other members are comments, which are ignored.
+        is_open: whether other members are reported as warnings instead of errors, because they do not change the
+            meaning of the model.
     """
 
     phrase: str
@@ -53,7 +54,8 @@ class ValueSource:
         return Origin(self.path, span)
 
     def members(self, value: JsonValue | None, form: ObjectShape) -> Members | None:
-        """The members of `value`; `None` and a finding if it is not an object."""
+        """The members of `value`; `None` if it is not an object, with a finding unless it is missing or not valid
+        JSON."""
         if isinstance(value, JsonObject):
             return Members(value, form, self)
         self.wrong_kind(value, form.phrase + " must be an object `{ }`")
@@ -96,7 +98,7 @@ class Members:
         return self.source.origin(self.object.span)
 
     def string(self, key: str) -> JsonString | None:
-        """The member `key`, which must be a non-empty string; `None` if it is missing or not such a string."""
+        """The member `key`, which must be a non-empty string; `None` if it is missing, empty or not a string."""
         value = self.values.get(key)
         if isinstance(value, JsonString):
             if value.value:

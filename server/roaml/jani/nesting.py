@@ -15,7 +15,7 @@ def is_nested(formula: Formula) -> bool:
 
 
 def is_about_paths(formula: Formula) -> bool:
-    """Whether a formula contains a path operator, possibly below negations."""
+    """Whether a formula, without the negations around it, is neither an expression nor a predicate on states."""
     while isinstance(formula, UnaryFormula):
         formula = formula.operand
     return isinstance(formula, ProperFormula) and not isinstance(formula, Predicate)

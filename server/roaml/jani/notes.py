@@ -15,10 +15,11 @@ NAME = "jani-name"
 TYPE = "jani-type"
 
 _MAX_GUESSES = 20
-"""The maximum number of suggestions in one file. It is limited because each requires a comparison with all known
-names."""
+"""The maximum number of names in one file for which a similar name is searched. Each search compares a name with all
+known names."""
 
 _MAX_SUGGESTION_LENGTH = 200
+"""The maximum length of a name for which a similar name is searched, in characters."""
 
 
 class Notes:
@@ -60,7 +61,7 @@ class Notes:
             kind: the kind of the name, for the message.
             span: the position of the finding.
             fix: whether `span` is exactly the text of the name, so that a fix can replace it.
-            owner: a phrase for the part that has no such name, for the message.
+            owner: a phrase for the part in which the name is missing, for the message; empty for the whole model.
         """
         message = f"{owner} has no {kind} `{name[:80]}`" if owner else f"there is no {kind} `{name[:80]}`"
         fixes: tuple[Fix, ...] = ()

@@ -21,6 +21,7 @@ _TRIGONOMETRIC = Feature.TRIGONOMETRIC_FUNCTIONS
 _HYPERBOLIC = Feature.HYPERBOLIC_FUNCTIONS
 
 _MAX_BITS = 1 << 16
+"""The maximum number of bits of an int that is a power."""
 
 
 class Signature(enum.Enum):
@@ -48,6 +49,7 @@ def power(base: float, exponent: float) -> float:
 
     Raises:
         OverflowError: the result is too large.
+        ValueError: the result is not a real number.
     """
     if isinstance(base, int) and isinstance(exponent, int) and exponent >= 0:
         if base.bit_length() * exponent > _MAX_BITS:

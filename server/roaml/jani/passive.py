@@ -15,7 +15,7 @@ from roaml.record import replace
 
 def unread_variables(model: Model, *formulas: Formula) -> frozenset[str]:
     """The variables of the model that only passive automata write, and on which no other automaton and no formula
-    depends."""
+    depends. There are none if the model restricts its initial states, or an element has `input-enable`."""
     passive = [_follows(automaton) for automaton in model.automata]
     if model.restrict_initial is not None or any(element.input_enable for element in model.system.elements):
         return frozenset()
@@ -85,8 +85,8 @@ def _without(automaton: Automaton, gone: frozenset[str]) -> Automaton:
 
 
 def _follows(automaton: Automaton) -> bool:
-    """Whether an automaton has a single location, no variables, and at most one edge for each action, which is always
-    enabled."""
+    """Whether an automaton has a single location, no variables, no silent edges, and at most one edge for each action,
+    which is always enabled and has one destination."""
     actions = [edge.action for edge in automaton.edges]
     return (
         len(automaton.locations) == 1

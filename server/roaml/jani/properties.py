@@ -2,8 +2,8 @@
 """The types of properties: formulas about the states, paths and probabilities of a model.
 
 A `Formula` is an expression, or it contains a part whose value a single state does not determine: a path formula, a
-probability, a reward or a set of states. Operators that have such a part as operand are `UnaryFormula`, `BinaryFormula`
-and `ConditionalFormula`, so an `Expression` never contains such a part.
+probability, a reward or a set of states. Operators with one of these parts as operand are `UnaryFormula`,
+`BinaryFormula` and `ConditionalFormula`, so an `Expression` never contains one of these parts.
 """
 
 from __future__ import annotations

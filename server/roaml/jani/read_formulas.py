@@ -128,7 +128,7 @@ class FormulaReader(ValueSource):
             return Integer(value.value, origin=origin)
         if math.isfinite(value.value):
             return Real(value.value, origin=origin)
-        self.notes.syntax(value.span, "this number is too large")
+        self.notes.syntax(value.span, "this number is too large; the greatest real number is about 1.8e308")
         return Missing(origin=origin)
 
     def _object(self, value: JsonObject) -> Steps[Formula]:
@@ -187,7 +187,8 @@ class FormulaReader(ValueSource):
         return tuple(parts)
 
     def choice(self, value: JsonValue | None, kind: str, choices: type[E]) -> E | None:
-        """The member of the enumeration `choices` with the value `value`; `None` and a finding if there is none."""
+        """The member of the enumeration `choices` with the value `value`; `None` if there is none, with a finding
+        unless `value` is missing or not valid JSON."""
         if not isinstance(value, JsonString):
             self.wrong_kind(value, f"a {kind} must be a string")
             return None
@@ -218,7 +219,7 @@ class FormulaReader(ValueSource):
             return Missing(origin=members.origin)
         distribution = DISTRIBUTIONS[name.value]
         if "args" in members.values and len(arguments) != distribution.arity:
-            message = f"`{name.value}` needs {distribution.arity} arguments, not {len(arguments)}"
+            message = f"wrong number of arguments of `{name.value}`: {len(arguments)} instead of {distribution.arity}"
             self.notes.syntax(members.values["args"].span, message)
         return Sample(distribution, arguments, comment=members.comment(), origin=members.origin)
 

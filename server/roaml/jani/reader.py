@@ -2,7 +2,7 @@
 """Reads JANI models and lists of properties from JSON, and reports the errors in them.
 
 - Reading raises no exception: parts that cannot be read are reported and left out, and the other parts are read. A
-  model that is read without errors can be written, checked and run.
+  model that is read without errors can be written and checked.
 - The findings have the codes `jani-syntax` (the structure is not that of JANI), `jani-name` (a name is undefined or
   declared twice) and `jani-type` (the type of an expression does not fit). Errors in the JSON itself are not reported
   again; `roaml.json_syntax.parse` reports them.
@@ -55,7 +55,7 @@ def read_properties(value: JsonValue, path: str = "") -> tuple[tuple[Property, .
     a list `properties`.
 
     Other members of the object are ignored. Names and types are not checked, because the variables are declared in
-    another file; `typecheck.check_property` and `properties.identifiers` do this.
+    another file; `typecheck.check_property` checks them.
     """
     notes = Notes()
     reader = _ModelReader(path, notes)
@@ -260,7 +260,9 @@ class _ModelReader(DeclarationReader):
                     else:
                         self.wrong_kind(item, "an action must be a string or null")
                 if vector.length != size:
-                    message = f"the vector has {vector.length} entries, but the system has {size} elements"
+                    message = (
+                        f"the vector must have an entry for each element of the system: {size}, not {vector.length}"
+                    )
                     self.notes.syntax(vector.span, message)
             result = self.use(members, "result", self.actions)
             yield Sync(tuple(participants), result, comment=members.comment(), origin=members.origin)

@@ -48,10 +48,12 @@ from roaml.jani.operators import BinaryOperator, Operator, Signature
 from roaml.record import Record
 
 MAX_ARRAY_LENGTH = 1_000_000
+"""The maximum number of elements that one array constructor creates in its dimension."""
 MAX_CALLS = 10_000
-"""The maximum depth of function calls. A deeper recursion is regarded as endless."""
+"""The maximum number of calls of functions that are nested in each other."""
 
 _LARGE = 1e21
+"""Messages contain only numbers whose absolute value is less than this."""
 
 
 class DatatypeInstance(Record, frozen=True):
@@ -170,7 +172,7 @@ class _Evaluation:
                     raise EvaluationError("this is not an array", array.origin)
                 position = _integer((yield self.value(index, bound)), index)
                 if not 0 <= position < len(elements):
-                    message = f"index {position} is outside of the array, which has {len(elements)} elements"
+                    message = f"index {position} is outside of the array, whose length is {len(elements)}"
                     raise EvaluationError(message, node.origin)
                 return elements[position]
             case ArrayValue(parts):
@@ -181,7 +183,10 @@ class _Evaluation:
             case ArrayConstructor(variable, length, body):
                 size = _integer((yield self.value(length, bound)), length)
                 if not 0 <= size <= MAX_ARRAY_LENGTH:
-                    raise EvaluationError(f"an array cannot have {size} elements", length.origin)
+                    raise EvaluationError(
+                        f"an array cannot have {size} elements; from 0 to {MAX_ARRAY_LENGTH:,} are supported",
+                        length.origin,
+                    )
                 values = []
                 for i in range(size):
                     values.append((yield self.value(body, {**bound, variable: i})))
@@ -222,10 +227,15 @@ class _Evaluation:
             raise EvaluationError(f"there is no function `{node.function}`", node.origin)
         if len(node.arguments) != len(function.parameters):
             needed, given = len(function.parameters), len(node.arguments)
-            raise EvaluationError(f"`{node.function}` takes {needed} arguments, not {given}", node.origin)
+            raise EvaluationError(
+                f"wrong number of arguments of `{node.function}`: {given} instead of {needed}", node.origin
+            )
         self.calls += 1
         if self.calls > MAX_CALLS:
-            raise EvaluationError(f"the calls of `{node.function}` do not terminate", node.origin)
+            raise EvaluationError(
+                f"more than {MAX_CALLS:,} calls of functions are nested, the innermost one of `{node.function}`",
+                node.origin,
+            )
         arguments: dict[str, Value] = {}
         for parameter, argument in zip(function.parameters, node.arguments, strict=True):
             arguments[parameter.name] = yield self.value(argument, bound)

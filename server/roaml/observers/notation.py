@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Formulas as text: `H ({ level < 30 } S[:5] { alarm })` (docs/spec/xml-properties.md#formulas).
 
-- Parsing never raises: each syntax error is a problem with its place, and there is no formula then.
+- Parsing never raises: the first syntax error is returned as a problem with its place, and there is no formula then.
 - A text in braces is an atom. It is not parsed here; equal texts are the same atom.
 - Operators by decreasing precedence: `!`, `H` and `O`; `S`; `&&`; `||`; `->`. `S`, `&&` and `||` are left-associative,
   `->` is right-associative.

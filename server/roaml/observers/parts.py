@@ -149,7 +149,8 @@ class Delay:
 
 
 class Recent:
-    """Whether the last occurrence of an event is at a distance in a window. Earlier occurrences are not stored."""
+    """Whether an event occurred at a distance in a window. Of the occurrences whose distance has reached the lower
+    bound, only the last one is stored."""
 
     def __init__(self, builder: Builder, name: str, window: Window) -> None:
         self.builder = builder

@@ -3,8 +3,8 @@
 (docs/spec/plain-scxml.md#lowered-properties).
 
 The formula of a property is false at the letter that violates the pattern. There is no formula if the end of a trace or
-of a stretch can violate the pattern: for obligations without a deadline, and for obligations that must be met before
-their stretch ends.
+of a stretch (`roaml.observers.patterns`) can violate the pattern: for obligations without a deadline, and for
+obligations that must be met before their stretch ends.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def _violation(property_: PatternProperty, inside: Formula, answers_with_clock: 
     """A formula that is true at letters that violate the pattern in their stretch; `None` if there is none."""
 
     def earlier(condition: Formula, window: Window) -> Formula:
-        """A formula: `condition` was true in this stretch, at a distance in `window`."""
+        """A formula that is true if `condition` was true in the current stretch, at a distance in `window`."""
         return Since(inside, _and(inside, condition), window)
 
     left, window = Atom(LEFT), property_.window

@@ -82,7 +82,7 @@ def _can_be_vacuous(property_: PatternProperty) -> bool:
 
 
 def _can_be_closed(property_: PatternProperty) -> bool:
-    """Whether a pattern has two conditions and a scope that may have no judged stretch."""
+    """Whether a pattern has two conditions, and a scope that has no judged stretch in some traces."""
     return property_.pattern.is_binary and property_.scope not in (ScopeKind.GLOBALLY, ScopeKind.UNTIL)
 
 

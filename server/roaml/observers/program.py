@@ -89,7 +89,8 @@ class Outputs(Record, frozen=True):
         due: whether an obligation is open that is violated if the clock ends here: it has no deadline, or its deadline
             is now.
         exercised: whether the property was triggered, by a request or an opened scope; `None` if it always applies.
-        opened: whether a stretch of the scope was judged; `None` if `exercised` has the same value.
+        opened: whether a stretch of the scope was judged, for a pattern with two conditions in a scope that has no
+            judged stretch in some traces; otherwise `None`.
     """
 
     violated: Register

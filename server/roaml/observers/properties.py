@@ -139,8 +139,8 @@ class Or(Record, frozen=True):
 
 
 class Since(Record, frozen=True):
-    """`right` was true at some letter up to the current one whose distance is in `window`, and `left` at all letters
-    after it."""
+    """A formula that is true if `right` was true at some letter up to the current one whose distance is in `window`,
+    and `left` was true at all letters after that letter."""
 
     left: Formula
     right: Formula
@@ -155,12 +155,14 @@ def implies(left: Formula, right: Formula) -> Formula:
 
 
 def once(operand: Formula, window: Window = ANY_TIME) -> Formula:
-    """The formula: `operand` was true at some letter up to the current one whose distance is in `window`."""
+    """The formula that is true if `operand` was true at some letter up to the current one whose distance is in
+    `window`."""
     return Since(Constant(True), operand, window)
 
 
 def historically(operand: Formula, window: Window = ANY_TIME) -> Formula:
-    """The formula: `operand` was true at all letters up to the current one whose distance is in `window`."""
+    """The formula that is true if `operand` was true at all letters up to the current one whose distance is in
+    `window`."""
     return Not(once(Not(operand), window))
 
 

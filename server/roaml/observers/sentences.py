@@ -49,7 +49,8 @@ UNKNOWN = SentenceClause("…", "")
 
 
 class Times(Record, frozen=True):
-    """Bounds on a time, as text with units such as "5 s"; an empty string means that there is no bound."""
+    """The lower bound (`after`) and the upper bound (`within`) of a time, as text with units such as "5 s"; an empty
+    string means that there is no bound."""
 
     after: str = ""
     within: str = ""

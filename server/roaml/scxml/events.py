@@ -37,7 +37,8 @@ class EventRole(enum.Enum):
 
     @property
     def is_internal(self) -> bool:
-        """Whether the event has neither buffer nor variables."""
+        """Whether the translation to JANI creates neither a buffer nor variables for the event. Internal events of
+        SCXML (`<raise>`) are something else."""
         return self in (EventRole.TIMER_TICK, EventRole.CLOCK_STEP)
 
 
@@ -45,8 +46,8 @@ class ScxmlEvent(Record, frozen=True):
     """An event. Events with equal names have the same role.
 
     Attributes:
-        after: the name of an event; while it waits for its receivers, this event cannot be received. "" if there is no
-            such event.
+        after: the name of an event; while it waits for its receivers, this event cannot be received. "" if there is
+            none.
     """
 
     name: str

@@ -198,7 +198,7 @@ class InterfaceEvent(NamedTuple):
 
 
 def read_interface_event(event: str, clients: Collection[str]) -> InterfaceEvent | None:
-    """The event of a topic, service or action with the name `event`; `None` if it is not such an event.
+    """The event of a topic, service or action with the name `event`; `None` if `event` is another name.
 
     Args:
         clients: the automata of the system. The name of an event may end with the name of one of them.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Properties of automata in plain SCXML, with the events and parameters that they observe
+"""Properties of a system in plain SCXML, with the events and parameters that they observe
 (docs/spec/xml-properties.md)."""
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ class PortEvent(Record, frozen=True):
 
     Attributes:
         name: the name of the event.
-        sender: the only automaton whose events are observed; "" for all automata.
+        sender: the automaton that must send the event, itself or by one of its threads; "" if any automaton may.
         constants: the values that the event itself determines: kind of variable and value.
     """
 

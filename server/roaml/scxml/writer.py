@@ -23,7 +23,8 @@ NAMESPACE = "http://www.w3.org/2005/07/scxml"
 NOBODY = "NONE"
 DRAWN = "__RAND__"
 DELAY = "1"
-"""The delay of the event that the clock sends to itself. Because of it, time passes only if no other event waits."""
+"""The `delay` of the `<send>` with which the clock sends its step to itself. Because of this delay, time passes only if
+no other event waits."""
 _INDENT = "    "
 
 
@@ -198,7 +199,7 @@ def _element(
 
 
 def _attributes(**attributes: str) -> str:
-    """Attributes in the given order, without those that have no value."""
+    """Attributes in the given order, without those whose value is empty."""
     return "".join(f' {name}="{escape(value, _QUOTES)}"' for name, value in attributes.items() if value)
 
 

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Statistical model checking: estimates the probabilities of the properties of a JANI model.
+"""Statistical model checking: estimates the probabilities and expected rewards that the properties of a JANI model ask
+for.
 
 - Depends on `roaml.jani`, not on SCXML, XML, robots or the disk.
 - `compile` turns a model into flat arrays once; `kernel` simulates them. `kernel.py` is plain Python and is compiled by
   Cython, with the types in `kernel.pxd`, if there is a compiler. Both generate the same traces. A step takes 0.07 to
   0.11 µs compiled, and 10 µs as Python. Numba was measured as an alternative: it takes 0.5 s to import, 0.3 s to load a
   cached function and 305 MB (two cores of an AMD EPYC), while a whole verification takes 0.8 s.
+- A *question* is what a property asks about all traces (`goal.Question`); an *answer* is the estimate. A *goal* is what
+  the kernel evaluates on each trace for one or more questions (`program.Goal`).
 - The kernel caches no states. A step evaluates again only what it changes: the actions of the locations that are left
   and entered, and the guards that read a changed variable.
 - A trace is a pure function of the compiled model, the seed and its number; neither the number of workers nor the order

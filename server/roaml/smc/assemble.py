@@ -7,7 +7,7 @@
 - Constant expressions are evaluated at compile time. An expression that always fails is compiled, too, because it may
   never be reached.
 - Arrays have a fixed shape, that of the largest value ever stored in them; a smaller value is padded with zeros.
-- A function is compiled where it is called.
+- The body of a function is compiled at each call.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class ExpressionAssembler:
     # ------------------------------------------------------------ pieces of code
 
     def condition(self, expression: Expression, names: StorageNames, origin: Origin | None = None) -> int:
-        """Code that tests whether `expression` holds."""
+        """Write code that returns 1 if `expression` holds, and 0 otherwise. Return the address of the code."""
         start = self.tape.begin(expression.origin or origin)
         otherwise = Label()
         self.jump(expression, names, otherwise, False)
@@ -65,13 +65,14 @@ class ExpressionAssembler:
         return start
 
     def integer(self, expression: Expression, names: StorageNames) -> int:
-        """Code that returns the value of an integer `expression`."""
+        """Write code that returns the value of an integer `expression`. Return the address of the code."""
         start = self.tape.begin(expression.origin)
         self.tape.emit(Op.RETURN, a=self.value(expression, names).register)
         return start
 
     def real_register(self, expression: Expression, names: StorageNames, origin: Origin | None = None) -> int:
-        """Code that returns the number of the real register with the value of `expression`."""
+        """Write code that returns the number of the real register with the value of `expression`. Return the address of
+        the code."""
         start = self.tape.begin(expression.origin or origin)
         value = self.cells.as_real(self.value(expression, names))
         self.tape.emit(Op.RETURN, a=self.tape.constant(INT, value.register).register)
@@ -85,7 +86,7 @@ class ExpressionAssembler:
         match node:
             case Integer():
                 if abs(node.value) > MAX_INT64:
-                    raise FaultError("this number does not fit into 64 bits", node.origin)
+                    raise FaultError(f"`{node.value}` does not fit into 64 bits", node.origin)
                 return self.cells.moved(self.tape.constant(INT, node.value), into)
             case Boolean():
                 return self.cells.moved(self.tape.constant(BOOL, node.value), into)
@@ -150,7 +151,7 @@ class ExpressionAssembler:
         return self.operators.computed(node, first, self.value(right, names), into)
 
     def chain(self, node: Binary, names: StorageNames, into: int) -> Operand:
-        """Compute a sum or product of any number of operands, such as `a + b + c`."""
+        """Write code that applies one arithmetic operator to any number of operands, such as `a + b + c`."""
         parts: list[Binary] = [node]
         while isinstance(parts[-1].left, Binary) and parts[-1].left.operator is node.operator:
             parts.append(parts[-1].left)
@@ -188,7 +189,7 @@ class ExpressionAssembler:
     # ------------------------------------------------------------ conditions
 
     def jump(self, node: Expression, names: StorageNames, label: Label, when: bool) -> None:
-        """Jump to `label` if the value of `node` is `when`, otherwise continue."""
+        """Write code that jumps to `label` if the value of `node` is `when`, and continues otherwise."""
         while isinstance(node, Unary) and node.operator is UnaryOperator.NOT:
             node, when = node.operand, not when
         match node:
@@ -213,7 +214,7 @@ class ExpressionAssembler:
                     self.tape.jump(Op.JUMP_TRUE if when else Op.JUMP_FALSE, label, value.register)
 
     def logical(self, node: Binary, names: StorageNames, label: Label, when: bool) -> None:
-        """Jump for a logical operator; chains of one operator may have any length."""
+        """Like `jump`, for a logical operator. Chains of one operator may have any length."""
         parts: list[Expression] = [node]
         while isinstance(parts[-1], Binary) and parts[-1].operator is node.operator:
             last = parts.pop()
@@ -324,7 +325,7 @@ class ExpressionAssembler:
         return region
 
     def fill(self, node: Expression, into: Region, names: StorageNames, watch: int = -1) -> None:
-        """Write code that stores an array in a region without offset. A smaller array is padded with zeros."""
+        """Write code that stores an array in a region whose `offset` is -1. A smaller array is padded with zeros."""
         match node:
             case ArrayValue(elements):
                 if len(elements) > into.shape[0]:

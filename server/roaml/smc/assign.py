@@ -21,8 +21,8 @@ from roaml.smc.registers import INT, REAL, Number, Operand, Region, product
 
 
 class Later(NamedTuple):
-    """An assignment whose value is computed and not stored yet: its target, the register of the value, and the number
-    of the variable that changes."""
+    """An assignment whose value is computed and not stored yet: its target, the first register of the value, and the
+    number of the variable that changes (-1 if its changes are not tracked)."""
 
     place: Region
     register: int
@@ -62,7 +62,7 @@ class AssignmentAssembler:
             raise FaultError(unsupported(inner), target.origin)
         storage = names.meaning(inner)
         if not isinstance(storage, Storage) or storage.is_constant:
-            raise FaultError(f"`{inner.identifier}` cannot be assigned to", target.origin)
+            raise FaultError(f"`{inner.identifier}` is not a variable, so it cannot be assigned to", target.origin)
         if len(accesses) > len(storage.shape):
             raise FaultError("this is not an array", target.origin)
         accesses.reverse()

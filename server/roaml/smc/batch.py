@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Batches: pure functions of a compiled model, a seed and a range of trace numbers, for any executor."""
+"""Runs batches of traces. The result of a batch depends only on the compiled model, the seed, the scheduler and the
+numbers of the traces, so any executor can compute it."""
 
 from __future__ import annotations
 
@@ -20,7 +21,8 @@ if TYPE_CHECKING:
     from multiprocessing.synchronize import Event
 
 STEPS_BETWEEN_PULSES = 200_000
-"""The number of steps after which Python can handle an interrupt: they take some hundredths of a second."""
+"""The number of steps of a trace after which Python can handle an interrupt: these steps take some hundredths of a
+second."""
 
 
 class Payload(NamedTuple):
@@ -31,7 +33,7 @@ class Payload(NamedTuple):
 
 
 class TraceProblem(NamedTuple):
-    """An undefined operation in a trace; see `Kernel.problem`."""
+    """An undefined operation in a trace: the number of the trace, and the numbers that `Kernel.problem` returns."""
 
     trace: int
     code: int
@@ -45,7 +47,7 @@ class Task(NamedTuple):
     """A batch: the traces `first` to `first + size - 1`, each with at most `max_steps` steps, under the scheduler
     `scheduler` (0: uniform choices).
 
-    `questions` are the numbers of the questions that the traces answer.
+    `questions` are the numbers, in the goal of `payload`, of the questions that the traces answer.
     """
 
     payload: Payload
@@ -70,7 +72,8 @@ class Rows(Record, frozen=True, eq=False):
 
 
 class BatchOutcome(Record, frozen=True, eq=False):
-    """The result of a batch: rows for each of its questions. A problem ends the batch; its trace is not counted."""
+    """The result of a batch: rows for each of its questions. A problem ends the batch; the trace with the problem has
+    no row."""
 
     questions: tuple[Rows, ...]
     problem: TraceProblem | None = None
@@ -112,7 +115,8 @@ def run(task: Task, pulse: Callable[[int, int], None] | None = None) -> BatchOut
     """Run the traces of a batch.
 
     Args:
-        pulse: called regularly with the number of the trace and its steps; an exception that it raises ends the batch.
+        pulse: called regularly with the number of the trace and the number of steps that the trace has at most; an
+            exception that `pulse` raises ends the batch.
     """
     return run_on(kernel_of(task.payload), task, pulse)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Copies values between registers and the cells of arrays, and pads smaller values with zeros."""
+"""Writes code that copies values between registers and the cells of arrays, and pads smaller arrays with zeros."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class CellAssembler:
             self.write(zero, Region(into.kind, (), into.base + i, into.offset), watch)
 
     def copy(self, source: Region, into: Region, watch: int, node: Node) -> None:
-        """Write code that copies an array to a region without offset."""
+        """Write code that copies an array to a region whose `offset` is -1."""
         if len(source.shape) != len(into.shape):
             raise FaultError("the arrays have different numbers of dimensions", node.origin)
         if source.kind != into.kind and into.kind == REAL:

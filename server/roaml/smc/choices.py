@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The relation of the result under uniform choices to `Pmin` and `Pmax`: whether all schedulers have the same value
-and, if that is unknown, the range of the values of sampled schedulers.
+"""Compares the result under uniform choices with other schedulers: whether all schedulers have the same value and, if
+that is unknown, which range the values of sampled schedulers have.
 
 1. A model without nondeterminism has only one scheduler.
-2. If there are few states, the minimum and the maximum are known from all states (`roaml.verification.small`).
+2. If there are few states, `roaml.verification.small` computes the minimum and the maximum from all states.
 3. Otherwise schedulers are sampled (`lss.probe`), with a fraction of the effort for the result.
 
 The method depends only on the model, the question, the options and the traces of the result.
@@ -26,10 +26,12 @@ from roaml.smc.statistics import Bounds
 NO_NONDETERMINISM = "the model has no nondeterminism"
 """The reason why all schedulers of a model of type `dtmc` have the same value."""
 _RESULT_STEPS_PER_PROBE_STEP = 5
-"""The effort for the result, divided by the effort for schedulers."""
+"""The number of steps that were simulated for the result, for each step that is simulated for sampled schedulers."""
 _MIN_STEPS, _MAX_STEPS = 50_000, 400_000
+"""The limits of the number of steps that are simulated for sampled schedulers."""
 _MAX_CHEAP_REGISTERS = 200
-"""The number of registers and automata up to which a step has the normal cost; with more, a step costs more."""
+"""The number of registers and automata with which the maximum number of steps is half of `_MAX_STEPS`. This maximum
+decreases as the number of registers grows, because a step then takes longer."""
 
 
 class ExtremeMethod(Vocabulary):
@@ -48,8 +50,8 @@ class Extreme(Record, frozen=True):
         bounds: an interval that contains the probability under some scheduler; this is certain if all states were
             explored, and otherwise has the confidence of the method.
         method: the method by which the extreme was found.
-        scheduler: a description of the scheduler that achieves the value; empty if all schedulers were considered.
-        traces: the number of traces on which the estimate is based.
+        scheduler: a description of the sampled scheduler that achieves the value; empty for the other methods.
+        traces: the number of traces on which the estimate is based; 0 for an exact value.
     """
 
     value: float

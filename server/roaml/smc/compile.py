@@ -26,12 +26,14 @@ SUPPORTED = (ModelType.DTMC, ModelType.MDP, ModelType.LTS)
 
 
 class Legend(Record, frozen=True):
-    """The meanings of the numbers in a program. Workers do not need them.
+    """The meanings of the numbers in a program (`roaml.smc.program` defines the terms). Workers do not need them.
 
     Attributes:
-        locations: instance and name of each location.
+        layout: the registers of all variables.
+        locations: the number of the instance and the name of each location.
         ways: the edge and the destination of each way.
-        vectors: the slots of each vector, and its action.
+        vectors: the numbers of the slots of each synchronisation vector, and its action.
+        slots: the edges of each instance for one action.
     """
 
     layout: MemoryLayout
@@ -42,10 +44,10 @@ class Legend(Record, frozen=True):
 
 
 class Compilation:
-    """Compiles `model` so that conditions over `formulas` can be watched; `program` completes it.
+    """Compiles `model` so that changes of the variables in `formulas` can be tracked; `program` returns the result.
 
     Raises:
-        FaultError: the model has parts that cannot be run, or that always fail.
+        FaultError: the model has unsupported or invalid parts, or no initial state.
     """
 
     def __init__(self, model: Model, formulas: Iterable[Formula] = ()) -> None:
@@ -212,8 +214,8 @@ class Compilation:
             self.cells.end()
 
     def _write_moves(self) -> None:
-        """Write the tables of the slots whose numbers of enabled edges differ between the source and the target of each
-        way."""
+        """Write the tables of the slots whose numbers of enabled edges may differ between the source and the target of
+        each way."""
         self.move_start, self.move_slot, self.move_count = [0], list[int](), list[int]()
         known: dict[tuple[int, int], int] = {}
         for source, target in zip(self.way_source, self.way_target, strict=True):

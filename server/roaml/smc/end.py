@@ -31,7 +31,7 @@ class End(IntEnum):
     DEADLOCK = 5
     """No step is possible."""
     IDLE = 6
-    """Only steps that change nothing are possible."""
+    """Only steps that change nothing are possible, or a sampled scheduler repeats a cycle of states."""
     CUT = 7
     """The trace had the maximum length."""
 

@@ -45,8 +45,7 @@ ANSWERED = (
     "and either `reach` or `step-instant`"
 )
 NOT_OBSERVABLE = (
-    "a formula about paths inside another one is supported only if its variables have initial values and are not "
-    "transient"
+    "a path formula inside another one is supported only if all its variables have initial values and none is transient"
 )
 COMPARISONS = frozenset(
     (BinaryOperator.LESS, BinaryOperator.LESS_EQUAL, BinaryOperator.GREATER, BinaryOperator.GREATER_EQUAL)
@@ -54,14 +53,14 @@ COMPARISONS = frozenset(
 JOINED = frozenset((BinaryOperator.AND, BinaryOperator.OR, BinaryOperator.IMPLIES))
 """The operators that join path formulas."""
 TIME_BOUNDS = (
-    "bounds on time are not supported, because the model counts only steps (compare the clock's `sec` instead)"
+    "bounds on time are not supported, because a model has only steps and no time (compare `sec` of the clock instead)"
 )
 NO_TIME = "no time passes in this kind of model, so rewards can only be accumulated on `steps` or `exit`"
 _ONE_STATE = (FilterFunction.VALUES, FilterFunction.MIN, FilterFunction.MAX, FilterFunction.SUM, FilterFunction.AVG)
 
 
 def faults_in(property_: Property, step: int | None = None) -> Iterator[FaultError]:
-    """The reasons why sampling cannot decide a property of this form, with the positions of the unsupported parts.
+    """The reasons why sampling cannot decide `property_`, with the positions of the unsupported parts.
 
     Args:
         step: the step of the clock in ns; `None` if there is no clock.
@@ -82,7 +81,7 @@ def check_form(property_: Property) -> None:
     """Check that sampling can answer a property of this form.
 
     Raises:
-        FaultError: it cannot.
+        FaultError: sampling cannot answer the property.
     """
     for fault in faults_in(property_):
         raise fault
@@ -96,7 +95,8 @@ class Lasting(Record, frozen=True):
 
 
 def lasting_part(formula: Formula) -> Lasting | None:
-    """The condition of a formula of the form `F G c` or `G F c`; `None` for another form."""
+    """The parts of a formula of the form `F G c` or `G F c`; `None` for another form. `G F c` is represented by its
+    negation."""
     lasting = lasting_condition(formula)
     if lasting is None:
         return None
@@ -112,7 +112,10 @@ def _faults(formula: Formula, step: int | None) -> Iterator[tuple[str, Node]]:
         match formula:
             case Filter(function, values, states):
                 if not isinstance(states, Predicate) or states.predicate is not StatePredicate.INITIAL:
-                    yield f'{_about(states)}, but traces begin in the initial states; write {{"op": "initial"}}', states
+                    yield (
+                        f'{_about(states)}, but traces begin in the initial states; write `{{"op": "initial"}}`',
+                        states,
+                    )
                 if function in (FilterFunction.FORALL, FilterFunction.EXISTS):
                     if not isinstance(values, BinaryFormula):
                         yield f"the filter `{function.value}` needs a comparison of a probability with a number", values
@@ -197,7 +200,7 @@ def _in_state(formula: Formula) -> Iterator[tuple[str, Node]]:
         if formula.predicate is not StatePredicate.DEADLOCK:
             yield f"the predicate `{formula.predicate.value}` is not supported here", formula
     elif isinstance(formula, ProperFormula):
-        yield "a formula about paths inside another one is not supported in this form", formula
+        yield "a path formula inside another one is not supported in this form", formula
 
 
 def _without_negation(formula: Formula) -> Formula:

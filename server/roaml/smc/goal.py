@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A property -> its goal for a single trace, and its question about all traces.
+"""Compiles a property to a goal, which is evaluated on each trace, and a question about all traces.
 
 Every path operator becomes an until: `F b` is `true U b`, `G b` is `¬F ¬b`, `a R b` is `¬(¬a U ¬b)`, `X b` is `F` with
 exactly one step, and `a W b` is `(a U b) ∨ ¬F ¬a`, the second part with the upper bound only. `F G b` is evaluated in
@@ -81,10 +81,10 @@ class Question(Record, frozen=True):
         name: the name of the property.
         operator: `Pmin`, `Pmax`, `Emin` or `Emax`.
         is_reward: whether it is about an expected reward, not a probability.
-        threshold: the comparison of the value, if there is one.
+        threshold: the comparison of the value with a number; `None` if the property asks for the value.
         variables: the variables that the property reads.
         is_stuck: whether it is about stuck traces (`compile_stuck`).
-        can_be_vacuous: whether it may not apply to a trace (`Activity`).
+        can_be_vacuous: whether there may be traces that do not exercise the property (`Activity`).
         can_be_late: see `ObserverOutputs`.
         is_conditional: whether it is only about traces that satisfy assumptions.
     """
@@ -108,6 +108,7 @@ class Activity(enum.IntEnum):
     IDLE = 1
     """The scope was evaluated, but the event that triggers the property, such as a request, never occurred in it."""
     TRIGGERED = 2
+    """The event occurred; or the scope was evaluated, and the property does not depend on an event."""
 
 
 class CompiledProperty(Record, frozen=True):
@@ -120,10 +121,11 @@ class CompiledProperty(Record, frozen=True):
 
 
 class ObserverOutputs(Record, frozen=True):
-    """Expressions over the variables of a property's observer; `None` where it has no such variable.
+    """Expressions over the variables of a property's observer; `None` if the observer does not store the value.
 
     Attributes:
-        open: pairs (x, e): if e holds at the end of the model's time, `F G x` is undecided.
+        open: pairs (x, e): if e holds at the end of the model's time, `F G c` is undecided for each condition c that
+            reads the variable x.
         triggered: whether the event that triggers the property has occurred.
         opened: whether the scope of the property has been evaluated.
         can_be_late: whether the property fails if the time ends before an event that it still requires.
@@ -152,15 +154,15 @@ def compile_property(
         outputs: the outputs of its observer.
 
     Raises:
-        FaultError: it has a form that sampling cannot answer, or contains a comparison with something other than a
-            number.
+        FaultError: the property has a form that sampling cannot answer, or contains a comparison with something other
+            than a number.
     """
     check_form(property_)
     return _Writer(compilation, property_, outputs).compiled_property()
 
 
 def conditional(property_: CompiledProperty, assumptions: CompiledProperty) -> CompiledProperty:
-    """The question `property_`, restricted to traces that satisfy `assumptions`."""
+    """A copy of `property_` that is restricted to traces that satisfy `assumptions`."""
     return replace(
         property_,
         question=replace(property_.question, is_conditional=True),
@@ -173,7 +175,7 @@ STUCK_PROPERTY = "stuck"
 
 
 def compile_stuck(compilation: Compilation) -> CompiledProperty:
-    """The question about the probability that a trace gets stuck (`end.End.STUCK`): its automata wait for one another,
+    """The question about the probability that a trace gets stuck (`end.End.STUCK`): the automata wait for one another,
     and nothing can ever change. Every trace runs to its end."""
     # JANI has no predicate for this; `deadlock` is the closest one.
     path = UnaryPath(UnaryPathOperator.FINALLY, Predicate(StatePredicate.DEADLOCK))
@@ -272,7 +274,8 @@ class _Writer:
         return CompiledProperty(self.property, question, goal)
 
     def activity(self) -> int:
-        """The code that computes the activity of the property in a trace; -1 if the activity is always `TRIGGERED`."""
+        """The address of the code that computes the activity of the property in a trace; -1 if the activity is always
+        `TRIGGERED`."""
         triggered, opened = self.outputs.triggered, self.outputs.opened
         if triggered is None and opened is None:
             return -1
@@ -415,7 +418,7 @@ class _Writer:
         return self.condition(conditions[0], conditions[1:]) if conditions else TRUE
 
     def condition(self, formula: Formula, more: tuple[Expression, ...] = (), *, negated: bool = False) -> int:
-        """The code of a state formula.
+        """The address of the code of a state formula, or one of the negative numbers that `program.Goal` defines.
 
         Args:
             more: further conditions, which must also hold.
@@ -459,7 +462,10 @@ class _Writer:
         """The value of an end of an interval."""
         value = self.number(expression)
         if not abs(value) < 1 << 62:
-            raise FaultError("this bound is too large", expression.origin or interval.origin)
+            raise FaultError(
+                "this bound is too large; its absolute value must be less than 2⁶²",
+                expression.origin or interval.origin,
+            )
         return value
 
     # ------------------------------------------------------------ rewards
@@ -487,5 +493,5 @@ _COMBINE = {BinaryOperator.AND: AND, BinaryOperator.OR: OR, BinaryOperator.IMPLI
 
 
 def with_threshold(question: Question, threshold: Threshold) -> Question:
-    """A question whose value is compared with a number."""
+    """A copy of `question` whose value is compared with `threshold`."""
     return replace(question, threshold=threshold)

@@ -364,7 +364,7 @@ class Kernel:
 
         Args:
             picks: for each slot of the vector that has an effect, the number of its edge among the enabled ones.
-            ways: for each of these slots, the number of the way.
+            ways: for each of these slots, the number of the way among those of its edge.
         """
         self._take_given(vector, picks, ways)
         if self.fault != 0:
@@ -747,7 +747,7 @@ class Kernel:
             edge += 1
 
     def _way(self, edge: int) -> int:
-        """A way of `edge`, drawn by the probabilities; -1 if these do not add up to 1."""
+        """A way of `edge`, drawn by the probabilities; -1 if one of these is negative or they do not add up to 1."""
         first = self.way_start[edge]
         end = self.way_start[edge + 1]
         if self.way_chance[first] >= 0:
@@ -831,7 +831,8 @@ class Kernel:
                             return
 
     def _look_around(self) -> None:
-        """Evaluate guards in the current locations again, if they read a changed variable."""
+        """Evaluate guards in the current locations again if they read a changed variable, and mark the conditions of
+        the goal that read one."""
         for i in range(self.note_count):
             variable = self.notes[i]
             self.noted[variable] = 0

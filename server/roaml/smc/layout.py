@@ -19,7 +19,8 @@ from roaml.smc.shapes import kind_of, larger, shape_of
 
 
 class AutomatonInstance(Record, frozen=True):
-    """An automaton as an element of the system. `own` contains the variables that it declares."""
+    """An automaton as an element of the system. `own` contains the variables that it declares, and `transient` the
+    names of those that are transient."""
 
     automaton: Automaton
     names: StorageNames
@@ -51,7 +52,8 @@ def lay_out(model: Model, tape: Tape) -> MemoryLayout:
     """Assign a register to everything that has a value; registers of variables come before all others.
 
     Raises:
-        FaultError: a constant or variable has no value, or an unsupported one.
+        FaultError: a constant or variable has no value, or an invalid value or type; or an automaton of the system does
+            not exist.
     """
     functions = {function.name: function for function in model.functions}
     constants = _constants(model, functions)
@@ -122,14 +124,16 @@ def _check_start(model: Model, layout: MemoryLayout) -> None:
         except EvaluationError as error:
             raise FaultError(error.message, error.origin) from None
         if not holds:
-            raise FaultError("there is no initial state: the initial values do not satisfy this", clause.exp.origin)
+            raise FaultError(
+                "there is no initial state: the initial values do not satisfy this condition", clause.exp.origin
+            )
 
 
 def _constants(model: Model, functions: Mapping[str, Function]) -> dict[str, Value]:
     known: dict[str, Value] = {}
     for constant in model.constants:
         if constant.value is None:
-            hint = f"give one with --constant {constant.name}=VALUE"
+            hint = f"give one with `--constant {constant.name}=VALUE`"
             raise FaultError(f"the constant `{constant.name}` has no value; {hint}", constant.origin)
         known[constant.name] = _evaluated(constant.value, known, functions)
     return known
@@ -207,7 +211,9 @@ def _grow(scopes: list[tuple[Automaton, StorageNames]], constants: Mapping[str, 
                 changed = True
         if not changed:
             return
-    raise FaultError("the sizes of the arrays do not converge")
+    raise FaultError(
+        "assignments make the arrays of this model larger without limit; only arrays of a fixed size are supported"
+    )
 
 
 def _assignments(automaton: Automaton) -> Iterator[Assignment]:

@@ -2,7 +2,7 @@
 """The minimum and the maximum probability over schedulers, by sampling schedulers (Legay, Sedwards and Traonouez 2014).
 A scheduler is a number, and its choice in a state is a hash of this number and the state.
 
-Four kinds are tried, each with many numbers:
+Schedulers of four kinds are tried:
 
 - memoryless schedulers;
 - schedulers with memory of the last step;
@@ -33,11 +33,12 @@ INITIAL_SCHEDULERS = 256
 FIRST_ROUND_TRACES = 16
 """The number of traces for each scheduler in the first round; it doubles in each further round."""
 MIN_ROUNDS_IF_CERTAIN = 3
-"""The number of rounds after which the search ends if all traces of a scheduler have failed, or all have succeeded."""
+"""The number of rounds after which the search ends if all traces of a scheduler have failed (minimum) or succeeded
+(maximum)."""
 UNIFORM_TRACES = 100
 """The number of traces with uniform choices, to measure their length."""
 MAX_PROBE_TRACES = 6
-"""The number of traces for each scheduler with a small budget."""
+"""The maximum number of traces for each scheduler in the first round of `probe`."""
 FIRST_SELECTION_TRACE = 1 << 40
 """Traces with this number or a greater one are used to select schedulers."""
 
@@ -52,7 +53,8 @@ class Extremes(Record, frozen=True):
     """The probabilities under the selected schedulers.
 
     Attributes:
-        least_by, greatest_by: the numbers of the selected schedulers.
+        least, greatest: the answers under the scheduler selected for the minimum, and under the one for the maximum.
+        least_by, greatest_by: the numbers of these schedulers.
         tried: the number of schedulers that were tried.
     """
 
@@ -64,7 +66,7 @@ class Extremes(Record, frozen=True):
 
 
 def described(scheduler: int, actors: Sequence[str]) -> str:
-    """A description of a scheduler.
+    """A phrase for users that describes a scheduler.
 
     Args:
         actors: a noun phrase for each element of the system.
@@ -124,7 +126,7 @@ class Search(Record):
         round, rounds: the current round of the selection and the number of rounds; each keeps the better half.
         left: the number of schedulers that are tried in this round.
         done: the number of these that have been tried.
-        best: the best share of successes in the last round; `None` before the end of the first one.
+        best: the best share of successes of a scheduler in the last round; `None` before the end of the first round.
         tried: the initial number of schedulers.
         selected: the selected scheduler of each side and its traces so far.
     """
@@ -184,7 +186,8 @@ def _longest(length: float) -> int:
 
 
 def sampling_options(options: Options) -> Options:
-    """The options for the estimate under a selected scheduler, without a threshold."""
+    """The options for the estimate under a selected scheduler, in which the adaptive method replaces the sequential
+    test."""
     return replace(options, method=EstimationMethod.ADAPTIVE) if options.method is EstimationMethod.SPRT else options
 
 
@@ -198,16 +201,17 @@ def probe(
     length: float,
     pulse: Pulse | None = None,
 ) -> Extremes | None:
-    """Search with about `budget` steps: one round for all schedulers, then some traces for the two best ones.
+    """Search in two rounds: a few traces for each scheduler, then more traces for the schedulers with the smallest and
+    the greatest share of successes.
 
     A trace that is much longer than usual is abandoned, and is undecided.
 
     Args:
-        budget: the number of steps for the first round, and again for the second.
+        budget: the approximate number of steps of each round. If it is small, only the first schedulers are tried.
         length: the average length of a trace with uniform choices.
 
     Returns:
-        `None` if the budget is too small.
+        `None` if the budget is too small, or no trace was decided.
 
     Raises:
         TraceFaultError: a trace failed.
@@ -254,7 +258,7 @@ def _best(
     report: Callable[[Search], None],
     pulse: Pulse | None,
 ) -> int:
-    """The scheduler with the smallest or greatest share of successes; an abandoned trace is half a success."""
+    """The scheduler with the smallest or greatest share of successes; an undecided trace is half a success."""
     sign = 1 if state.side is Side.GREATEST else -1
     candidates = dict.fromkeys(schedulers, (0.0, 0))
     tried, first = FIRST_ROUND_TRACES, FIRST_SELECTION_TRACE

@@ -45,17 +45,18 @@ class ModelChecker:
     """A model, compiled for some of its properties.
 
     Args:
+        properties: the properties to compile; `None` for all properties of the model.
         marks: why a trace that stays in a location ends; see `roaml.smc.end`.
-        outputs: property -> the outputs of its observer, if it has one.
-        assumptions: property -> the property which states that its assumptions hold, if it has any; both are in
-            `model`.
+        outputs: name of a property -> the outputs of its observer. Properties without an observer are left out.
+        assumptions: name of a property -> the property of `model` which states that the assumptions of the first
+            property hold. Properties without assumptions are left out.
         actors: automaton -> a noun phrase for users; an automaton without a phrase is named in backquotes.
-        includes_stuck: whether `stuck` is the last question.
+        includes_stuck: whether `stuck` is added to `compiled_properties`, as the last one.
 
     Attributes:
         compiled_properties: the properties that can be answered.
-        refused: the names of the other properties -> the reason.
-        stuck: the question about traces that get stuck.
+        refused: name of a property that cannot be answered -> the reason.
+        stuck: the property that asks for the probability that a trace gets stuck.
 
     Raises:
         FaultError: the model cannot be run.
@@ -124,8 +125,9 @@ class ModelChecker:
         return Compiled(self.program, property_.goal)
 
     def reduced(self, property_: CompiledProperty) -> ModelChecker:
-        """A model checker for one question, without the automata that only other questions need. The model has fewer
-        states and the same probabilities, but different traces for the same numbers."""
+        """A model checker for one property, without the automata that only other properties need; `self` if there are
+        none. The reduced model has fewer states and the same probabilities, but different traces for the same
+        numbers."""
         model = without_passive(self.model, *self._read(property_))
         if model is self.model:
             return self
@@ -141,7 +143,7 @@ class ModelChecker:
         )
 
     def _read(self, property_: CompiledProperty) -> tuple[Formula, ...]:
-        """All formulas on which the probability of a question depends."""
+        """All formulas on which the probability of a property depends."""
         outputs = self.outputs.get(property_.property.name, NO_OUTPUTS)
         return (property_.property.expression, *(expression for _, expression in outputs.open))
 
@@ -186,8 +188,11 @@ class ModelChecker:
         give; see `roaml.smc.run.answer_together`.
 
         Args:
-            tallies: the states to continue from; they are updated after each batch.
-            watch: called for each question after each of its batches.
+            tallies: the states to continue from, in the order of `properties`; they are updated after each batch.
+            watch: called for each property after each batch of its traces.
+
+        Returns:
+            For each property its answer, or the error of a trace that failed.
         """
         questions = [property_.question for property_ in properties]
         inquiries = [Inquiry(*parts) for parts in zip(questions, tallies, columns_of(questions), strict=True)]
@@ -219,12 +224,15 @@ class ModelChecker:
         """Search for schedulers that minimise and maximise the probability; see `roaml.smc.lss.search`.
 
         Raises:
-            FaultError: a trace failed, or the question is about rewards.
+            FaultError: a trace failed, or the property is about rewards or has assumptions.
         """
         if property_.question.is_reward:
-            raise FaultError("schedulers can be sampled only for probabilities", property_.property.origin)
+            raise FaultError(
+                "schedulers can be sampled only for probabilities, not for rewards; use `--scheduler uniform`",
+                property_.property.origin,
+            )
         if property_.question.is_conditional:
-            message = "schedulers cannot be sampled for a probability given assumptions; use --scheduler uniform"
+            message = "schedulers cannot be sampled for a probability given assumptions; use `--scheduler uniform`"
             raise FaultError(message, property_.property.origin)
         try:
             schedulers = candidates(len(self.automata))
@@ -268,7 +276,7 @@ class ModelChecker:
         return tuple(self._actors.get(name, f"`{name}`") for name in self.automata)
 
     def fault(self, problem: TraceProblem) -> FaultError:
-        """A description of the undefined operation in a trace."""
+        """The error that describes the undefined operation in a trace."""
         code = FaultCode(problem.code)
         value: float = problem.value
         if code is FaultCode.DOMAIN or (code is FaultCode.RANGE and problem.value == 0 and problem.real != 0):

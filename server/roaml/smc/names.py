@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The meanings of names while a model is compiled."""
+"""The registers and values to which the names in a model refer while it is compiled."""
 
 from __future__ import annotations
 
@@ -16,7 +16,15 @@ from roaml.smc.registers import Number, Operand, Region
 
 
 class Storage(Record):
-    """The register of a variable or constant. `watch` is its number if its changes must be tracked, otherwise -1."""
+    """The registers of a variable or a constant array.
+
+    Attributes:
+        kind: the kind of the value or, for an array, of its elements; see `roaml.smc.shapes`.
+        shape: the lengths of an array in all dimensions; () for a scalar.
+        base: the number of the first register.
+        watch: the number of the variable if its changes must be tracked, otherwise -1.
+        bounds: the lower and the upper bound of the type; `None` for a bound that does not exist.
+    """
 
     name: str
     type: Type
@@ -29,11 +37,13 @@ class Storage(Record):
 
 
 Meaning: TypeAlias = Storage | Operand | Region
-"""The meaning of a name: a variable or constant, a bound scalar, or a bound array."""
+"""The meaning of a name: a variable or a constant array (`Storage`); a scalar constant, a scalar parameter or the
+variable of an array constructor (`Operand`); or an array parameter (`Region`)."""
 
 
 class StorageNames(Record, frozen=True):
-    """The meanings of names at a place. `calls` are the functions whose bodies contain the place."""
+    """The meanings of names at a place. `calls` are the functions whose calls are being compiled at the place, the
+    outermost first."""
 
     values: Mapping[str, Meaning]
     functions: Mapping[str, Function]
@@ -47,7 +57,7 @@ class StorageNames(Record, frozen=True):
         return StorageNames({**self.values, **parameters}, self.functions, (*self.calls, function.name))
 
     def constants(self) -> dict[str, Number]:
-        """The names whose values do not depend on the state."""
+        """The names whose values do not depend on the state, with their values."""
         return {name: m.value for name, m in self.values.items() if isinstance(m, Operand) and m.value is not None}
 
     def meaning(self, node: Name) -> Meaning:
@@ -64,12 +74,14 @@ class StorageNames(Record, frozen=True):
             raise FaultError(f"`{node.function}` calls itself, which is not supported", node.origin)
         if len(node.arguments) != len(function.parameters):
             needed, given = len(function.parameters), len(node.arguments)
-            raise FaultError(f"`{node.function}` takes {needed} arguments, not {given}", node.origin)
+            raise FaultError(
+                f"wrong number of arguments of `{node.function}`: {given} instead of {needed}", node.origin
+            )
         return function
 
 
 def variables_in(expression: Expression, functions: Mapping[str, Function]) -> set[str]:
-    """The names on which the value of an expression depends."""
+    """The names in an expression, and in the functions that it calls."""
     identifiers: set[str] = set()
     called: set[str] = set()
     stack = [expression]

@@ -72,7 +72,7 @@ _T = TypeVar("_T")
 
 
 class ObservedFormula(Record, frozen=True):
-    """A property of the sequence of states, and the conditions on states that it reads."""
+    """A property of the sequence of states, and pairs of an input of its observer and a condition on states."""
 
     property: observed.Property
     conditions: tuple[tuple[str, Expression], ...]
@@ -87,7 +87,7 @@ def without_nesting(formula: Formula, step: int | None, observe: Callable[[Obser
         observe: creates an observer, and returns the path formula that states that its property holds.
 
     Raises:
-        NestingError: no pattern has this form.
+        NestingError: no pattern has this form, or there are more than `MAX_FORMULAS` path operators.
     """
     if _count_formulas(formula) > MAX_FORMULAS:
         raise NestingError
@@ -201,7 +201,7 @@ class _Recogniser:
             case [BinaryPath(left=left, right=right) as path]:
                 close = _close_of_existence(trigger, left, right)
                 if close is not None:
-                    # Each trigger needs an event of its own before `close`, so this is a response.
+                    # Each trigger needs a separate event before `close`, so this is a response.
                     is_until = path.operator is BinaryPathOperator.UNTIL
                     scope = ScopeKind.AFTER_UNTIL if is_until else ScopeKind.BETWEEN
                     request = _Request(trigger, _condition(right))
@@ -230,19 +230,19 @@ class _Recogniser:
         raise NestingError
 
     def always_after(self, trigger: Expression, clause: Disjunction) -> Formula:
-        """The formula G (trigger ⇒ G clause)."""
+        """The translation of `G (trigger ⇒ G clause)`."""
         if not clause.paths:
             return self.pattern(Pattern.UNIVERSALITY, ScopeKind.AFTER, {LEFT: clause.condition, OPEN: trigger})
         return self.response(self.request(clause), ScopeKind.AFTER, {OPEN: trigger})
 
     def bounded_after(self, trigger: Expression, condition: Expression, window: Window) -> Formula:
-        """The formula G (trigger ⇒ G[window] condition): after a trigger, the negated condition is forbidden in the
-        window."""
+        """The translation of `G (trigger ⇒ G[window] condition)`: after a trigger, the negated condition is forbidden
+        in the window."""
         formula = implies(once(Atom(OPEN), window), Atom(LEFT))
         return self._observed(FormulaProperty(formula), {LEFT: condition, OPEN: trigger})
 
     def after_until(self, trigger: Expression, stays: Formula, close: Expression) -> Formula:
-        """The formula G (trigger ⇒ (stays W close))."""
+        """The translation of `G (trigger ⇒ (stays W close))`."""
         conditions = {OPEN: trigger, CLOSE: close}
         if not isinstance(stays, ProperFormula):
             return self.pattern(Pattern.UNIVERSALITY, ScopeKind.AFTER_UNTIL, {LEFT: stays, **conditions})
@@ -250,7 +250,7 @@ class _Recogniser:
         return self.response(self.request(clause, close), ScopeKind.AFTER_UNTIL, conditions)
 
     def between(self, trigger: Expression, close: Expression, stays: Formula, end: Expression) -> Formula:
-        """The formula G (trigger ∧ F close ⇒ (stays U end))."""
+        """The translation of `G (trigger ∧ F close ⇒ (stays U end))`."""
         conditions = {OPEN: trigger, CLOSE: close}
         if key_of(close) == key_of(end):
             if not isinstance(stays, ProperFormula):
@@ -281,7 +281,7 @@ class _Recogniser:
         return _all([self.after(opening, part) for part in parts if isinstance(part, ProperFormula)])
 
     def before(self, never: UnaryPath, path: BinaryPath) -> Formula:
-        """The formula G ¬close ∨ ((request ⇒ …) U close)."""
+        """The translation of `G ¬close ∨ ((request ⇒ …) U close)`."""
         if never.operator is not UnaryPathOperator.GLOBALLY or never.time_bounds is not None:
             raise NestingError
         close = _condition(path.right)
@@ -291,7 +291,7 @@ class _Recogniser:
         return self.response(self.request(clause, close), ScopeKind.BEFORE, {OPEN: close})
 
     def after(self, opening: Expression, path: Formula) -> Formula:
-        """The formula ¬opening W (opening ∧ path)."""
+        """The translation of `¬opening W (opening ∧ path)`."""
         conditions = {OPEN: opening}
         match path:
             case UnaryPath(operator=UnaryPathOperator.FINALLY, operand=operand):
@@ -331,7 +331,8 @@ class _Recogniser:
         """The bounds on the time of F and G, in clock steps.
 
         Raises:
-            NestingError: there is no clock, or no step of the clock is within the bounds.
+            NestingError: there is no clock; or the bounds are not literals, are too large, or contain no step of the
+                clock.
         """
         interval = path.time_bounds
         if interval is None:
@@ -361,7 +362,7 @@ class _Recogniser:
 
 
 def _close_of_existence(trigger: Expression, left: Formula, right: Formula) -> Expression | None:
-    """The condition u of `trigger ⇒ (¬u U (right ∧ ¬u))` if the trigger includes ¬u."""
+    """The condition u of `trigger ⇒ (¬u U (right ∧ ¬u))` if the trigger includes ¬u; `None` for another form."""
     if isinstance(left, ProperFormula) or isinstance(right, ProperFormula):
         return None
     waits = key_of(left)

@@ -19,17 +19,20 @@ from roaml.smc.names import StorageNames, read_by, variables_in
 from roaml.smc.registers import Operand
 
 _PROBABILITY_TOLERANCE = 1e-6
+"""The maximum distance of the sum of the probabilities of an edge from 1."""
 
 
 class WeightedDestination(Record):
-    """A destination of an edge. `probability` is `None` if it depends on the state."""
+    """A destination of an edge. `probability` is `None` if the probability of a destination of the edge depends on the
+    state."""
 
     destination: Destination
     probability: float | None
 
 
 class EdgeStep(Record):
-    """An edge of an instance that can be taken. `guard` is `None` if the edge is always enabled."""
+    """An edge of an instance that can be taken. `guard` is `None` if the edge is always enabled. `is_inert` states
+    whether taking the edge changes nothing."""
 
     edge: Edge
     ways: list[WeightedDestination]
@@ -38,7 +41,14 @@ class EdgeStep(Record):
 
 
 class Slot(Record):
-    """The edges of an instance for one action, grouped by their source location."""
+    """The edges of an instance for one action. An edge without an action shares its slot only with edges of other
+    locations.
+
+    Attributes:
+        steps: number of a location -> its edges.
+        vectors: the numbers of the synchronisation vectors in which the slot takes part.
+        reads, writes: the names that the assignments of the edges read and write.
+    """
 
     instance: int
     action: str | None
@@ -49,8 +59,8 @@ class Slot(Record):
 
 
 class Reads:
-    """The variables that affect a part of a model, computed once. The part is kept alive, so that its `id` is not
-    reused."""
+    """Computes the names that an expression or an assignment reads, once for each. These parts are kept alive, so that
+    their `id` is not reused."""
 
     def __init__(self) -> None:
         self._found: dict[int, tuple[Node, set[str]]] = {}
@@ -70,8 +80,10 @@ class CompiledNetwork:
     """The locations, slots and vectors of a model.
 
     Attributes:
-        locations: instance and name of each location; `first_location` and `location_of` by instance.
-        vectors: the slots of each vector, and its action.
+        locations: the number of the instance and the name of each location.
+        first_location: the number of the first location of each instance.
+        location_of: for each instance, name of a location -> its number.
+        vectors: the numbers of the slots of each synchronisation vector, and its action.
     """
 
     def __init__(self, model: Model, layout: MemoryLayout) -> None:
@@ -100,7 +112,7 @@ class CompiledNetwork:
             self.location_of.append(table)
             if len(instance.automaton.initial_locations) != 1:
                 name = instance.automaton.name
-                raise FaultError(f"`{name}` must have one initial location", instance.automaton.origin)
+                raise FaultError(f"`{name}` must have exactly one initial location", instance.automaton.origin)
 
     def _collect_steps(self) -> None:
         prepared: dict[int, list[EdgeStep | None]] = {}
@@ -167,7 +179,7 @@ class CompiledNetwork:
         return EdgeStep(edge, ways, guard, is_inert)
 
     def _known(self, expression: Expression, instance: AutomatonInstance) -> bool | float | None:
-        """The value of an expression; `None` if it depends on the state."""
+        """The value of an expression; `None` if it depends on the state or cannot be computed."""
         names = instance.names
         if isinstance(expression, Boolean):
             return expression.value

@@ -59,7 +59,11 @@ def has_bounds(path: PathBounds) -> bool:
 
 
 def normal_form(formula: Formula, *, is_negated: bool = False) -> Formula:
-    """The negation normal form of a path formula, with F, G, U, W, ∧ and ∨; F and G may have bounds on the time."""
+    """The negation normal form of a path formula, with F, G, U, W, ∧ and ∨; F and G may have bounds on the time.
+
+    Raises:
+        NestingError: the formula contains other operators, or other bounds.
+    """
     match formula:
         case UnaryFormula(operator=UnaryOperator.NOT, operand=operand):
             return normal_form(operand, is_negated=not is_negated)
@@ -139,7 +143,11 @@ class Disjunction(Record, frozen=True):
 
 
 def clauses_of(formula: Formula) -> list[Disjunction]:
-    """The clauses of the conjunctive normal form of a formula."""
+    """The clauses of the conjunctive normal form of a formula.
+
+    Raises:
+        NestingError: there are more than `MAX_CLAUSES`.
+    """
     match formula:
         case BinaryFormula(BinaryOperator.AND, left, right):
             return [*clauses_of(left), *clauses_of(right)]
@@ -229,6 +237,7 @@ def are_opposite(left: Expression, right: Expression) -> bool:
 
 
 def parts_of(condition: Expression, name: str, *, is_negated: bool = False) -> frozenset[_Key]:
-    """The keys of the operands of ∧ (`and`) or ∨ (`or`)."""
+    """The keys of the operands of a chain of ∧ (if `name` is `and`) or ∨ (`or`); the key of `condition` itself if it is
+    another expression."""
     key = key_of(condition, is_negated=is_negated)
     return key[1] if isinstance(key, tuple) and key[0] == name else frozenset((key,))

@@ -64,7 +64,7 @@ class Op(enum.IntEnum):
     COPY_INDEXED_REAL = 44
     STORE_MANY_REAL = 45
     RANGE_REAL = 46
-    CALL_INT = 47  # I[d] := functions[c] of the a numbers in the argument list b
+    CALL_INT = 47  # I[d] := functions[c] of the arguments that ARGUMENT and ARGUMENT_REAL have appended
     CALL_REAL = 48
     ARGUMENT = 49  # append I[a] to the arguments of the next call
     ARGUMENT_REAL = 50
@@ -88,7 +88,7 @@ class FaultCode(enum.IntEnum):
 MESSAGES = {
     FaultCode.OVERFLOW: "integer overflow: the result does not fit into 64 bits",
     FaultCode.DIVISION: "division by zero",
-    FaultCode.INDEX: "index {value} is outside of the array, which has {size} elements",
+    FaultCode.INDEX: "index {value} is outside of the array, whose length is {size}",
     FaultCode.RANGE: "{value} is outside of the bounds of the variable's type",
     FaultCode.DOMAIN: "this function has no value for {value}",
     FaultCode.PROBABILITY: "the probabilities of this edge do not add up to 1, or one is negative",

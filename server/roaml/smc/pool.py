@@ -78,7 +78,7 @@ class Pool:
         """The outcome of each task, in the order of the tasks. The caller may stop the iteration at any time.
 
         Raises:
-            WorkersLostError: the tasks cannot be run.
+            WorkersLostError: workers die repeatedly.
         """
         waiting = iter(tasks)
         if self.executor is None and self.start_delay_s is not None:

@@ -34,16 +34,24 @@ class Program(Record, frozen=True, eq=False):
         ints, reals: the initial values of all registers: variables, then constants, then intermediate results.
         int_count, real_count: the numbers of registers that are variables.
         initial: the first location of each instance.
-        way_sum: the sum of the probabilities up to a way; way_chance: code that returns the register of the probability
-            if it depends on the state.
-        move_slot, move_count: the changes between two locations: the number of enabled edges of a slot; if negative,
-            `-1 - group` must be evaluated.
+        way_sum: the sum of the probabilities of the ways of an edge up to this way, included.
+        way_chance: code that returns the register of the probability of a way, if it depends on the state.
+        way_move: the move of a way: the number of its pair of a source and a target location; -1 if both are equal.
+        move_slot: the slots whose number of enabled edges may differ between the two locations of a move.
+        move_count: for each of these slots, the number of its enabled edges in the target location; `-1 - group` if the
+            number depends on the guards of the group.
+        slot_gate: the gate of each slot (`roaml.smc.kernel` defines gates); gate_vector: the vectors of a gate.
+        gate_missing, vector_missing: the number of slots of each gate, and the number of gates of each vector.
         active_slot: the slots of a vector that have an effect; all_slot: all slots.
         entangled: whether assignments of several parts of a vector depend on one another.
-        phase_*: for entangled vectors, the code of each way, by the index of its assignments.
-        watch_*: the instances whose guards read a variable; watched_*: the groups for each location of an instance.
+        phase_index: for ways that take part in entangled vectors, the indices of their assignments, in ascending order.
+        phase_read, phase_write: for each of these indices, code that computes the values, and code that assigns them.
+        watch_instance: the instances whose guards read a watched variable.
+        watch_table: for each of these instances, the index in `watched_start` for its first location.
+        watched_group: for each location of these instances, the groups whose guards read the variable.
         settle: code that resets transient variables; location_code: code that sets their values in a location.
         location_mark: why a trace that stays in a location ends (`end.End`); 0 if unknown.
+        zero_*: a zero for each slot, vector, watched variable and instance, which the kernel copies.
     """
 
     code: Ints
@@ -105,13 +113,13 @@ class Goal(Record, frozen=True, eq=False):
         seen_start, seen_leaf: for each watched variable, the untils with a condition that reads it.
         left, right: code for the two sides of each until; -1 is true, -2 false, -3 deadlock, -4 no deadlock; on the
             right side, -5 means that the trace gets stuck.
-        lower, upper: the bounds of each until on steps, both inclusive; -1 is none. An until with the lower bound
-            `AT_END` is decided where the trace ends: it is true if the right side holds there; it stays undecided if
-            the time has ended and the left side holds.
+        lower, upper: the bounds of each until on steps, both inclusive; the upper bound -1 means that there is none. An
+            until with the lower bound `AT_END` is decided where the trace ends: it is true if the right side holds
+            there; it stays undecided if the time of the model has ended and the left side holds.
         formula: reverse Polish notation: the number of an until, or -1 not, -2 and, -3 or.
         formula_start, leaf_start: the formula and the untils of each question.
-        activity: code for each question that computes its `goal.Activity`; -1 if that is always `ASKED`.
-        zero_steps: a counter for each question.
+        activity: for each question, code that computes its `goal.Activity`; -1 if that is always `TRIGGERED`.
+        zero_steps: a zero for each question, which the kernel copies.
         is_bounded: what the evaluation depends on: 0 changes of variables, 1 also the number of steps, 2 also the
             enabled edges.
         step_reward, exit_reward: code that returns the register of the reward of a step.

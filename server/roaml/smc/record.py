@@ -42,7 +42,7 @@ VERDICTS = {
     UNKNOWN: TraceVerdict.UNDECIDED,
     FAULTY: TraceVerdict.FAULT,
 }
-"""The verdicts of the kernel."""
+"""The verdict of the kernel -> the verdict in results."""
 
 
 class RecordedVariable(NamedTuple):
@@ -90,7 +90,7 @@ class StepReader:
     """Reads the last step from a kernel.
 
     Attributes:
-        variables: the variables of the model, then those of each instance.
+        variables: the variables of the model, then those of each instance, with their registers.
     """
 
     def __init__(self, kernel: Kernel, legend: Legend) -> None:
@@ -167,7 +167,7 @@ class StepReader:
 
 
 class Recorder:
-    """Simulates single traces of a question."""
+    """Simulates single traces for a property."""
 
     def __init__(
         self, checker: ModelChecker, property_: CompiledProperty, seed: int, max_steps: int, scheduler: int = 0

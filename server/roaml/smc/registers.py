@@ -17,7 +17,7 @@ Number: TypeAlias = "bool | int | float"
 
 
 class Operand(Record, frozen=True):
-    """A scalar in a register; `value` is known for constants."""
+    """A scalar in a register. `value` is its value if that is known during compilation, otherwise `None`."""
 
     kind: str
     register: int
@@ -46,7 +46,7 @@ def product(shape: tuple[int, ...]) -> int:
 
 
 class Label:
-    """The target of jumps in the code, whose place is determined later."""
+    """A target of jumps in the code. `Tape.mark` determines its place, before or after the jumps are written."""
 
     def __init__(self) -> None:
         self.at = -1

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The answer to a question: how many traces are generated, and what follows from them.
+"""Answers a question by sampling: determines how many traces are generated, and computes the estimate and its interval
+from them.
 
 - Whether more traces are needed is decided after whole batches, in the order of their numbers. The size of a batch
   depends only on the traces before it. So the answer is a function of model, property, seed and options.
@@ -35,12 +36,15 @@ class EstimationMethod(Vocabulary):
 FIRST_BATCH_TRACES = 100
 MAX_BATCH_TRACES = 5000
 BATCH_GROWTH = 0.1
+"""The size of a batch as a fraction of the number of traces before it; at least `FIRST_BATCH_TRACES`, at most
+`MAX_BATCH_TRACES`."""
 STOPPING_ERROR_SHARE = 0.75
 """Stopping as soon as the interval is narrow enough increases the error; so the interval is computed for this fraction
-of the allowed error. A test computes that the total error stays within the confidence."""
+of the allowed error. A test computes that the total error does not exceed the allowed error."""
 MIN_EPSILON = 1e-9
-"""The minimum half-width of an interval. A narrower interval needs more traces than can be counted."""
+"""The minimum half-width of an interval. A narrower interval needs more traces than can be simulated."""
 MAX_REWARD_TRACES = 10_000_000
+"""The number of traces after which the adaptive method ends even if the interval is wider than requested."""
 MAX_REJECTED = 100_000
 """The number of traces after which the work ends if the assumptions have rejected all of them."""
 REJECTED = 4
@@ -56,7 +60,7 @@ class Options(Record, frozen=True):
         confidence: the probability with which the interval contains the true value.
         epsilon: half the width of the interval; for rewards relative to the value.
         max_traces: the maximum number of traces; with the method "fixed", the exact number.
-        max_steps: the maximum number of steps; traces that are not decided by then are undecided.
+        max_steps: the maximum number of steps of a trace; traces that are not decided by then are undecided.
 
     Raises:
         ValueError: a number is not valid; the message states which.
@@ -71,7 +75,7 @@ class Options(Record, frozen=True):
 
     def __post_init__(self) -> None:
         if not 0 < self.confidence < 1:
-            raise ValueError("the confidence must be a number between 0 and 1")
+            raise ValueError("the confidence must be a number between 0 and 1, both excluded")
         if not MIN_EPSILON <= self.epsilon < 1:
             raise ValueError(f"epsilon must be a number of at least {MIN_EPSILON:g} and less than 1")
         if not isinstance(self.method, EstimationMethod):
@@ -79,11 +83,11 @@ class Options(Record, frozen=True):
                 f"there is no method `{self.method}`; the methods are {', '.join(map(str, EstimationMethod))}"
             )
         if self.method is EstimationMethod.FIXED and self.max_traces is None:
-            raise ValueError("the method `fixed` needs a number of traces (--max-traces)")
+            raise ValueError("the method `fixed` needs a number of traces; use `--max-traces`")
 
 
 class StoredTrace(NamedTuple):
-    """A stored trace: its number and its steps."""
+    """A stored trace: its number, and the number of its steps."""
 
     trace: int
     steps: int
@@ -97,18 +101,21 @@ class Ended(Record):
 
 
 class Tally(Record):
-    """The counts after some batches, which are sufficient to continue.
+    """The results of the traces so far. They are sufficient to continue.
 
     Attributes:
         traces: the number of traces; for a question with assumptions, only the accepted ones.
+        steps: the number of steps of all traces.
         rejected: the number of traces that violate the assumptions.
         closed, idle: the numbers of traces with these activities; see `goal.Activity`.
         late: the number of traces that failed because the time ended before an event that the property requires.
-        accepted: the decision of a sequential test.
+        mean: the mean of the rewards, for a question about rewards.
+        accepted: the decision of the sequential test: whether the value meets the threshold; `None` if undecided.
+        is_finished: whether no further traces are needed.
         is_revised: whether the options were changed after results were known: then the number of traces depends on
             earlier results.
         examples: for each verdict, the first traces; shortest: for each verdict, the shortest trace.
-        ends: why traces have ended, by reason.
+        ends: reason -> the traces that have ended for it.
     """
 
     traces: int = 0
@@ -187,11 +194,11 @@ class Tally(Record):
 
 
 class Answer(Record, frozen=True):
-    """The result of the traces.
+    """The answer to a question that follows from traces.
 
     Attributes:
         value: the estimate: of a probability, the middle of the range that undecided traces leave; of a reward,
-            infinity if some trace never reaches its target.
+            infinity if some trace never reaches its target. Not a number if there are no traces.
         bounds: the interval for the true value.
         is_complete: whether the interval is as narrow as requested, or the test has decided.
         is_anytime: whether the interval is valid at any stopping time; otherwise it is valid for the stopping rule of
@@ -208,7 +215,7 @@ class Answer(Record, frozen=True):
 
     @property
     def interval(self) -> str:
-        """The kind of the interval. The kinds for rewards are valid only for many traces."""
+        """The name of the interval in statistics. The intervals for rewards are valid only for many traces."""
         if self.question.is_reward:
             return "asymptotic confidence sequence" if self.is_anytime else "Student's t"
         return "confidence sequence" if self.is_anytime else "Clopper-Pearson"
@@ -222,7 +229,7 @@ Watch = Callable[[Tally], None]
 
 
 class TraceFaultError(Exception):
-    """A trace executed an undefined operation; the compiled code determines which and where."""
+    """A trace executed an undefined operation. `ModelChecker.fault` converts `problem` to an error for users."""
 
     def __init__(self, problem: TraceProblem) -> None:
         super().__init__(problem)
@@ -335,7 +342,8 @@ def _run(
     """Run traces until the questions are answered. The same number of traces was generated for all of them before.
 
     Returns:
-        The trace that failed; `None` if there is none. If there are several questions, its batch is not counted.
+        The trace that failed; `None` if there is none. If there are several questions, the results of its batch are
+        discarded.
     """
     open_ = list(inquiries)
     done = inquiries[0].tally.simulated
@@ -410,7 +418,8 @@ def _stops_freely(tally: Tally, options: Options) -> bool:
 
 
 def trace_count(options: Options) -> int | None:
-    """The number of traces of a method that is not adaptive; `None` for an adaptive one."""
+    """The number of traces that a method determines in advance; `None` for the adaptive method and the sequential
+    test."""
     if options.method is EstimationMethod.OKAMOTO:
         return okamoto(options.confidence, options.epsilon)
     return options.max_traces if options.method is EstimationMethod.FIXED else None
@@ -497,7 +506,8 @@ def _add_end(tally: Tally, reason: int, seen: StoredTrace) -> None:
 
 
 def ratio_of(question: Question, options: Options) -> Ratio | None:
-    """The sequential test, if one is required."""
+    """The sequential test; `None` if the options require another method, or the question has no threshold or is about
+    rewards."""
     if options.method is not EstimationMethod.SPRT or question.threshold is None or question.is_reward:
         return None
     return Ratio(question.threshold.number, options.epsilon, 1 - options.confidence)

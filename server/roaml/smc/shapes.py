@@ -30,6 +30,7 @@ from roaml.smc.names import Meaning, StorageNames, unsupported
 from roaml.smc.registers import BOOL, INT, REAL, Number, Operand, Region
 
 MAX_ELEMENTS = 1_000_000
+"""The maximum number of elements that one array constructor creates in its dimension."""
 _ARITHMETIC = (
     BinaryOperator.ADD,
     BinaryOperator.SUBTRACT,
@@ -134,12 +135,14 @@ def length(node: ArrayConstructor, names: StorageNames) -> int:
     except EvaluationError as error:
         raise FaultError("the length of an array must not depend on the state", error.origin or node.origin) from None
     if not isinstance(size, int) or not 0 <= size <= MAX_ELEMENTS:
-        raise FaultError(f"an array cannot have {size} elements", node.length.origin)
+        raise FaultError(
+            f"an array cannot have {size} elements; from 0 to {MAX_ELEMENTS:,} are supported", node.length.origin
+        )
     return size
 
 
 def known(node: Expression, names: StorageNames) -> Number | None:
-    """The value of a scalar; `None` if it depends on the state."""
+    """The value of a literal, or of a name that has a known value; `None` for other expressions."""
     match node:
         case Integer() | Real() | Boolean():
             return node.value
@@ -168,7 +171,7 @@ def kind_of(type_: Type) -> str:
     kinds = {BasicType.BOOL: BOOL, BasicType.INT: INT, BasicType.REAL: REAL}
     if isinstance(type_, BasicType) and type_ in kinds:
         return kinds[type_]
-    raise FaultError("only variables of type bool, int, real and arrays of these are supported")
+    raise FaultError("only the types `bool`, `int` and `real`, and arrays of these, are supported")
 
 
 def shape_of(value: Value) -> tuple[int, ...]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of the size of a compiled model before it is compiled, because calls of functions are replaced by their
+"""Checks before a model is compiled that the result is not too large, because calls of functions are replaced by their
 bodies, and array constructors by their elements."""
 
 from __future__ import annotations
@@ -23,7 +23,8 @@ def check_size(model: Model, properties: Iterable[Property]) -> None:
     """Check that the compiled model is not too large.
 
     Raises:
-        FaultError: a function or an array is too large; the error has its position.
+        FaultError: a function, an array, or all calls of functions together are too large. The error has the position
+            of the function or array, or of the automaton that exceeds the limit.
     """
     for variables in (model.variables, *(automaton.variables for automaton in model.automata)):
         for variable in variables:
@@ -73,7 +74,8 @@ def function_sizes(functions: Mapping[str, Function]) -> dict[str, int]:
 
 
 def _called(part: object, sizes: Mapping[str, int]) -> int:
-    """The number of operations of all calls in a part of a model, without the calls in the bodies of functions."""
+    """The number of operations to which all calls in a part of a model expand. Declarations of functions in the part
+    are skipped."""
     return sum(sizes.get(node.function, 1) for node in _nodes(part) if isinstance(node, Call))
 
 

@@ -14,6 +14,7 @@ class Standstill(Record, frozen=True):
         automata: the automaton of each element of the system.
         locations: the current location of each element.
         enabled: for each element, the edges of the current location whose guards hold.
+        system: the composition of the elements, with their synchronisations.
     """
 
     automata: tuple[Automaton, ...]

@@ -106,7 +106,7 @@ def confidence_sequence(successes: int, traces: int, confidence: float, undecide
     Args:
         successes, traces: the number of successes, and the number of independent traces.
         confidence: between 0 and 1.
-        undecided: the number of further traces with unknown results; they widen the interval.
+        undecided: the number of those traces that are undecided; they widen the interval.
     """
     if traces == 0:
         return Bounds(0.0, 1.0)
@@ -119,7 +119,7 @@ def confidence_sequence(successes: int, traces: int, confidence: float, undecide
 
 def _crossing(successes: int, traces: int, limit: float) -> float:
     """The greatest probability below the estimate at which the logarithm of the martingale reaches `limit`; 0 if there
-    is no such probability. The function decreases up to the estimate."""
+    is none. The function decreases up to the estimate."""
     if successes == 0:
         return 0.0
     failures = traces - successes
@@ -145,14 +145,15 @@ def okamoto(confidence: float, epsilon: float) -> int:
 
 
 class Mean(NamedTuple):
-    """The moments of the rewards so far."""
+    """The number and the mean of the rewards so far, and the sum of the squares of their distances from the mean
+    (`squares`)."""
 
     number: int = 0
     mean: float = 0.0
     squares: float = 0.0
 
     def add(self, value: float) -> Mean:
-        """The moments with one more value (Welford 1962)."""
+        """A copy to which one more value is added (Welford 1962)."""
         number = self.number + 1
         step = value - self.mean
         mean = self.mean + step / number

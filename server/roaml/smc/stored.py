@@ -19,7 +19,7 @@ def tally_from_json(value: Any, question: Question, options: Options) -> Tally:
     """A tally that `Tally.to_json` has written.
 
     Args:
-        value: from JSON.
+        value: the value that a JSON parser has returned.
         question, options: the question and the options of the traces.
 
     Raises:

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A trace as a story: the steps that led to its end.
+"""Explains a trace by the steps that led to its end.
 
-The relevant steps are those that change a variable of the property, and those on which these steps depend, back to the
-start: the last change of each variable that a step reads, and the step that triggered the automaton that takes it.
+The relevant steps are the last one, those that change a variable of the property, and those on which these steps
+depend, back to the start: the last change of each variable that a step reads, and the step that triggered the automaton
+that takes it.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ class Story(Record, frozen=True):
     """A whole trace, and its relevant steps.
 
     Attributes:
+        property: the name of the property.
         clock: for each step the time in s; `None` if the model has no clock.
         relevant: the indices of the relevant steps, in their order.
         variables: the variables that the property reads.
@@ -44,7 +46,7 @@ class Story(Record, frozen=True):
 
 
 def build_story(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -> Story:
-    """The story of a trace.
+    """The trace with the number `trace`, and its relevant steps.
 
     Args:
         clock: the variables for the seconds and nanoseconds of the model's time.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Collects the moves of an automaton: each transition, with all statements that are executed until the next state.
+"""Collects the moves of an automaton: each transition, with all statements that it executes.
 
 The body of a move is the `<onexit>` of the source, the body of the transition, and the `<onentry>` of the target
 (docs/spec/jani.md#transitions). If the initial state has an `<onentry>`, the start is a move, too.
@@ -15,7 +15,8 @@ from roaml.text import Location
 
 
 class MoveOutcome(Record, frozen=True):
-    """One target of a transition, with all statements that are executed until it is entered."""
+    """One target of a transition, with all statements that are executed if it is selected, including the `<onentry>` of
+    the target."""
 
     state: str
     probability: float
@@ -50,7 +51,8 @@ class AutomatonMoves(Record, frozen=True):
     moves: tuple[tuple[State, tuple[Move, ...]], ...]
 
     def bodies(self) -> Iterator[tuple[str, Body]]:
-        """Every body with the name of the event whose data it may read ("" for none). The start is last."""
+        """Every body with the name of the event whose data it may read ("" for none). The body that is executed at the
+        start is last."""
         for _, moves in self.moves:
             for move in moves:
                 for outcome in move.outcomes:
@@ -59,7 +61,8 @@ class AutomatonMoves(Record, frozen=True):
             yield "", self.start
 
     def events(self) -> dict[str, None]:
-        """The names of the events that the automaton waits for, in order."""
+        """The names of the events on which the automaton has transitions, in document order. The values are not
+        used."""
         return dict.fromkeys(move.event for _, moves in self.moves for move in moves if move.event)
 
 

@@ -142,7 +142,7 @@ class ObserverParts:
     # ----------------------------------------------------------- variables
 
     def _needed(self) -> set[str]:
-        """The registers on which the property depends."""
+        """The registers on which the verdict depends and, with `has_activity`, those on which the activity depends."""
         if self.is_reachability:
             assert self.outputs.satisfied is not None
             needed = {self.outputs.satisfied.name}

@@ -30,7 +30,8 @@ from roaml.to_jani.end_of_time import with_end_of_time
 from roaml.to_jani.observer_parts import ObserverParts, free_prefix, next_index, with_observer
 
 _LETTER, _TICK, _END = "__as2fm__letter", "__as2fm__tick", "__as2fm__end"
-"""The actions of an observer: for a step that may change a variable, for a step of the clock, and for its last step."""
+"""The actions of an observer: for a step that may change a variable, for a step of the clock, and for the last step of
+the clock."""
 _SILENT = "__as2fm__step_"
 """The beginning of the names of actions that silent edges get, so that observers can take part in them."""
 _Step: TypeAlias = tuple[str, str]

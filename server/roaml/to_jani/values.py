@@ -214,7 +214,7 @@ class JaniScope(Record, frozen=True):
     """The names that expressions in one place can use.
 
     Attributes:
-        variables: variable of the automaton -> its shape.
+        variables: name of a variable -> its shape.
         event: the name of the event to which `_event.data` refers; "" if there is none.
         params: parameter of this event -> its shape.
     """
@@ -269,7 +269,7 @@ class JaniScope(Record, frozen=True):
         return None
 
     def element(self, expr: Expr) -> Expression | Listed:
-        """An element of an array literal. A negative number in it becomes a negative literal
+        """The JANI form of `expr`, an element of an array literal. A negative number becomes a negative literal
         (docs/spec/jani.md#values)."""
         array = self.array(expr)
         if isinstance(array, Listed):
