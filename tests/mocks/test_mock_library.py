@@ -55,6 +55,18 @@ def test_every_node_with_children_has_a_program() -> None:
     assert with_children <= programs().keys()
 
 
+@pytest.mark.parametrize("parent", ["Sequence", "Fallback", "PipelineSequence", "PersistentSequence"])
+def test_a_leaf_that_is_halted_by_its_own_condition(parent: str) -> None:
+    """`_while` halts a running leaf once; its parent does not halt it again."""
+    ports = (("current_child_idx", "{k}"),) if parent == "PersistentSequence" else ()
+    count = Drawn("Script", (("code", "x += 1"),))
+    leaf = Drawn("Act2", (("_while", "x < 2"), ("_onHalted", "y := 7")))
+    after = Drawn("ScriptCondition", (("code", "y == 7"),))
+    tree = Drawn("ReactiveSequence", (), (count, Drawn(parent, ports, (leaf, Drawn("Act1"))), after))
+    for seed in range(4):
+        compare(tree, seed)
+
+
 def test_an_entry_that_is_only_observed() -> None:
     """The value of the entry is never read, but a node depends on whether it was written."""
     write = Drawn("SetBlackboard", (("value", "{x}"), ("output_key", "y")))

@@ -107,6 +107,9 @@ def observe(tree: MockedTree, seed: int) -> Observed:
                     seen.calls.append((leaves[number], answer))
                     if answer != "RUNNING":
                         seen.outcomes[leaves[number]].append(answer)
+                elif answer == "SKIPPED" and state[number] == "RUNNING":
+                    seen.calls.append((leaves[number], "halt"))  # its own `_while` halts it, so no parent does
+                    state[number] = "IDLE"
                 drawn.discard(number)
                 if answer != "SKIPPED":
                     state[number] = answer
