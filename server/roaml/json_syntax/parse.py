@@ -31,7 +31,7 @@ from roaml.json_syntax.values import (
 from roaml.text import Span, TextEdit
 
 MAX_DEPTH = 1000
-"""The maximum depth of nested brackets; deeper text is not read."""
+"""The maximum depth of nested brackets; a text with deeper brackets is not read further."""
 
 MAX_FINDINGS = 100
 """The maximum number of errors; a text with more is unlikely to be JSON and is not read further."""
@@ -81,7 +81,8 @@ _NO_NUMBERS = {"nan", "infinity", "inf"}
 
 
 class _Key(NamedTuple):
-    """A name whose value has not been read yet. `colon` is false until the colon after the name has been read."""
+    """The name of a member whose value has not been read yet. `quotes` are the lengths of the opening and closing
+    quote. `colon` is false until the colon after the name has been read."""
 
     text: str
     start: int

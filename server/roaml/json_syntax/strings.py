@@ -31,7 +31,7 @@ _SURROGATE = re.compile("[\ud800-\udfff]")
 
 
 class StringProblem(NamedTuple):
-    """A character that is not allowed in a string, with its replacement."""
+    """A character or an escape that is not allowed in a string, with the edit that replaces it."""
 
     message: str
     edit: TextEdit

@@ -18,7 +18,8 @@ PREDEFINED = {"lt": "<", "gt": ">", "amp": "&", "quot": '"', "apos": "'"}
 
 
 def resolve(match: re.Match[str]) -> str:
-    """The text of the matched reference; the reference itself if it is unknown."""
+    """The text of the matched reference; the reference itself if the entity is unknown, or XML does not allow the
+    character."""
     decimal, hexadecimal, name = match.groups()
     if name:
         return PREDEFINED.get(name, match[0])

@@ -6,8 +6,8 @@
   without `>` ends before the next `<`; a missing end tag ends with its parent; a misspelled end tag closes the element
   with the similar name.
 - Reads only the text: document type declarations are skipped, entities are never expanded.
-- Does not recurse, so nesting is limited only by memory (`MAX_DEPTH` is the depth up to which other functions may
-  recurse).
+- Does not recurse. Elements that are nested deeper than `MAX_DEPTH` are left out of the tree, so other functions may
+  recurse over it.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ MAX_FINDINGS = 100
 """The maximum number of errors; a text with more is unlikely to be XML and is not read further."""
 
 _MAX_SKIPPED_DEPTH = 10_000
+"""The maximum number of open elements that are left out of the tree; a text with more is not read further."""
 
 # A tag without errors whose names are ASCII. Other tags are read with the general patterns, which are slower.
 _SPACE = f"[{SPACE}]"
@@ -658,5 +659,5 @@ def resemble(name: str, open_name: str) -> bool:
 
 
 def shown(name: str) -> str:
-    """`name` for a message, shortened to 60 characters."""
+    """`name` for a message, shortened to at most 60 characters."""
     return name if len(name) <= 60 else f"{name[:59]}…"

@@ -55,7 +55,8 @@ class Comment(NamedTuple):
 
 
 class Instruction(NamedTuple):
-    """A processing instruction, XML declaration or document type declaration; nothing in it is interpreted."""
+    """A processing instruction, XML declaration or document type declaration. `value` is the text after `<?` or `<!`,
+    without a closing `?>`."""
 
     value: str
     span: Span
@@ -74,7 +75,7 @@ class Element:
         span: the whole element. If it has no end tag, it ends with its last child.
         open_span: the start tag. If it has no `>`, it ends before the next `<`.
         close_span: the end tag; `None` if the element is self-closing or was never closed.
-        close_name_span: the name in the end tag.
+        close_name_span: the name in the end tag; `None` if there is no end tag.
         self_closing: written as `<a/>`.
         complete: whether the start tag has its `>` and the element is self-closing or has its end tag.
     """
@@ -109,14 +110,14 @@ class Element:
         self.complete = True
 
     def get(self, name: str) -> Attribute | None:
-        """The first attribute with this name."""
+        """The first attribute with this name; `None` if there is none."""
         for attribute in self.attributes:
             if attribute.name == name:
                 return attribute
         return None
 
     def find(self, name: str) -> Element | None:
-        """The first child element with this name."""
+        """The first child element with this local name; `None` if there is none."""
         for child in self.elements:
             if child.name == name:
                 return child
@@ -132,7 +133,7 @@ class Element:
 
     @property
     def content_span(self) -> Span:
-        """The span between the start tag and the end tag."""
+        """The span between the start tag and the end tag, or the end of the element if it has no end tag."""
         return Span(self.open_span.end, self.close_span.start if self.close_span else self.span.end)
 
     def __repr__(self) -> str:
