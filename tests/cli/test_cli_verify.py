@@ -340,6 +340,52 @@ def test_resume(command: Command, tmp_path: Path) -> None:
         assert one["lower"] <= other["lower"] <= other["upper"] <= one["upper"]
 
 
+def test_resume_of_a_property_in_xml(command: Command, tmp_path: Path) -> None:
+    for name, text in COIN_IN_XML.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    fixed = ("verify", "main.xml", "--method", "fixed", "--scheduler", "uniform", "--format", "json")
+    whole = rows(command(*fixed, "--max-traces", 600).out)["tossed"]
+    first = rows(command(*fixed, "--max-traces", 200, "--resume", "state.json").out)["tossed"]
+    again = rows(command(*fixed, "--max-traces", 600, "--resume", "state.json").out)["tossed"]
+    counts = ("traces", "passed", "failed", "undecided", "open_at_end_of_time", "vacuous", "steps", "ends")
+    assert first["traces"] == 200
+    assert [again[count] for count in counts] == [whole[count] for count in counts]
+    assert min(whole["passed"], whole["failed"], whole["open_at_end_of_time"]) > 0
+
+
+COIN_IN_XML = {
+    "main.xml": """<roaml>
+    <parameters><max_time value="5" unit="s" /></parameters>
+    <node_models><input type="node-ascxml" src="coin.ascxml" /></node_models>
+    <properties><input type="xml" src="properties.xml" /></properties>
+</roaml>""",
+    "coin.ascxml": """<ascxml name="Coin" version="1.0" initial="toss">
+    <ros_time_rate name="second" rate_hz="1" />
+    <ros_topic_publisher name="heads" topic="/heads" type="std_msgs/Empty" />
+    <ros_topic_publisher name="tails" topic="/tails" type="std_msgs/Empty" />
+    <state id="toss">
+        <ros_rate_callback name="second">
+            <target id="toss" prob="0.4"><ros_topic_publish name="heads" /></target>
+            <target id="toss"><ros_topic_publish name="tails" /></target>
+        </ros_rate_callback>
+    </state>
+</ascxml>""",
+    "properties.xml": """<properties>
+    <ports>
+        <ros_topic topic_name="/heads" type="std_msgs/Empty" event="publish"><event_var id="heads" /></ros_topic>
+        <ros_topic topic_name="/tails" type="std_msgs/Empty" event="publish"><event_var id="tails" /></ros_topic>
+    </ports>
+    <guarantees>
+        <property id="tossed" pattern="response">
+            <events><event>tails</event><event>heads</event></events>
+            <scope type="globally" />
+            <time_interval time="3" time_unit="s" />
+        </property>
+    </guarantees>
+</properties>""",
+}
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [

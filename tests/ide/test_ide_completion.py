@@ -116,6 +116,13 @@ state  <‸
     ros_action_handle_goal
     no assign
 
+state  <ros_action_handle_cancel‸
+    ros_action_handle_cancel_goal => ros_action_handle_cancel_goal name="$1" target="${2|start,stop|}">\\n\\t$0\\n…
+
+callback  <ros_action_cancel‸
+    ros_action_cancel_goal => ros_action_cancel_goal name="$1"/>$0
+    ros_action_canceled => ros_action_canceled name="$1" goal_id="$2"…
+
 state  <tr‸ansition target="start"/>
     transition => transition
 

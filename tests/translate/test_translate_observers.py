@@ -170,6 +170,9 @@ def test_the_same_traces_satisfy_both(name: str) -> None:
         for answer in (one.answer, other.answer)
     ]
     assert verdicts[0] == verdicts[1]
+    counts = [(tally.traces, tally.successes, tally.undecided) for tally in (one.answer.tally, other.answer.tally)]
+    assert counts[0] == counts[1]
+    assert (one.answer.value, one.answer.bounds) == (other.answer.value, other.answer.bounds)
     assert 0 < one.answer.tally.successes < 300
 
 
