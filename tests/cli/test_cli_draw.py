@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from pathlib import Path
 
@@ -119,3 +120,12 @@ def test_mocks_that_cannot_be_drawn(robot: Path, capsys: pytest.CaptureFixture[s
     ):
         assert run(["draw", *arguments, "-o", "-"]) == 2
         assert message in capsys.readouterr().err
+
+
+def test_the_page_shows_what_is_printed(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    page = (EXAMPLES.parent / "docs/pictures.md").read_text(encoding="utf-8")
+    ((command, shown),) = re.findall(r"^\$ as2fm-lsp (.*)\n(.*\n)```$", page, re.MULTILINE)
+    Path("examples").mkdir()
+    robot.rename("examples/assembly_robot")
+    assert run(command.split()) == 0
+    assert shown in "".join(capsys.readouterr())
