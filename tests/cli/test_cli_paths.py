@@ -321,7 +321,7 @@ def test_a_large_file_has_one_clear_diagnostic(check: Command, tmp_path: Path) -
     (tmp_path / "clock.ascxml").write_text(clock.WRONG_CLOCK + padding)
     done = check("clock.ascxml")
     assert done.found == [("clock.ascxml", 1, "file-too-large")]
-    assert "2 MB" in done.rows[0]["message"]
+    assert "the limit is 2,000,000" in done.rows[0]["message"]
     done = check("main.xml", "--severity", "warning")
     assert done.found == [
         ("main.xml", 6, "missing-file"),

@@ -374,7 +374,7 @@ def test_silent_steps_are_observed(tmp_path: Path) -> None:
 def test_variables_that_cannot_be_observed(tmp_path: Path) -> None:
     """A transient variable changes without an assignment."""
     path = written(tmp_path, NO_RETURN, **{"initial-value": 0, "transient": True})
-    assert "initial values and are not transient" in api.verifier(api.target(path)).checker.refused["p"].message
+    assert "have initial values and none is transient" in api.verifier(api.target(path)).checker.refused["p"].message
 
 
 REWARD = {"exp": 1, "accumulate": ["steps"], "bounds": {"upper": 2}}

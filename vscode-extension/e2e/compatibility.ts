@@ -70,6 +70,26 @@ export function compatibility(stage: Stage): void {
         await window.running();
     });
 
+    const tree = () => {
+        const folder = path.join(temporaryFolder("tree"), "tree");
+        write(path.join(folder, "package.xml"), '<package format="3"><name>trees</name></package>');
+        const nodes = "<Sequence><Inverter /></Sequence>";
+        const text = `<root BTCPP_format="4"><BehaviorTree ID="Main">${nodes}</BehaviorTree></root>`;
+        write(path.join(folder, "navigate.xml"), text);
+        return folder;
+    };
+
+    stage.test("a behavior tree without a system is checked once it is opened", tree, async (window) => {
+        await window.openFile("package.xml");
+        await window.run("View: Focus Problems");
+        await window.page.locator(".markers-panel", { hasText: "No problems" }).waitFor();
+        assert.equal(await window.statusItem("AS2FM").count(), 0);
+        await window.openFile("navigate.xml");
+        await window.running();
+        const rows = window.page.locator(".markers-panel .monaco-list-row");
+        await rows.filter({ hasText: "`Inverter` needs one child and has none" }).first().waitFor();
+    });
+
     stage.test(
         "no diagnostic is duplicated, and the schemas are offered to the XML extension",
         illFormed,

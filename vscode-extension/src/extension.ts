@@ -20,7 +20,7 @@ import { PropertyTests } from "./editor/tests";
 import { PictureActions } from "./editor/pictureActions";
 import { PictureActivity } from "./editor/pictureActivity";
 import { TimelineView } from "./editor/timeline";
-import { modelsExist } from "./editor/activation";
+import { Activation } from "./editor/activation";
 import { offerSchemas } from "./editor/xmlExtension";
 
 let server: LanguageServer | undefined;
@@ -43,10 +43,12 @@ export function activate(context: vscode.ExtensionContext): void {
     const debugging = new Debugging(server, documents);
     const tests = new PropertyTests(server, debugging, log);
     const sessions = new DebugSessions();
+    const activation = new Activation();
     const counterexamples = new Counterexamples(server, pictures);
     context.subscriptions.push(
         log,
         server,
+        activation,
         status,
         documents,
         plain,
@@ -66,18 +68,19 @@ export function activate(context: vscode.ExtensionContext): void {
         status.show(state);
     });
     const shown = { plain, jani, pictures, tests, counterexamples, debugging };
-    registerCommands({ context, log, server, status, documents, tasks, ...shown });
+    registerCommands({ context, log, server, activation, status, documents, tasks, ...shown });
     context.subscriptions.push(vscode.tasks.registerTaskProvider(Tasks.type, tasks));
     watchSettings(context, server, log);
-    void start(context, server, log);
+    void start(context, server, activation, log);
 }
 
 async function start(
     context: vscode.ExtensionContext,
     server: LanguageServer,
+    activation: Activation,
     log: vscode.LogOutputChannel,
 ): Promise<void> {
-    await modelsExist(context.subscriptions);
+    await activation.needed();
     await Promise.all([server.open(), offerSchemas(context, log)]);
 }
 

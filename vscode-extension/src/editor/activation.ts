@@ -3,33 +3,71 @@
  * Decides whether the workspace contains models, so that the server is needed.
  *
  * A system file is usually called `main.xml`. VS Code finds a file by its name much faster than by its extension, so
- * only this name activates the extension. Other projects may have such a file, too: there, the server is not started.
+ * systems are found by this name. A behavior tree without a system is an XML file with any name: it is a model once it
+ * is opened. Other projects have XML files, too: there, the server is not started.
  */
 
 import * as vscode from "vscode";
 
 const SYSTEM_FILE = "main.xml";
 const SYSTEM = /<(roaml|convince_mc_tc)\b/;
+const TREE = /<(root\b[^<]*\bBTCPP_format|BehaviorTree\b|TreeNodesModel\b)/;
 const LANGUAGES = new Set(["ascxml", "scxml", "jani"]);
+const MAX_LINES_TO_ROOT = 200;
 
-/** Resolves as soon as a model exists or is opened; immediately if the extension was activated for another reason. */
-export async function modelsExist(subscriptions: { dispose(): unknown }[]): Promise<void> {
-    const { textDocuments, workspaceFolders = [] } = vscode.workspace;
-    const texts = await Promise.all(workspaceFolders.map(({ uri }) => systemFile(uri)));
-    const named = texts.filter((text) => text !== undefined);
-    if (named.length === 0 || named.some((text) => SYSTEM.test(text)) || textDocuments.some(isModel)) return;
-    const machines = await vscode.workspace.findFiles("**/*.{ascxml,scxml}", undefined, 1);
-    if (machines.length > 0) return;
-    await new Promise<void>((resolve) => {
-        const opened = vscode.workspace.onDidOpenTextDocument((document) => {
-            if (isModel(document)) resolve();
+export class Activation implements vscode.Disposable {
+    private readonly needs = new vscode.EventEmitter<void>();
+
+    dispose(): void {
+        this.needs.dispose();
+    }
+
+    /** Report that the server is needed for another reason than a model, for example for a command. */
+    need(): void {
+        this.needs.fire();
+    }
+
+    /** Resolves as soon as a model exists or is opened, or the server is needed for another reason. */
+    async needed(): Promise<void> {
+        const need = this.firstNeed();
+        const { textDocuments, workspaceFolders = [] } = vscode.workspace;
+        const texts = await Promise.all(workspaceFolders.map(({ uri }) => systemFile(uri)));
+        const named = texts.filter((text) => text !== undefined);
+        if (named.some((text) => SYSTEM.test(text)) || textDocuments.some(isModel)) return;
+        // Without any XML, the extension was activated by a machine, a command or the debugger.
+        if (named.length === 0 && !textDocuments.some(isXml)) return;
+        const models = await vscode.workspace.findFiles("**/*.{ascxml,scxml,btproj}", undefined, 1);
+        if (models.length === 0) await need;
+    }
+
+    /** Resolves at the first need, or when the first model is opened. */
+    private firstNeed(): Promise<void> {
+        return new Promise((resolve) => {
+            const subscriptions = [
+                this.needs.event(end),
+                vscode.workspace.onDidOpenTextDocument((document) => {
+                    if (isModel(document)) end();
+                }),
+            ];
+            function end(): void {
+                for (const subscription of subscriptions) subscription.dispose();
+                resolve();
+            }
         });
-        subscriptions.push(opened);
-    });
+    }
 }
 
-function isModel({ languageId }: vscode.TextDocument): boolean {
-    return LANGUAGES.has(languageId);
+function isModel(document: vscode.TextDocument): boolean {
+    if (LANGUAGES.has(document.languageId)) return true;
+    return isXml(document) && isModelText(document.getText(new vscode.Range(0, 0, MAX_LINES_TO_ROOT, 0)));
+}
+
+function isModelText(text: string): boolean {
+    return SYSTEM.test(text) || TREE.test(text);
+}
+
+function isXml({ languageId }: vscode.TextDocument): boolean {
+    return languageId === "xml";
 }
 
 async function systemFile(folder: vscode.Uri): Promise<string | undefined> {

@@ -5,6 +5,7 @@ import { migrate, TRANSLATE } from "../protocol";
 import { thisHost } from "../server/host";
 import { pythons } from "../server/python";
 import { DEBUG_COUNTEREXAMPLE, SET_EXPECTATION, SHOW_COUNTEREXAMPLE, SHOW_REFERENCES, SHOW_WITNESS } from "./client";
+import type { Activation } from "./activation";
 import type { Counterexamples } from "./counterexamples";
 import type { Debugging, Trace } from "./debugging";
 import type { Documents } from "./documents";
@@ -25,6 +26,7 @@ export interface Parts {
     readonly context: vscode.ExtensionContext;
     readonly log: vscode.LogOutputChannel;
     readonly server: LanguageServer;
+    readonly activation: Activation;
     readonly status: StatusItem;
     readonly documents: Documents;
     readonly tasks: Tasks;
@@ -105,7 +107,11 @@ export function registerCommands(parts: Parts): void {
         ),
     );
     for (const [name, run] of Object.entries(commands)) {
-        context.subscriptions.push(vscode.commands.registerCommand(`as2fm.${name}`, run));
+        const command = () => {
+            parts.activation.need();
+            return run();
+        };
+        context.subscriptions.push(vscode.commands.registerCommand(`as2fm.${name}`, command));
     }
 }
 
