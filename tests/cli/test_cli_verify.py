@@ -727,7 +727,7 @@ def test_deep_expressions(command: Command, tmp_path: Path) -> None:
         (("--seed", "-1"), "from 0"),
         (
             ("--method", "sprt"),
-            "a sequential test needs a probability that is compared with a number; set an expectation for `heads`",
+            "but `heads` has no expectation; set one (--expect)",
         ),
         (("--explain", "story.doc"), "does not end in"),
         (("--dask", "tcp://127.0.0.1:9"), "there is no Dask scheduler"),

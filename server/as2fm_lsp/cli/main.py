@@ -24,14 +24,14 @@ from roaml.suggest import close_names, did_you_mean, listing
 COMMANDS = {
     "check": "report what is wrong in systems, other files and folders",
     "explain": "print the document of a rule",
-    "serve": "serve an editor: the language server",
+    "serve": "run the language server for an editor",
     "format": "format files",
     "migrate": "migrate systems to the current dialect",
     "translate": "translate a system to JANI and plain SCXML",
     "verify": "compute or estimate the probabilities of properties",
     "draw": "draw a state machine, a tree or a ROS graph",
     "simulate": "run a system step by step",
-    "debug": "serve a debugger: the debug adapter",
+    "debug": "run the debug adapter for an editor",
     "init": "write a small working system",
 }
 """Each command with its description. It is implemented by the function `run` of the module of the same name in

@@ -222,7 +222,7 @@ class _Verification:
         try:
             results = verifier.answer_together(properties, pool, tallies, watch, bar.pulse)
         except NoThresholdError as error:
-            raise UsageError(f"{error}; use --expect") from None
+            raise UsageError(str(error)) from None
         except KeyboardInterrupt:
             seconds = time.monotonic() - began
             results = [verifier.interrupted(e, tally, seconds) for e, tally in zip(properties, tallies, strict=True)]
@@ -255,7 +255,7 @@ class _Verification:
         try:
             self.verifier.check_method(property_)
         except NoThresholdError as error:
-            raise UsageError(f"{error}; use --expect") from None
+            raise UsageError(str(error)) from None
         tally = Tally()
         payload = self.verifier.checker.payload(property_)
         if self.state is not None:

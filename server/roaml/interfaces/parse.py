@@ -26,8 +26,8 @@ from roaml.record import Record, field, replace
 from roaml.text import Span
 
 MAX_LENGTH = 1_000_000
-"""The maximum number of characters that are read; a line that exceeds the limit is not read. Real definitions are a
-hundred times shorter."""
+"""The maximum number of characters of a definition that are read. The line that crosses this limit and all lines after
+it are not read. Real definitions are a hundred times shorter."""
 
 _LINE = re.compile(r"([^\r\n]*)(?:\r\n|\r|\n|\Z)")
 _NAME = re.compile(r"[^ \t#=]+")

@@ -362,10 +362,16 @@ class Verifier(Record, frozen=True):
             NoThresholdError: the property is a reward, or is not compared with a number.
         """
         question = property_.question
-        if self.options.method is EstimationMethod.SPRT and (question.threshold is None or question.is_reward):
+        if self.options.method is not EstimationMethod.SPRT:
+            return
+        if question.is_reward:
             raise NoThresholdError(
-                f"a sequential test needs a probability that is compared with a number; set an expectation for "
-                f"`{question.name}`, or use another method"
+                f"a sequential test needs a probability, but `{question.name}` is a reward; use another method"
+            )
+        if question.threshold is None:
+            raise NoThresholdError(
+                f"a sequential test compares a probability with a number, but `{question.name}` has no expectation; "
+                "set one (--expect), or use another method"
             )
 
     def interrupted(self, property_: CompiledProperty, tally: Tally, seconds: float) -> Result:

@@ -96,8 +96,8 @@ def _fixes(context: MachineContext, step: BehaviorStep, fault: Fault, statement:
 
 
 def _constants(context: MachineContext) -> Iterator[Finding]:
-    """Report constants as `goal_id`. A constant is the id of the goals of one client (docs/spec/ros.md#goal-ids),
-    whichever client sent the goal."""
+    """Report each constant `goal_id` that cannot be the id of all goals of the action: it is the id of no client, or of
+    only one of several clients (docs/spec/ros.md#goal-ids)."""
     if context.system is None:
         return
     for declaration, _, channel in declared(context, SymbolKind.ACTION_SERVER):

@@ -83,9 +83,7 @@ def _unknown(context: TreeContext, forest: Forest, node: TreeNode, name: str) ->
         return
     foreign = CPP.foreign.get(name)
     if foreign is not None and _has_children_of(node, CPP.nodes[foreign]):
-        message = (
-            f"BehaviorTree.CPP has no node `{name}`; the node of this name in other libraries is called `{foreign}`"
-        )
+        message = f"BehaviorTree.CPP has no node `{name}`; the node that other libraries call `{name}` is `{foreign}`"
         # With another name, the node may lack ports, so the user decides.
         yield RULE.at(node.plugin.span, message, replace(_renaming(node, foreign), preferred=False))
         return
