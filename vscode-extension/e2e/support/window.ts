@@ -35,11 +35,22 @@ export class Window {
         await this.editor.locator(".view-line").first().waitFor();
     }
 
-    /** Runs a command by its title in the palette. */
+    /**
+     * Runs a command by its title in the palette. The palette lists the commands that are enabled when it opens, so it
+     * is opened again until the command is enabled, for example after the server has classified the file.
+     */
     async run(title: string): Promise<void> {
-        await this.page.keyboard.press("F1");
-        await this.page.locator(".quick-input-widget input").fill(`>${title}`);
-        await this.page.locator(`.quick-input-list .focused[aria-label^="${title}"]`).first().waitFor();
+        const row = this.page.locator(`.quick-input-list .focused[aria-label^="${title}"]`).first();
+        await this.until(async () => {
+            await this.page.keyboard.press("F1");
+            await this.page.locator(".quick-input-widget input").fill(`>${title}`);
+            const isListed = await row.waitFor({ timeout: REOPENING_MS }).then(
+                () => true,
+                () => false,
+            );
+            if (!isListed) await this.page.keyboard.press("Escape");
+            return isListed;
+        });
         await this.page.keyboard.press("Enter");
     }
 
@@ -177,6 +188,9 @@ export interface Clip {
 
 /** The time limit for all waits, in ms. It only prevents an endless wait; creating an environment may take minutes. */
 export const TIMEOUT_MS = 300_000;
+
+/** The time after which the palette is opened again if it does not list a command. */
+const REOPENING_MS = 20_000;
 
 /** A text with the spaces that the editor draws. */
 function plain(text: string): string {
