@@ -119,7 +119,7 @@ BLACKBOARD_REQUEST = "bt_blackboard_req"
 BLACKBOARD_ANSWER = "bt_blackboard_get"
 BLACKBOARD_WRITE_PREFIX = "bt_blackboard_set_"
 _TREE_EVENT = re.compile(r"bt_(\d+)(?:_inner\d*)?_(tick|response|halt|halt_response)")
-OBSERVER_SUFFIX = "__observer"
+_OBSERVER_SUFFIX = "__observer"
 """The end of the name of the automaton that observes a property in XML (docs/spec/jani.md#observers)."""
 STATUSES = {"SUCCESS": 1, "FAILURE": 2, "RUNNING": 3}
 """The statuses of a tree node and their numbers (docs/spec/plugins.md#status)."""
@@ -354,6 +354,20 @@ def observer_variable(prefix: str, ending: str) -> str:
     return f"{prefix}__{ending}"
 
 
+def observer_automaton(prefix: str) -> str:
+    """The name of the automaton of an observer whose variables have the prefix `prefix`."""
+    return f"{prefix}{_OBSERVER_SUFFIX}"
+
+
+def is_observer(automaton: str) -> bool:
+    return automaton.endswith(_OBSERVER_SUFFIX)
+
+
+def prefix_of_observer(automaton: str) -> str:
+    """The prefix of the variables of an observer, from the name of its automaton; "" for other automata."""
+    return automaton.removesuffix(_OBSERVER_SUFFIX) if is_observer(automaton) else ""
+
+
 def observer_prefix(variable: str, *endings: str) -> str:
     """The prefix of the observer to which `variable` belongs; "" if the name does not end in one of `endings`."""
     prefix, _, ending = variable.rpartition("__")
@@ -373,7 +387,7 @@ def is_length(variable: str) -> bool:
 _LENGTH = re.compile(r"\.d[0-9]+_len\Z")
 
 
-def safe_name(automaton: str) -> str:
-    """The name of an automaton as a part of an event name: characters other than letters, digits, `_`, `.` and `-` are
-    replaced by `_`."""
-    return re.sub(r"[^A-Za-z0-9_.-]", "_", automaton)
+def safe_name(name: str) -> str:
+    """The name of an automaton as a part of the name of an event, or the name of a property as a part of the names of
+    its observer: characters other than letters, digits, `_`, `.` and `-` are replaced by `_`."""
+    return re.sub(r"[^A-Za-z0-9_.-]", "_", name)

@@ -15,10 +15,10 @@ from roaml.scxml.names import (
     BLACKBOARD,
     CLOCK,
     NODE_AUTOMATON,
-    OBSERVER_SUFFIX,
     SERVICE_HANDLER_PREFIX,
     TreeEventKind,
     is_length,
+    is_observer,
     is_timer,
     read_tree_event,
     received_by,
@@ -123,7 +123,7 @@ class Timeline:
         machines = [
             instance
             for instance, name in enumerate(self._automata)
-            if session.is_machine(instance) and not name.endswith(OBSERVER_SUFFIX)
+            if session.is_machine(instance) and not is_observer(name)
         ]
         nodes = {i: match for i, name in enumerate(self._automata) if (match := NODE_AUTOMATON.fullmatch(name))}
         self._machines = frozenset(machines) - nodes.keys()

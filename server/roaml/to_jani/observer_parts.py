@@ -8,7 +8,6 @@ sending of an event.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping
 
 from roaml.jani import expressions as jani
@@ -35,7 +34,7 @@ from roaml.observers.build import begin, observer_of
 from roaml.observers.program import Observer, simplified
 from roaml.observers.properties import Pattern, PatternProperty, Property, ScopeKind
 from roaml.record import replace
-from roaml.scxml.names import ASKED, OBSERVER_SUFFIX, OPEN, OPENED, PENDING, observer_variable
+from roaml.scxml.names import ASKED, OPEN, OPENED, PENDING, observer_automaton, observer_variable, safe_name
 
 _OBSERVING = "observing"
 """The only location of an observer."""
@@ -62,7 +61,7 @@ def free_prefix(property_: str, model: Model) -> str:
     """A prefix for the names of an observer, derived from the name of its property. No name of an automaton or variable
     in the model begins with it."""
     names = [*(automaton.name for automaton in model.automata), *(variable.name for variable in model.variables)]
-    prefix = re.sub(r"[^A-Za-z0-9_.-]", "_", property_)
+    prefix = safe_name(property_)
     while any(name == prefix or name.startswith((f"{prefix}__", f"{prefix}.")) for name in names):
         prefix += "_"
     return prefix
@@ -85,7 +84,7 @@ def with_observer(
         syncs: all synchronisations of the new model.
     """
     automaton = Automaton(
-        f"{prefix}{OBSERVER_SUFFIX}",
+        observer_automaton(prefix),
         (Location(_OBSERVING, origin=origin),),
         (_OBSERVING,),
         tuple(_edge(action, assignments, origin) for action, assignments in edges.items()),

@@ -13,14 +13,15 @@ from roaml.scxml.names import (
     ACTION_HANDLER_PREFIX,
     CONDITIONS_PREFIX,
     NODE_AUTOMATON,
-    OBSERVER_SUFFIX,
     SERVICE_HANDLER_PREFIX,
     TIMER_PREFIX,
     TREE_ROOT_PREFIX,
     TreeEventKind,
     automaton_role,
     client_of,
+    is_observer,
     is_timer,
+    prefix_of_observer,
     read_tree_event,
     safe_name,
 )
@@ -75,8 +76,8 @@ def _observers(model: Model) -> Iterator[tuple[str, str]]:
     """The observers of properties. The observer of an assumption, to which no property belongs, has its name."""
     properties = {property_.origin: property_.name for property_ in reversed(model.properties)}
     for automaton in model.automata:
-        if automaton.name.endswith(OBSERVER_SUFFIX) and (automaton.origin in properties or is_translation(model)):
-            own = automaton.name.removesuffix(OBSERVER_SUFFIX)
+        if is_observer(automaton.name) and (automaton.origin in properties or is_translation(model)):
+            own = prefix_of_observer(automaton.name)
             observed = own if automaton.origin is None else properties.get(automaton.origin, own)
             yield automaton.name, f"what the property `{observed}` observes"
 
@@ -85,7 +86,7 @@ def _parts(model: Model) -> Iterator[tuple[str, str]]:
     names = [automaton.name for automaton in model.automata]
     for automaton in model.automata:
         name = automaton.name
-        if name.endswith(OBSERVER_SUFFIX):
+        if is_observer(name):
             continue
         if is_event(automaton):
             yield name, event_subject(name, names)

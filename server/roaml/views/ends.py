@@ -16,7 +16,6 @@ from roaml.jani.properties import identifiers
 from roaml.scxml.names import (
     ASKED,
     CLOCK,
-    OBSERVER_SUFFIX,
     OPEN,
     OPENED,
     PENDING,
@@ -28,6 +27,7 @@ from roaml.scxml.names import (
     VIOLATED,
     WAITING,
     named,
+    observer_automaton,
     observer_prefix,
     observer_variable,
     on_send,
@@ -72,7 +72,7 @@ def observer_outputs(model: Model) -> Mapping[str, ObserverOutputs]:
     for property_ in model.properties:
         read = [name for name, _ in identifiers(property_.expression)]
         prefixes = [observer_prefix(name, VIOLATED, SATISFIED) for name in read]
-        prefixes = [prefix for prefix in prefixes if f"{prefix}{OBSERVER_SUFFIX}" in observers]
+        prefixes = [prefix for prefix in prefixes if observer_automaton(prefix) in observers]
         if not prefixes:
             continue
         own = prefixes[0]  # the other observers belong to its assumptions

@@ -4,34 +4,30 @@ property."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterator, Sequence
 
 from roaml.scxml.names import (
     CLOCK_ACTION,
-    OBSERVER_SUFFIX,
     OPEN,
     PENDING,
     SATISFIED,
     TIME_OVER_ACTION,
     VIOLATED,
+    observer_automaton,
     observer_prefix,
+    prefix_of_observer,
+    safe_name,
     sent_by,
 )
 from roaml.smc.record import VariableChange
 from roaml.views.actors import event_subject
 
-_UNSAFE = re.compile(r"[^A-Za-z0-9_.-]")
 _BECOMES_TRUE = {
     VIOLATED: "the property is violated",
     SATISFIED: "the property is satisfied",
     OPEN: "the time ends before the deadline of the property",
     PENDING: "the property requires an event from now on",
 }
-
-
-def is_observer(automaton: str) -> bool:
-    return automaton.endswith(OBSERVER_SUFFIX)
 
 
 def observed_property(observer: str, property_: str) -> str:
@@ -41,8 +37,8 @@ def observed_property(observer: str, property_: str) -> str:
         property_: the name of the property for which a trace is explained. Its observer has this name with `_` instead
             of some characters; the other observers have the names of assumptions.
     """
-    prefix = observer.removesuffix(OBSERVER_SUFFIX)
-    return property_ if prefix.rstrip("_") == _UNSAFE.sub("_", property_).rstrip("_") else prefix
+    prefix = prefix_of_observer(observer)
+    return property_ if prefix.rstrip("_") == safe_name(property_).rstrip("_") else prefix
 
 
 def observation(action: str | None, automata: Collection[str]) -> str:
@@ -74,4 +70,4 @@ def _ending(change: VariableChange) -> str:
 def reads_observer(variable: str, automata: Collection[str]) -> bool:
     """Whether a variable of the model belongs to an observer."""
     prefix = observer_prefix(variable, VIOLATED, SATISFIED, PENDING, OPEN)
-    return bool(prefix) and f"{prefix}{OBSERVER_SUFFIX}" in automata
+    return bool(prefix) and observer_automaton(prefix) in automata

@@ -16,12 +16,19 @@ from roaml.jani.node import Origin
 from roaml.record import Record, field
 from roaml.scxml.names import (
     NODE_AUTOMATON,
-    OBSERVER_SUFFIX,
+    OPEN,
+    PENDING,
+    SATISFIED,
     STATUSES,
+    VIOLATED,
     TreeEventKind,
     is_generated,
     is_length,
+    is_observer,
     is_timer,
+    observer_automaton,
+    observer_prefix,
+    prefix_of_observer,
     read_tree_event,
     received_by,
     sent_by,
@@ -31,7 +38,7 @@ from roaml.smc.story import Story
 from roaml.views.actors import actor
 from roaml.views.event_words import event_phrase, goal_phrases
 from roaml.views.events import EventReader
-from roaml.views.observed import effects, is_observer, observation, observed_property
+from roaml.views.observed import effects, observation, observed_property
 
 _ENDS = ("SUCCESS", "FAILURE")
 
@@ -168,7 +175,8 @@ def turns(story: Story) -> list[Turn]:
     reader = _Reader(story)
     for index in range(len(story.steps)):
         reader.read(index)
-    own = {f"{variable.rpartition('__')[0]}{OBSERVER_SUFFIX}" for variable in story.variables}
+    prefixes = (observer_prefix(variable, VIOLATED, SATISFIED, PENDING, OPEN) for variable in story.variables)
+    own = {observer_automaton(prefix) for prefix in prefixes if prefix}
     return [turn for turn in reader.turns if _is_shown(turn, reader.inner, own)]
 
 
@@ -206,7 +214,7 @@ class _Reader:
         self._relevant = frozenset(story.relevant)
         self._automata = frozenset(automaton.name for automaton in story.automata)
         observers = filter(is_observer, self._automata)
-        self._observer_prefixes = tuple(f"{name.removesuffix(OBSERVER_SUFFIX)}__" for name in observers)
+        self._observer_prefixes = tuple(f"{prefix_of_observer(name)}__" for name in observers)
         self._events = EventReader(story.automata, story.start)
         self.inner = frozenset(n for n, automaton in enumerate(story.automata) if is_inner(automaton))
         self._known_phrases: dict[int, Mapping[str, str]] = {}
@@ -263,7 +271,7 @@ class _Reader:
         """The changes of the variables of an automaton, and of variables of the model that do not belong to an event.
         A change of a variable of the model is included once: at the observer to which the variable belongs, or at the
         last automaton that takes part and is not an observer."""
-        own = f"{part.automaton.removesuffix(OBSERVER_SUFFIX)}__" if is_observer(part.automaton) else ""
+        own = f"{prefix_of_observer(part.automaton)}__" if is_observer(part.automaton) else ""
         for change in step.changes:
             instance, name = change.variable
             is_lasting = instance < 0 and (name.startswith(own) if own else is_last and not self._is_others(name))
