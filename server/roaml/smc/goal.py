@@ -330,7 +330,7 @@ class _Writer:
         match formula:
             case UnaryPath(operator=operator, operand=operand):
                 lower, upper = self.bounds(formula)
-                within, reached = self.sum_conditions(formula)
+                within, reached = conditions_of(formula, self.sums, self.limit)
                 match operator:
                     case UnaryPathOperator.FINALLY:
                         self.until(self.all(within), self.condition(operand, reached), lower, upper)
@@ -341,7 +341,7 @@ class _Writer:
                         self.until(TRUE, self.condition(operand, reached), 1, 1)
             case BinaryPath(operator=operator, left=left, right=right):
                 lower, upper = self.bounds(formula)
-                within, reached = self.sum_conditions(formula)
+                within, reached = conditions_of(formula, self.sums, self.limit)
                 match operator:
                     case BinaryPathOperator.UNTIL:
                         self.until(self.condition(left, within), self.condition(right, reached), lower, upper)
@@ -396,11 +396,6 @@ class _Writer:
         """Record the variables that the conditions of the last `U` operator read."""
         self.read.append(self.unread)
         self.unread = set()
-
-    def sum_conditions(self, path: PathBounds) -> tuple[tuple[Expression, ...], tuple[Expression, ...]]:
-        """That all accumulated rewards are within their upper bounds, and that they are within all bounds."""
-        conditions = conditions_of(path, self.sums, self.limit)
-        return conditions.within, conditions.reached
 
     def storage(self, name: str) -> Storage:
         storage = self.names.values[name]

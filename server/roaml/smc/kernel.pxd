@@ -114,8 +114,9 @@ cdef class Kernel:
     cdef int _can_change(self) noexcept
     @cython.locals(slot=int, pick=int, edge=int, way=int, changes=int)
     cdef int _changes_from(self, int vector, int at) noexcept
-    @cython.locals(i=int)
     cdef int _changes_variables(self, int vector) noexcept
+    @cython.locals(i=int)
+    cdef void _store(self) noexcept
     @cython.locals(i=int, changed=int)
     cdef int _restored(self) noexcept
     @cython.locals(register=int)

@@ -913,12 +913,16 @@ class Kernel:
 
     def _changes_variables(self, vector: int) -> int:
         """Whether the step that the parts describe, which changes no location, changes a variable."""
+        self._store()
+        self._execute_ways(vector)
+        return self._restored()
+
+    def _store(self) -> None:
+        """Store the variables, for `_restored`."""
         for i in range(self.int_count):
             self.ints_before[i] = self.ints[i]
         for i in range(self.real_count):
             self.reals_before[i] = self.reals[i]
-        self._execute_ways(vector)
-        return self._restored()
 
     def _restored(self) -> int:
         """Restore the variables; return whether one of them had changed, or an operation was undefined."""
@@ -951,10 +955,7 @@ class Kernel:
             return 1
         if self.way_code[way] < 0:
             return 0
-        for i in range(self.int_count):
-            self.ints_before[i] = self.ints[i]
-        for i in range(self.real_count):
-            self.reals_before[i] = self.reals[i]
+        self._store()
         self._execute(self.way_code[way])
         if self.settle >= 0:
             self._execute(self.settle)

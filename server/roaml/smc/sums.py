@@ -9,13 +9,14 @@ each step; only the goal of its property does so, so the variable is constant fo
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from typing import NamedTuple
 
 from roaml.jani.expressions import Binary, Expression, Name, Real
 from roaml.jani.model import Model, Variable
 from roaml.jani.operators import BinaryOperator
 from roaml.jani.properties import BinaryPath, Interval, PathBounds, Property, RewardBound, UnaryPath, walk
 from roaml.jani.types import REAL
-from roaml.record import Record, replace
+from roaml.record import replace
 
 
 def sum_names(property_: Property) -> dict[RewardBound, str]:
@@ -38,7 +39,7 @@ def with_sums(model: Model, properties: Iterable[Property]) -> Model:
     return replace(model, variables=(*model.variables, *variables))
 
 
-class SumConditions(Record, frozen=True):
+class SumConditions(NamedTuple):
     """The conditions on sums that the bounds of a path operator require.
 
     Attributes:
