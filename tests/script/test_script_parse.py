@@ -5,48 +5,14 @@ from __future__ import annotations
 
 import pytest
 
+from bracketed_script import with_brackets
 from roaml.script.infer import Type, check_condition, check_types, statements_without_effect
 from roaml.script.parse import parse
 from roaml.script.tree import (
     Assignment,
-    Binary,
-    Boolean,
-    Comparison,
-    Conditional,
     ErrorExpr,
-    Expr,
-    Name,
-    Number,
-    String,
-    Unary,
 )
 from roaml.text import Decoded
-
-
-def shown(expr: Expr) -> str:
-    """An expression with all its parentheses."""
-    match expr:
-        case Number(value=value):
-            return repr(value)
-        case Boolean(value=value):
-            return str(value).lower()
-        case String(value=value):
-            return f"'{value}'"
-        case Name(name=name):
-            return name
-        case Unary(operator=operator, operand=operand):
-            return f"({operator}{shown(operand)})"
-        case Binary(operator=operator, left=left, right=right):
-            return f"({shown(left)} {operator} {shown(right)})"
-        case Comparison(operators=operators, operands=operands):
-            rest = (f" {op} {shown(node)}" for op, node in zip(operators, operands[1:], strict=True))
-            return f"({shown(operands[0])}{''.join(rest)})"
-        case Conditional(test=test, yes=yes, no=no):
-            return f"({shown(test)} ? {shown(yes)} : {shown(no)})"
-        case Assignment(operator=operator, target=target, value=value):
-            return f"({target.name} {operator} {shown(value)})"
-        case ErrorExpr():
-            return "error"
 
 
 @pytest.mark.parametrize(
@@ -73,7 +39,7 @@ def shown(expr: Expr) -> str:
 )
 def test_precedence(text: str, tree: str) -> None:
     script, problems = parse(Decoded(text, 0))
-    assert [shown(statement) for statement in script.statements] == [tree]
+    assert [with_brackets(statement) for statement in script.statements] == [tree]
     assert problems == ()
 
 

@@ -15,48 +15,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from bracketed_script import with_brackets
 from examples import TIMES, examples
 from roaml.script.parse import ScriptGrammar, parse
-from roaml.script.tree import (
-    Assignment,
-    Binary,
-    Boolean,
-    Comparison,
-    Conditional,
-    ErrorExpr,
-    Expr,
-    Name,
-    Number,
-    String,
-    Unary,
-)
 from roaml.text import Decoded
-
-
-def with_brackets(expr: Expr) -> str:
-    """An expression with brackets around each of its parts."""
-    match expr:
-        case Number(value=value):
-            return str(value)
-        case Boolean(value=value):
-            return str(value).lower()
-        case String(value=text):
-            return f"'{text}'"
-        case Name(name=name):
-            return name
-        case Unary(operator=operator, operand=operand):
-            return f"({operator}{with_brackets(operand)})"
-        case Binary(operator=operator, left=left, right=right):
-            return f"({with_brackets(left)} {operator} {with_brackets(right)})"
-        case Comparison(operators=operators, operands=operands):
-            parts = [part for pair in zip(("", *operators), map(with_brackets, operands), strict=True) for part in pair]
-            return f"({' '.join(parts).strip()})"
-        case Conditional(test=test, yes=yes, no=no):
-            return f"({with_brackets(test)} ? {with_brackets(yes)} : {with_brackets(no)})"
-        case Assignment(operator=operator, target=target, value=value):
-            return f"({target.name} {operator} {with_brackets(value)})"
-        case ErrorExpr():
-            raise AssertionError(expr)
 
 
 def read(text: str, grammar: ScriptGrammar) -> str:
