@@ -17,8 +17,13 @@ const MAX_LINES_TO_ROOT = 200;
 
 export class Activation implements vscode.Disposable {
     private readonly needs = new vscode.EventEmitter<void>();
+    private readonly firstNeed = new Promise<void>((resolve) => this.needs.event(resolve));
+    private readonly opened = vscode.workspace.onDidOpenTextDocument((document) => {
+        if (isModel(document)) this.need();
+    });
 
     dispose(): void {
+        this.opened.dispose();
         this.needs.dispose();
     }
 
@@ -29,7 +34,6 @@ export class Activation implements vscode.Disposable {
 
     /** Resolves as soon as a model exists or is opened, or the server is needed for another reason. */
     async needed(): Promise<void> {
-        const need = this.firstNeed();
         const { textDocuments, workspaceFolders = [] } = vscode.workspace;
         const texts = await Promise.all(workspaceFolders.map(({ uri }) => systemFile(uri)));
         const named = texts.filter((text) => text !== undefined);
@@ -37,32 +41,13 @@ export class Activation implements vscode.Disposable {
         // Without any XML, the extension was activated by a machine, a command or the debugger.
         if (named.length === 0 && !textDocuments.some(isXml)) return;
         const models = await vscode.workspace.findFiles("**/*.{ascxml,scxml,btproj}", undefined, 1);
-        if (models.length === 0) await need;
-    }
-
-    /** Resolves at the first need, or when the first model is opened. */
-    private firstNeed(): Promise<void> {
-        return new Promise((resolve) => {
-            const subscriptions = [
-                this.needs.event(end),
-                vscode.workspace.onDidOpenTextDocument((document) => {
-                    if (isModel(document)) end();
-                }),
-            ];
-            function end(): void {
-                for (const subscription of subscriptions) subscription.dispose();
-                resolve();
-            }
-        });
+        if (models.length === 0) await this.firstNeed;
     }
 }
 
 function isModel(document: vscode.TextDocument): boolean {
     if (LANGUAGES.has(document.languageId)) return true;
-    return isXml(document) && isModelText(document.getText(new vscode.Range(0, 0, MAX_LINES_TO_ROOT, 0)));
-}
-
-function isModelText(text: string): boolean {
+    const text = isXml(document) ? document.getText(new vscode.Range(0, 0, MAX_LINES_TO_ROOT, 0)) : "";
     return SYSTEM.test(text) || TREE.test(text);
 }
 
