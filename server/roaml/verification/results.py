@@ -240,7 +240,7 @@ class Result(PartlyCompared, frozen=True):
 
     @property
     def epsilon(self) -> float:
-        """The difference that `==` allows; 0 if there is no answer of traces."""
+        """The difference that an expectation with `==` allows; 0 if the result is not an estimate from traces."""
         return next((answer.options.epsilon for answer in self._answers()), 0.0)
 
     @property
