@@ -12,7 +12,17 @@ import pytest
 from ide_models import CORNERS, ROBOT, load, system_file
 
 from fixture import split_files
-from roaml.ide.diagrams import DiagramNodeKind, EdgeKind, Picture, collapsed, machine_picture, ros_picture, tree_picture
+from roaml.ide.diagrams import (
+    DetailKind,
+    DiagramNode,
+    DiagramNodeKind,
+    EdgeKind,
+    Picture,
+    collapsed,
+    machine_picture,
+    ros_picture,
+    tree_picture,
+)
 from roaml.ide.picture_edits import PictureAction
 from roaml.mocks.mock import read_mock
 from roaml.project.analysis import Analysis
@@ -48,9 +58,13 @@ def shown(picture: Picture | None) -> list[str]:
     return [] if picture is None else [*_nodes(picture), *_edges(picture)]
 
 
+def texts_of(node: DiagramNode) -> list[str]:
+    return [detail.text for detail in node.details]
+
+
 def _nodes(picture: Picture) -> Iterator[str]:
     for node in picture.nodes:
-        parts = (node.kind.value, node.label, *node.details, f"in {node.parent}" if node.parent else "")
+        parts = (node.kind.value, node.label, *texts_of(node), f"in {node.parent}" if node.parent else "")
         yield " | ".join(filter(None, (*parts, "initial" if node.initial else "")))
 
 
@@ -155,7 +169,7 @@ def test_conditions_and_what_subtrees_are_given(tmp_path: Path) -> None:
         </Sequence></BehaviorTree><BehaviorTree ID="S"><Grasp _while="true" at="{at}"/></BehaviorTree></root>"""
     picture = tree_picture(load(tmp_path, {"tree.xml": tree}), str(tmp_path / "tree.xml"))
     assert picture is not None
-    assert [" | ".join((node.label, *node.details)) for node in picture.nodes if node.id[0] != "{"] == [
+    assert [" | ".join((node.label, *texts_of(node))) for node in picture.nodes if node.id[0] != "{"] == [
         "Sequence | _post = n += 1",
         "one : S | box = {box} | at = {place} | force = 3 | _skipIf = n > 1",
         "Grasp | _while = true | at = {place}",
@@ -178,7 +192,8 @@ Distance*: 0.25
 
 def mocks_shown(picture: Picture | None) -> dict[str, str]:
     assert picture is not None
-    return {node.label: detail for node in picture.nodes for detail in node.details if detail.startswith("mock")}
+    details = ((node.label, detail) for node in picture.nodes for detail in node.details)
+    return {label: detail.text for label, detail in details if detail.kind is DetailKind.MOCK}
 
 
 def test_mocks_of_leaves(tmp_path: Path) -> None:

@@ -46,7 +46,7 @@ def register(context: Context) -> None:
                     "id": node.id,
                     "kind": node.kind.value,
                     "label": node.label,
-                    "details": list(node.details),
+                    "details": [detail.text for detail in node.details],
                     "parent": node.parent,
                     "initial": node.initial,
                     "place": place(analysis, node.place),

@@ -20,7 +20,9 @@ def tree_graph(system: System) -> Graph:
 
 
 def _node(instance: Instance) -> GraphNode:
-    return GraphNode(str(instance.number), (title_of(instance), *ports_of(instance), str(instance.number)))
+    return GraphNode(
+        str(instance.number), (title_of(instance), *(text for _, text in ports_of(instance)), str(instance.number))
+    )
 
 
 def title_of(instance: Instance) -> str:
@@ -28,10 +30,10 @@ def title_of(instance: Instance) -> str:
     return instance.plugin if instance.name == instance.plugin else f"{instance.name} : {instance.plugin}"
 
 
-def ports_of(instance: Instance) -> tuple[str, ...]:
-    """The values of the ports, one line for each."""
+def ports_of(instance: Instance) -> tuple[tuple[str, str], ...]:
+    """The names of the ports, conditions and scripts that are set, each with a line of text that shows its value."""
     return tuple(
-        f"{key} = {value.text if isinstance(value, PortConstant) else f'{{{value.variable}}}'}"
+        (key, f"{key} = {value.text if isinstance(value, PortConstant) else f'{{{value.variable}}}'}")
         for key, value in instance.ports
         if key not in _OWN
     )

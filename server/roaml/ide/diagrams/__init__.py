@@ -9,7 +9,16 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from roaml.ide.diagrams.collapse import collapsed
-from roaml.ide.diagrams.diagram import DiagramEdge, DiagramKind, DiagramNode, DiagramNodeKind, EdgeKind, Picture
+from roaml.ide.diagrams.diagram import (
+    Detail,
+    DetailKind,
+    DiagramEdge,
+    DiagramKind,
+    DiagramNode,
+    DiagramNodeKind,
+    EdgeKind,
+    Picture,
+)
 from roaml.ide.diagrams.drawings import PAGE, draw, draw_for
 from roaml.ide.diagrams.highlight import DiagramHighlight, highlights
 from roaml.ide.diagrams.machine import machine_picture
@@ -20,6 +29,8 @@ from roaml.project.analysis import Analysis
 
 __all__ = [
     "PAGE",
+    "Detail",
+    "DetailKind",
     "DiagramEdge",
     "DiagramHighlight",
     "DiagramKind",

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from roaml.ide.diagrams.diagram import DiagramNodeKind, EdgeKind, Picture
+from roaml.ide.diagrams.diagram import Detail, DetailKind, DiagramNodeKind, EdgeKind, Picture
 from roaml.record import replace
 
 
@@ -31,12 +31,12 @@ def collapsed(picture: Picture, ids: Collection[str]) -> Picture:
     edges = [edge for edge in picture.edges if not {edge.source, edge.target} & hidden]
     ends = {end for edge in edges for end in (edge.source, edge.target)}
     nodes = [
-        replace(node, details=(*node.details, f"… {_nodes(counts[node.id])}")) if node.id in counts else node
+        replace(node, details=(*node.details, _hidden(counts[node.id]))) if node.id in counts else node
         for node in picture.nodes
         if node.id not in hidden and (node.kind is not DiagramNodeKind.VARIABLE or node.id in ends)
     ]
     return replace(picture, nodes=tuple(nodes), edges=tuple(edges))
 
 
-def _nodes(count: int) -> str:
-    return "1 node" if count == 1 else f"{count} nodes"
+def _hidden(count: int) -> Detail:
+    return Detail(DetailKind.COUNT, "… 1 node" if count == 1 else f"… {count} nodes")

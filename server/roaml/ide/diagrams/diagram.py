@@ -12,9 +12,6 @@ import enum
 from roaml.record import Record
 from roaml.text import Location
 
-MOCK = "mock: "
-"""The beginning of the line with the mock of a leaf, in which its probability and its duration follow."""
-
 
 class DiagramKind(enum.Enum):
     """What a diagram shows."""
@@ -60,6 +57,49 @@ class EdgeKind(enum.Enum):
     SENDS = "sends"
 
 
+class DetailKind(enum.Enum):
+    """What a line below the label of a node describes.
+
+    - `ACTIONS`: the entry or exit actions of a state;
+    - `TYPE`: the type of a ROS interface;
+    - `COUNT`: a number of action threads, or of nodes that are not shown;
+    - `CONSTANT`: a port with a constant value, or a constant that a subtree is given;
+    - `REFERENCE`: a port that is bound to the blackboard, or an entry that a subtree is given;
+    - `SCRIPT`: a condition or script of a node of the tree, or automatic remapping;
+    - `MOCK`: the mock of a leaf.
+    """
+
+    ACTIONS = "actions"
+    TYPE = "type"
+    COUNT = "count"
+    CONSTANT = "constant"
+    REFERENCE = "reference"
+    SCRIPT = "script"
+    MOCK = "mock"
+
+
+class Detail(Record, frozen=True):
+    """A line below the label of a node. `key` is the name of the port that it describes; "" if it describes none."""
+
+    kind: DetailKind
+    text: str
+    key: str = ""
+
+
+class TreeNodeTitle(Record, frozen=True):
+    """The parts of the label of a node of a tree.
+
+    Attributes:
+        name: the name of the node or subtree; that of its plugin or tree if it has no other.
+        plugin: the plugin of the node, or the tree of the subtree.
+        number: the number of the node in the translation; `None` for subtrees.
+    """
+
+    name: str
+    plugin: str
+    number: int | None = None
+
+
 class DiagramNode(Record, frozen=True):
     """A node of a diagram.
 
@@ -68,15 +108,17 @@ class DiagramNode(Record, frozen=True):
         parent: the id of the enclosing node; "" if there is none.
         initial: whether it is an initial state.
         place: the place in a file that the node represents; `None` if there is none.
+        title: the parts of the label, for nodes of trees and subtrees.
     """
 
     id: str
     kind: DiagramNodeKind
     label: str
-    details: tuple[str, ...] = ()
+    details: tuple[Detail, ...] = ()
     parent: str = ""
     initial: bool = False
     place: Location | None = None
+    title: TreeNodeTitle | None = None
 
 
 class DiagramEdge(Record, frozen=True):

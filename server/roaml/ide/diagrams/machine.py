@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from roaml.ide.diagrams.actions import Wording, guard, outcome
-from roaml.ide.diagrams.diagram import DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
+from roaml.ide.diagrams.diagram import Detail, DetailKind, DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
 from roaml.model.machine import Body, Chart, Handler, Machine, State, Target, Thread
 from roaml.project.analysis import Analysis
 from roaml.roles import ProtocolPart
@@ -43,7 +43,7 @@ def state_id(chart: Chart, name: str) -> str:
 
 def _frame(thread: Thread, path: str) -> DiagramNode:
     server = thread.server.value if thread.server else ""
-    count = (f"{thread.count} threads",) if thread.count and thread.count > 1 else ()
+    count = (Detail(DetailKind.COUNT, f"{thread.count} threads"),) if thread.count and thread.count > 1 else ()
     return DiagramNode(
         f"thread {thread.chart.scope}", DiagramNodeKind.THREAD, server, count, place=Location(path, thread.element.span)
     )
@@ -67,9 +67,8 @@ class _Chart:
             name = state.id.value
             initial = self._chart.initial is not None and self._chart.initial.value == name
             place = Location(self._path, state.element.span)
-            yield DiagramNode(
-                self._id(state), DiagramNodeKind.STATE, name, tuple(self._bodies(state)), self._frame, initial, place
-            )
+            details = tuple(Detail(DetailKind.ACTIONS, text) for text in self._bodies(state))
+            yield DiagramNode(self._id(state), DiagramNodeKind.STATE, name, details, self._frame, initial, place)
             for index, handler in enumerate(state.handlers):
                 if handler.effective and handler.is_probabilistic:
                     where = Location(self._path, handler.element.span)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from roaml.ide.diagrams.diagram import DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
+from roaml.ide.diagrams.diagram import Detail, DetailKind, DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
 from roaml.model.system import Channel, ChannelEndpoint, System, SystemAutomaton
 from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
@@ -72,9 +72,10 @@ def _machines(analysis: Analysis, system: System) -> Iterator[tuple[str, Diagram
 
 def _channel(analysis: Analysis, kind: DiagramNodeKind, channel: Channel, ends: list[ChannelEndpoint]) -> DiagramNode:
     names = [name for end in ends if (name := end.automaton.interface_name(end.use))]
-    types = tuple(dict.fromkeys(end.use.type for end in ends if end.use.type))
+    types = dict.fromkeys(end.use.type for end in ends if end.use.type)
+    details = tuple(Detail(DetailKind.TYPE, name) for name in types)
     place = next((place for end in ends if (place := _declared(analysis, end))), None)
-    return DiagramNode(f"{kind.value} {channel.name}", kind, names[0] if names else channel.name, types, place=place)
+    return DiagramNode(f"{kind.value} {channel.name}", kind, names[0] if names else channel.name, details, place=place)
 
 
 def _edge(analysis: Analysis, channel: DiagramNode, end: ChannelEndpoint) -> DiagramEdge:

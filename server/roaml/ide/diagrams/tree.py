@@ -11,7 +11,16 @@ from itertools import pairwise
 
 from roaml.forest.entries import entry_of, is_autoremapped
 from roaml.forest.ports import ports_of as node_ports
-from roaml.ide.diagrams.diagram import MOCK, DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
+from roaml.ide.diagrams.diagram import (
+    Detail,
+    DetailKind,
+    DiagramEdge,
+    DiagramNode,
+    DiagramNodeKind,
+    EdgeKind,
+    Picture,
+    TreeNodeTitle,
+)
 from roaml.libraries import BEHAVIORTREE_CPP, Node, library, node_in_libraries
 from roaml.libraries.node import WORLD_NODES
 from roaml.mocks.mock import ALL, Mock, mock_for
@@ -93,8 +102,9 @@ class _Tree:
             place = Location(instance.source.path, node.element.span) if node else None
             initial = instance.parent is None
             kind = self.kind(instance, node)
-            details = (*ports_of(instance), *self.mock(instance, kind))
-            yield DiagramNode(str(instance.number), kind, title_of(instance), details, "", initial, place)
+            details = (*_ports(instance), *self.mock(instance, kind))
+            title = TreeNodeTitle(instance.name, instance.plugin, instance.number)
+            yield DiagramNode(str(instance.number), kind, title_of(instance), details, "", initial, place, title)
         variables: dict[str, Location | None] = {}
         for instance, key, variable in self.bound():
             variables.setdefault(variable, self.place(instance, key))
@@ -121,21 +131,27 @@ class _Tree:
             if (written := tree_called(file, tree)) is not None
         )
         label = name if name == tree else f"{name} : {tree}"
-        scripts = (f"{attribute} = {text}" for attribute, text in self.uses[use].scripts)
+        scripts = (
+            Detail(DetailKind.SCRIPT, f"{attribute} = {text}", attribute) for attribute, text in self.uses[use].scripts
+        )
         details = (*self.given(self.uses[use].frame), *scripts)
-        return DiagramNode(f"subtree {use}", DiagramNodeKind.SUBTREE, label, details, place=next(places, None))
+        place, title = next(places, None), TreeNodeTitle(name, tree)
+        return DiagramNode(f"subtree {use}", DiagramNodeKind.SUBTREE, label, details, place=place, title=title)
 
-    def given(self, frame: Frame) -> Iterator[str]:
+    def given(self, frame: Frame) -> Iterator[Detail]:
         """The names and values that the `<SubTree>` of a frame sets, one line for each name."""
         file = self.files.get(frame.use.path) if frame.use is not None else None
         node = node_at(file, frame.use) if file is not None and frame.use is not None else None
         if node is None:
             return
         for setting in node_ports(node):
-            entry = entry_of(setting)
-            yield f"{setting.attribute.name} = {setting.value.value if entry is None else f'{{{entry}}}'}"
+            key, entry = setting.attribute.name, entry_of(setting)
+            if entry is None:
+                yield Detail(DetailKind.CONSTANT, f"{key} = {setting.value.value}", key)
+            else:
+                yield Detail(DetailKind.REFERENCE, f"{key} = {{{entry}}}", key)
         if is_autoremapped(node):
-            yield AUTOREMAPPED
+            yield Detail(DetailKind.SCRIPT, AUTOREMAPPED)
 
     def edges(self) -> Iterator[DiagramEdge]:
         for instance in self.instances:
@@ -192,7 +208,7 @@ class _Tree:
         forest = self.forests.get(instance.source.path)
         return forest.node(instance.plugin) if forest is not None else None
 
-    def mock(self, instance: Instance, kind: DiagramNodeKind) -> Iterator[str]:
+    def mock(self, instance: Instance, kind: DiagramNodeKind) -> Iterator[Detail]:
         """The line with the mock of a leaf, or of a node that depends on an event of the world."""
         if not self.mocks or (self.system is not None and self.system.plugin(instance.plugin)[0]):
             return
@@ -200,11 +216,21 @@ class _Tree:
         if instance.plugin in WORLD_NODES:
             event = mock_for(self.events, instance.name, instance.plugin)
             if event is not None:
-                yield f"{MOCK}event {event.behaviour(is_instant=True)}"
+                yield Detail(DetailKind.MOCK, f"mock: event {event.behaviour(is_instant=True)}")
             return
         if instance.children or instance.plugin in library(BEHAVIORTREE_CPP).nodes:
             return
         mock = mock_for(self.mocks, instance.name, instance.plugin, known is not None and known.succeeds)
         if mock is not None:
             is_instant = kind is DiagramNodeKind.CONDITION or (known is not None and known.is_synchronous)
-            yield MOCK + mock.behaviour(is_instant=is_instant)
+            yield Detail(DetailKind.MOCK, f"mock: {mock.behaviour(is_instant=is_instant)}")
+
+
+def _ports(instance: Instance) -> Iterator[Detail]:
+    scripts = dict(instance.scripts)
+    for key, text in ports_of(instance):
+        if key in scripts:
+            kind = DetailKind.SCRIPT
+        else:
+            kind = DetailKind.REFERENCE if isinstance(instance.port(key), Reference) else DetailKind.CONSTANT
+        yield Detail(kind, text, key)

@@ -59,8 +59,7 @@ def badge(node: DiagramNode, x: float, y: float) -> tuple[Shape, Glyph] | None:
     strokes = _KINDS.get(node.kind)
     if strokes is None:
         return None
-    if node.kind is DiagramNodeKind.CONTROL:
-        plugin = node.label.rpartition(" : ")[2]
-        strokes = next((symbol for part, symbol in _CONTROLS if part in plugin), strokes)
+    if node.kind is DiagramNodeKind.CONTROL and node.title is not None:
+        strokes = next((symbol for part, symbol in _CONTROLS if part in node.title.plugin), strokes)
     box = Box(x, y, BADGE, BADGE)
     return Shape(box, Outline.RECTANGLE, "badge"), Glyph(box, strokes)

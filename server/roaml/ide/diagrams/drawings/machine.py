@@ -16,7 +16,7 @@ from roaml.figures.drawing import Drawing, Group, Item, Outline, Polyline, Shape
 from roaml.figures.geometry import Box, Extent
 from roaml.figures.layout import LayoutDirection, Link, layered
 from roaml.figures.layout.packing import shelves
-from roaml.ide.diagrams.diagram import DiagramEdge, DiagramNodeKind, EdgeKind, Picture
+from roaml.ide.diagrams.diagram import DetailKind, DiagramEdge, DiagramNodeKind, EdgeKind, Picture
 from roaml.ide.diagrams.drawings.cards import Card, Row, TextLine, is_shortened, paragraph, title
 
 CARD_WIDTH, LABEL_WIDTH = 260.0, 210.0
@@ -53,7 +53,7 @@ def _framed(picture: Picture, index: int, direction: LayoutDirection) -> Drawing
     """The drawing of an action thread in its frame; `index` is the node of the thread."""
     node = picture.nodes[index]
     chart = _Chart(picture, node.id).drawing(direction)
-    heading = Card((Row((*title(" ".join((node.label, *(f"({d})" for d in node.details))), 400.0),)),))
+    heading = Card((Row((*title(" ".join((node.label, *(f"({detail.text})" for detail in node.details))), 400.0),)),))
     top = heading.size.height
     size = Extent(
         max(chart.size.width + 2 * _FRAME_MARGIN, heading.size.width), chart.size.height + top + _FRAME_MARGIN
@@ -95,10 +95,11 @@ class _Chart:
 
     def _rows(self, state: str) -> Iterator[Row]:
         """The rows below the title of a state: its details, and its transitions to itself."""
-        for text in self._picture.nodes[self._index[state]].details:
-            lines = paragraph(text, CARD_WIDTH, "muted", limit=MAX_ACTIONS)
-            yield Row(lines, hint=text if is_shortened(lines, text) else "")
-        returns = bool(self._picture.nodes[self._index[state]].details)
+        details = self._picture.nodes[self._index[state]].details
+        for detail in details:
+            lines = paragraph(detail.text, CARD_WIDTH, "muted", limit=MAX_ACTIONS)
+            yield Row(lines, hint=detail.text if is_shortened(lines, detail.text) else "")
+        returns = any(detail.kind is DetailKind.ACTIONS for detail in details)
         for index, edge in self._edges:
             if edge.source == state and edge.target == state:
                 yield _row(index, edge, CARD_WIDTH, "↻ " if returns and not edge.internal else "")

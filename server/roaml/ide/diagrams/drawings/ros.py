@@ -63,7 +63,8 @@ def draw_ros(picture: Picture, direction: LayoutDirection) -> Drawing:
 def _card(node: DiagramNode, width: float) -> Card:
     word = _WORDS.get(node.kind, "node")
     rows = [Row(title(node.label, width))]
-    rows += [Row(paragraph(text, width, "muted"), is_joined=True) for text in (node.details or (word,))]
+    texts = [detail.text for detail in node.details]
+    rows += [Row(paragraph(text, width, "muted"), is_joined=True) for text in (texts or [word])]
     return Card(tuple(rows), padding=14.0 if node.kind in _CHANNELS else 12.0)
 
 

@@ -13,7 +13,7 @@ from roaml.figures.drawing import Drawing, Group, Item, Outline, Polyline, Shape
 from roaml.figures.geometry import Box, Extent
 from roaml.figures.layout import LayoutDirection, tidy_tree
 from roaml.figures.layout.packing import shelves
-from roaml.ide.diagrams.diagram import MOCK, DiagramNode, DiagramNodeKind, EdgeKind, Picture
+from roaml.ide.diagrams.diagram import DetailKind, DiagramNode, DiagramNodeKind, EdgeKind, Picture
 from roaml.ide.diagrams.drawings.cards import Card, Row, TextLine, is_shortened, paragraph, title
 from roaml.ide.diagrams.drawings.glyphs import BADGE, badge
 
@@ -35,6 +35,12 @@ _OUTLINES: Mapping[DiagramNodeKind, Outline] = {
     DiagramNodeKind.CONDITION: Outline.PILL,
     DiagramNodeKind.SUBTREE: Outline.DOUBLE,
 }
+_DETAIL_TONES: Mapping[DetailKind, Tone] = {
+    DetailKind.REFERENCE: Tone.BLACKBOARD,
+    DetailKind.SCRIPT: Tone.CONDITION,
+    DetailKind.MOCK: Tone.CHANCE,
+}
+"""The tones of the bars of rows. Rows of other kinds have no bar."""
 _BLACKBOARD_DISTANCE = 44.0
 _BADGE_DISTANCE = 7.0
 
@@ -87,11 +93,11 @@ def _size(card: Card, kind: DiagramNodeKind) -> Extent:
 
 
 def _card(picture: Picture, node: DiagramNode) -> Card:
-    name, _, plugin = node.label.rpartition(" : ")
-    if node.kind is DiagramNodeKind.VARIABLE:
+    if node.title is None:
         return Card((Row(title(f"{{{node.label}}}", PORT_WIDTH)),))
-    rows = [Row(title(name or plugin, TITLE_WIDTH))]
-    subtitle = " · ".join(filter(None, (plugin if name else "", node.id if node.id.isdigit() else "")))
+    name, plugin, number = node.title.name, node.title.plugin, node.title.number
+    rows = [Row(title(name, TITLE_WIDTH))]
+    subtitle = " · ".join((*([plugin] if plugin != name else ()), *([str(number)] if number is not None else ())))
     if subtitle:
         rows.append(Row((TextLine(subtitle, role="muted"),), is_joined=True))
     rows += _ports(picture, node)
@@ -105,18 +111,13 @@ def _ports(picture: Picture, node: DiagramNode) -> Iterator[Row]:
     for number, edge in enumerate(picture.edges):
         if edge.kind in (EdgeKind.READS, EdgeKind.WRITES) and node.id in (edge.source, edge.target):
             bound.setdefault(edge.labels[0], []).append(number)
-    for text in node.details:
-        name, _, value = text.partition(" = ")
-        edges = tuple(bound.get(name, ()))
-        is_script = name.startswith("_")  # names of ports begin with a letter
-        is_mock = text.startswith(MOCK)
-        is_bound = bool(edges) or (node.kind is DiagramNodeKind.SUBTREE and value.startswith("{"))
-        has_bar = is_bound or is_script or is_mock
-        lines = paragraph(text, PORT_WIDTH, "text" if has_bar else "muted", limit=MAX_PORT_LINES)
-        hint = text if is_shortened(lines, text) else ""
+    for detail in node.details:
+        edges = tuple(bound.get(detail.key, ())) if detail.kind is DetailKind.REFERENCE else ()
+        tone = _DETAIL_TONES.get(detail.kind)
+        lines = paragraph(detail.text, PORT_WIDTH, "muted" if tone is None else "text", limit=MAX_PORT_LINES)
+        hint = detail.text if is_shortened(lines, detail.text) else ""
         kind = " ".join(picture.edges[number].kind.value for number in edges)
-        tone = Tone.CHANCE if is_mock else Tone.CONDITION if is_script else Tone.BLACKBOARD
-        yield Row(lines, tone, kind, edges, has_bar=has_bar, hint=hint)
+        yield Row(lines, tone or Tone.PLAIN, kind, edges, has_bar=tone is not None, hint=hint)
 
 
 def _node(node: DiagramNode, index: int, card: Card, box: Box) -> Group:
