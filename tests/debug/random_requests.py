@@ -22,7 +22,7 @@ def run(seed: int, count: int, program: Path) -> tuple[int, int]:
             command, arguments = requests.next()
             response = client.response(client.send(command, **arguments))
             done, refused = done + response["success"], refused + (not response["success"])
-            if command in MOVING and response["success"]:
+            if command in (*MOVING, "goToStep") and response["success"]:
                 client.response(client.send("pause", threadId=1))
             client.events.clear()
         client.ask("threads")

@@ -3,12 +3,17 @@
 
 from __future__ import annotations
 
+import shutil
+from pathlib import Path
+
 import pytest
 from replay import replay, sources_of
 
 from conformance import ROOT, systems
 from roaml import api
+from roaml.debugging.breakpoints import WatchedVariable
 from roaml.debugging.by_hand import sendable, sending
+from roaml.debugging.frames import Frame, FrameRole
 from roaml.debugging.start import Start, start
 
 FOLDERS = ("ros_add_int_srv_example", "probabilistic_transitions", "robot_navigation_tutorial", "bt_test_models")
@@ -42,3 +47,23 @@ def test_every_event_is_sent_by_hand_and_received(folder: str) -> None:
         debugger.go_to(session.position)
         assert session.state() == before
         debugger.go_to(0)
+
+
+def test_an_expression_denotes_the_variable_of_the_frame_before_the_blackboard(tmp_path: Path) -> None:
+    """The blackboard entry has the same name as the variable of a node."""
+    folder = tmp_path / "blackboard_test"
+    shutil.copytree(ROOT / "models" / "blackboard_test", folder)
+    tree = folder / "bt.xml"
+    tree.write_text(tree.read_text(encoding="utf-8").replace("{counter}", "{bb_var}"), encoding="utf-8")
+    debugger = start(sources_of(folder / "main.xml"), Start(), lambda *_: None)
+    session, values = debugger.session, debugger.values
+    node = session.automata.index("BT_plugin_1002_ReadBB")
+    frame = Frame(1, "", None, node, 1002, FrameRole.NODE)
+    scopes = {scope.name: {entry.name: entry for entry in scope.entries} for scope in values.scopes(frame)}
+    assert scopes["Variables"]["bb_var"].expression == "bb_var"
+    assert scopes["Blackboard"]["bb_var"].expression == ""
+    blackboard = scopes["Blackboard"]["bb_var"].variable
+    assert (values.entry("bb_var", None) or scopes["Variables"]["bb_var"]).variable == blackboard
+    own = values.entry("bb_var", frame)
+    assert own is not None
+    assert own.variable == WatchedVariable(node, "bb_var") != blackboard

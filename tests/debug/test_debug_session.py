@@ -175,6 +175,34 @@ def test_breakpoints_by_name_on_variables_and_on_nodes(client: Client) -> None:
     assert client.ask("evaluate", expression="Arm.holding")["result"] == "true"
 
 
+def test_data_breakpoints_and_values_of_expressions(client: Client) -> None:
+    client.begin(BUG, seed=3)
+    holding = client.ask("dataBreakpointInfo", name="Arm.holding")
+    assert holding["description"] == "Arm.holding changes"
+    frame = client.stack(2)[0]["id"]
+    assert client.ask("dataBreakpointInfo", name="holding", frameId=frame)["dataId"] == holding["dataId"]
+    for name in ("holding", "Arm.state", "Arm.holding.x", "1 + 1", "step"):
+        assert client.ask("dataBreakpointInfo", name=name)["dataId"] is None, name
+    known, unknown = client.ask(
+        "setDataBreakpoints", breakpoints=[{"dataId": holding["dataId"]}, {"dataId": "Arm/nothing"}]
+    )["breakpoints"]
+    assert (known["verified"], unknown["verified"]) == (True, False)
+    assert client.move()["text"] == "Arm.holding changes"
+    first = client.step()
+    client.ask("restart")
+    assert client.event("stopped")["reason"] == "entry"
+    assert client.move()["text"] == "Arm.holding changes"
+    assert client.step() == first
+    assert client.ask("evaluate", expression="Arm.holding")["result"] == "true"
+    assert client.ask("setExpression", expression="Arm.holding", value="!Arm.holding")["value"] == "false"
+    assert client.event("stopped")["reason"] == "step"
+    assert client.ask("evaluate", expression="Arm.holding")["result"] == "false"
+    assert client.ask("choices")["isChanged"]
+    assert client.refusal("setExpression", expression="Arm.state", value="1") == (
+        "`Arm.state` cannot be set; only variables and blackboard entries can be set"
+    )
+
+
 @pytest.mark.parametrize("unit", ["stepIn", "next", "stepOut"])
 def test_each_step_forwards_is_undone_by_going_back(client: Client, unit: str) -> None:
     client.begin(BUG, seed=3)
@@ -316,6 +344,43 @@ def test_pausing_a_long_run(client: Client, tmp_path: Path) -> None:
     assert client.ask("evaluate", expression="x")["variablesReference"] == 0
     client.ask("reverseContinue", threadId=2)
     assert client.event("stopped")["reason"] in ("entry", "pause")
+
+
+def test_going_to_a_step_of_an_endless_run_can_be_paused(client: Client, tmp_path: Path) -> None:
+    model = tmp_path / "endless.jani"
+    model.write_text(ENDLESS, encoding="utf-8")
+    client.begin(model)
+    client.ask("goToStep", step=10**12)
+    assert client.event("continued")["allThreadsContinued"]
+    client.ask("pause", threadId=2)
+    assert client.event("stopped")["reason"] == "pause"
+    length = client.step()
+    assert 0 < length < 10**12
+    client.ask("goToStep", step=length + 3)
+    assert client.event("stopped")["reason"] == "goto"
+    assert client.step() == length + 3
+
+
+def test_going_behind_the_end_of_a_run(client: Client) -> None:
+    client.begin(BUG, seed=3)
+    client.ask("goToStep", step=10**6)
+    stopped = client.event("stopped")
+    assert (stopped["reason"], stopped["text"]) == ("goto", f"the run ends after {client.step()} steps")
+
+
+def test_the_search_for_a_trace_shows_its_progress_and_is_cancelled(client: Client) -> None:
+    client.ask("initialize", adapterID="as2fm", supportsProgressReporting=True)
+    number = client.send("launch", program=str(ROBOT / "main.xml"), property="never_placed_empty", against=1)
+    begin = client.event("progressStart")
+    assert begin["requestId"] == number
+    assert begin["cancellable"]
+    assert client.event("progressUpdate")["percentage"] > begin["percentage"]
+    cancel = client.send("cancel", progressId=begin["progressId"])
+    refusal = client.response(number)
+    assert refusal["message"].startswith("the search for a trace was cancelled: 0 of ")
+    assert client.event("progressEnd")["progressId"] == begin["progressId"]
+    assert client.response(cancel)["success"]
+    client.ask("launch", program=str(BUG))
 
 
 def test_the_session_ends(client: Client) -> None:

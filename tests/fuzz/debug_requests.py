@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 MOVING = ("continue", "next", "stepIn", "stepOut", "stepBack", "reverseContinue")
-STOPPING = ("goToStep", "choose", "restartFrame", "publish", "setVariable")
+STOPPING = ("goToStep", "choose", "restartFrame", "publish", "setVariable", "setExpression")
 OTHERS = (
     *("initialize", "launch", "configurationDone", "threads", "stackTrace", "scopes", "variables", "evaluate", "pause"),
     *("setBreakpoints", "setFunctionBreakpoints", "setExceptionBreakpoints", "setDataBreakpoints", "choices", "cancel"),

@@ -8,6 +8,7 @@ possible states the reason.
 
 from __future__ import annotations
 
+import gc
 import os
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, BinaryIO
@@ -20,6 +21,7 @@ from as2fm_lsp.debug.choices import ChoiceRequests
 from as2fm_lsp.debug.framing import Message, PendingMessages
 from as2fm_lsp.debug.launch import Launch, launch_of, load, warm_up
 from as2fm_lsp.debug.movement import MovementRequests
+from as2fm_lsp.debug.progress import SearchProgress
 from as2fm_lsp.debug.session import Body, ClientFormat, DebugSession, Handler, MessageWriter
 from as2fm_lsp.debug.state import StateRequests
 from roaml.debugging.debugger import Unit
@@ -28,7 +30,6 @@ from roaml.debugging.evaluate import WatchError
 if TYPE_CHECKING:
     from as2fm_lsp.debug.timeline import TimelineRequests
 
-_ENDING = ("disconnect", "terminate")
 BESIDE_REQUESTS = ("timeline", "exportTimeline", "pictures")
 """The requests of `as2fm_lsp.debug.timeline`, which is imported on their first use."""
 
@@ -50,6 +51,7 @@ class Adapter:
         self._timeline: TimelineRequests | None = None
         self._is_configured = False
         self._has_ended = False
+        self._request = 0
         self._handlers: Mapping[str, Handler] = {
             "initialize": self._initialize,
             "launch": self._launch,
@@ -99,6 +101,7 @@ class Adapter:
         number = sequence if isinstance(sequence, int) and not isinstance(sequence, bool) else 0
         response: dict[str, Any] = {"type": "response", "request_seq": number, "command": command}
         self._session.after = []
+        self._request = number
         try:
             handler = self._handlers.get(command)
             if handler is None:
@@ -120,6 +123,7 @@ class Adapter:
             int(arguments.flag("linesStartAt1", True)),
             int(arguments.flag("columnsStartAt1", True)),
             arguments.text("pathFormat") == "uri",
+            arguments.flag("supportsProgressReporting"),
         )
         self._session.after.append(warm_up)
         return CAPABILITIES
@@ -138,20 +142,23 @@ class Adapter:
 
     def _load(self, launch: Launch) -> None:
         session = self._session
-        session.debugger = load(launch, session.log, self._is_cancelled)
+        gc.unfreeze()
+        progress = SearchProgress(session, self._inbox, self._request)
+        try:
+            session.debugger = load(launch, session.log, progress)
+        finally:
+            progress.end()
         session.launch = launch
         session.has_begun = False
         session.stop = None
         session.forget()
         breakpoints = self._breakpoints.set_all()
         session.after.append(lambda: self._announce(breakpoints))
+        gc.freeze()  # a collection of the objects of the model would delay a step by 80 ms
 
     def _announce(self, breakpoints: list[dict[str, Any]]) -> None:
         for breakpoint_ in breakpoints:
             self._connection.event("breakpoint", {"reason": "changed", "breakpoint": breakpoint_})
-
-    def _is_cancelled(self) -> bool:
-        return self._inbox.has(lambda message: message.get("command") in (*_ENDING, "cancel"))
 
     def _configuration_done(self, arguments: Arguments) -> Body:
         self._is_configured = True

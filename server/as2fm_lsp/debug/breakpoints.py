@@ -10,10 +10,12 @@ from typing import Any
 
 from as2fm_lsp.debug.arguments import Arguments
 from as2fm_lsp.debug.session import Body, DebugSession, Handler
-from as2fm_lsp.debug.variables import Shown
 from roaml.debugging.breakpoints import Breakpoint, ExceptionFilter, WatchedVariable, breakpoint_of, nodes_named
 from roaml.debugging.debugger import Debugger
 from roaml.debugging.evaluate import WatchError
+from roaml.debugging.values import SEPARATOR
+from roaml.scxml.names import BLACKBOARD
+from roaml.simulation.words import who
 from roaml.suggest import alternatives
 
 
@@ -26,7 +28,7 @@ class BreakpointRequests:
         self._requested: dict[str, tuple[str, list[tuple[int, Arguments]]]] = {}
         self._functions: list[tuple[int, Arguments]] = []
         self._filters: list[tuple[str, str]] = []
-        self._data: dict[str, WatchedVariable] = {}
+        self._data: list[tuple[int, Arguments]] = []
         self.handlers: Mapping[str, Handler] = {
             "setBreakpoints": self._set_breakpoints,
             "setFunctionBreakpoints": self._set_function_breakpoints,
@@ -38,11 +40,12 @@ class BreakpointRequests:
 
     def set_all(self) -> list[dict[str, Any]]:
         """Set the breakpoints that the client has requested in the model that has been read. Return the descriptions of
-        breakpoints on lines and functions."""
+        breakpoints on lines, functions and data."""
         changed: list[dict[str, Any]] = []
         for path in self._requested:
             changed += self._set_lines(path)
         changed += self._set_functions()
+        changed += self._set_data()
         self._set_filters()
         return changed
 
@@ -65,8 +68,7 @@ class BreakpointRequests:
         path, requested = self._requested[key]
         debugger = self._session.debugger
         if debugger is None:
-            message = "not checked before the launch"
-            return [{"id": number, "verified": False, "message": message} for number, _ in requested]
+            return _not_checked(requested)
         known = next(
             (known_path for known_path in debugger.places.by_path if os.path.realpath(known_path) == key), path
         )
@@ -101,8 +103,7 @@ class BreakpointRequests:
     def _set_functions(self) -> list[dict[str, Any]]:
         debugger = self._session.debugger
         if debugger is None:
-            message = "not checked before the launch"
-            return [{"id": number, "verified": False, "message": message} for number, _ in self._functions]
+            return _not_checked(self._functions)
         chosen: list[tuple[str, Breakpoint]] = []
 
         def add(number: int, given: Arguments) -> None:
@@ -143,48 +144,47 @@ class BreakpointRequests:
         return bodies
 
     def _data_breakpoint_info(self, arguments: Arguments) -> Body:
-        self._session.stopped  # noqa: B018
+        debugger = self._session.stopped
         name = arguments.text("name", None)
-        children: list[Shown] = []
         if arguments.has("variablesReference"):
             children = self._session.children(arguments.number("variablesReference"))
-        entry = next((child.entry for child in children if child.entry.name == name), None)
+            entry = next((child.entry for child in children if child.entry.name == name), None)
+        else:
+            entry = self._session.variable(name, arguments)
         if entry is None or entry.variable is None:
-            return {
-                "dataId": None,
-                "description": f"`{name}` is not a variable of the model and cannot be watched",
-            }
+            description = f"`{name}` is neither a variable nor a blackboard entry, so it cannot be watched"
+            return {"dataId": None, "description": description}
         variable = entry.variable
-        owner = "" if variable.instance < 0 else f"{self._session.loaded.session.automata[variable.instance]}/"
-        data = f"{owner}{variable.name}"
-        self._data[data] = variable
-        return {"dataId": data, "description": f"{name} changes", "accessTypes": ["write"], "canPersist": True}
+        owner = "" if variable.instance < 0 else debugger.session.automata[variable.instance]
+        description = f"{_shown(debugger, variable)} changes"
+        data = f"{owner}/{variable.name}"
+        return {"dataId": data, "description": description, "accessTypes": ["write"], "canPersist": True}
 
     def _set_data_breakpoints(self, arguments: Arguments) -> Body:
-        debugger = self._session.loaded
+        requested = arguments.objects("breakpoints")
+        for breakpoint_ in requested:
+            breakpoint_.text("dataId", None)
+        self._data = [(self._number(), breakpoint_) for breakpoint_ in requested]
+        return {"breakpoints": self._set_data()}
+
+    def _set_data(self) -> list[dict[str, Any]]:
+        debugger = self._session.debugger
+        if debugger is None:
+            return _not_checked(self._data)
         chosen: list[tuple[WatchedVariable, Breakpoint]] = []
 
         def add(number: int, given: Arguments) -> None:
-            data = given.text("dataId", None)
-            variable = self._variable(debugger, data)
+            data = given.text("dataId")
+            variable = _watched(debugger, data)
             if variable is None:
                 raise WatchError(f"there is no variable `{data}`; set the breakpoint again in the variables view")
-            chosen.append((variable, self._breakpoint(number, f"{data} changes", given)))
+            name = f"{_shown(debugger, variable)} changes"
+            chosen.append((variable, self._breakpoint(number, name, given)))
 
-        numbered = [(self._number(), given) for given in arguments.objects("breakpoints")]
-        bodies = _set_each(numbered, add)
+        bodies = _set_each(self._data, add)
         debugger.breakpoints.variables = chosen
         debugger.breakpoints_changed()
-        return {"breakpoints": bodies}
-
-    def _variable(self, debugger: Debugger, data: str) -> WatchedVariable | None:
-        if data in self._data:
-            return self._data[data]
-        owner, _, name = data.rpartition("/")
-        automata = list(debugger.session.automata)
-        if owner in automata and name:
-            return WatchedVariable(automata.index(owner), name)
-        return WatchedVariable(-1, name) if not owner and name else None
+        return bodies
 
     def _breakpoint_locations(self, arguments: Arguments) -> Body:
         path = os.path.realpath(self._session.client.path(arguments.object("source")))
@@ -195,6 +195,32 @@ class BreakpointRequests:
         lines = next((lines for known_path, lines in places.items() if os.path.realpath(known_path) == path), [])
         chosen = [line - 1 + self._session.client.first_line for line in lines if first <= line <= last]
         return {"breakpoints": [{"line": line} for line in chosen]}
+
+
+def _watched(debugger: Debugger, data: str) -> WatchedVariable | None:
+    """The variable, or struct, with the name of its automaton, `/` and its own name; `None` if the model has none."""
+    owner, _, name = data.partition("/")
+    automata = list(debugger.session.automata)
+    if owner and owner not in automata:
+        return None
+    watched = WatchedVariable(automata.index(owner) if owner else -1, name)
+    variables = (variable for variable, _ in debugger.session.values() if variable.instance == watched.instance)
+    is_known = any(variable.name == name or variable.name.startswith(f"{name}{SEPARATOR}") for variable in variables)
+    return watched if is_known else None
+
+
+def _shown(debugger: Debugger, variable: WatchedVariable) -> str:
+    """The name of a variable in messages."""
+    name = variable.name.replace(SEPARATOR, ".")
+    if variable.instance < 0:
+        return name
+    automaton = debugger.session.automata[variable.instance]
+    return f"{name} on the blackboard" if automaton == BLACKBOARD else f"{who(automaton)}.{name}"
+
+
+def _not_checked(requested: Iterable[tuple[int, Arguments]]) -> list[dict[str, Any]]:
+    message = "not checked before the launch"
+    return [{"id": number, "verified": False, "message": message} for number, _ in requested]
 
 
 def _lines(arguments: Arguments) -> list[Any]:

@@ -13,10 +13,12 @@ from as2fm_lsp.debug.session import Body, DebugSession, Handler
 from roaml.debugging.by_hand import Sendable, sendable, sending, setting
 from roaml.debugging.evaluate import evaluate, parsed
 from roaml.debugging.frames import Frame
+from roaml.debugging.scopes import ScopeEntry
 from roaml.debugging.values import Value, shown, type_of
 from roaml.simulation import RunError
 from roaml.simulation.intervention import Intervention
 from roaml.smc.fault import FaultError
+from roaml.views.event_words import event_phrase
 
 _COMMAND = re.compile(r"\s*(publish|call|send)\s+(\S+)\s*(.*)", re.DOTALL)
 _BEGINNING = re.compile(r"\s*(publish|call|send)\s+(\S*)")
@@ -36,6 +38,7 @@ class ByHandRequests:
             "events": self._events,
             "publish": self._publish,
             "setVariable": self._set_variable,
+            "setExpression": self._set_expression,
             "completions": self._completions,
         }
 
@@ -56,7 +59,8 @@ class ByHandRequests:
         debugger = self._session.stopped
         change = sending(debugger.session, debugger.sources, name, fields)
         self._intervene(change)
-        return f"sent `{change.event}`; from here on, the run does not show the behaviour of the model"
+        text = event_phrase(change.event, debugger.session.automata)
+        return f"sent {text}; from here on, the run does not show the behaviour of the model"
 
     def _intervene(self, change: Intervention) -> None:
         try:
@@ -82,13 +86,22 @@ class ByHandRequests:
         return {"text": text, "step": self._session.stopped.session.position}
 
     def _set_variable(self, arguments: Arguments) -> Body:
-        debugger = self._session.stopped
-        name, text = arguments.text("name", None), arguments.text("value", None)
+        name = arguments.text("name", None)
         children = self._session.children(arguments.number("variablesReference"))
         entry = next((child.entry for child in children if child.entry.name == name), None)
+        return self._set(name, entry, arguments)
+
+    def _set_expression(self, arguments: Arguments) -> Body:
+        expression = arguments.text("expression", None)
+        return self._set(expression, self._session.variable(expression, arguments), arguments)
+
+    def _set(self, name: str, entry: ScopeEntry | None, arguments: Arguments) -> Body:
+        debugger = self._session.stopped
+        text = arguments.text("value", None)
         if entry is None or entry.variable is None:
             raise RequestError(f"`{name}` cannot be set; only variables and blackboard entries can be set")
-        value = evaluate(parsed(text), debugger.values.names(None))
+        frame = self._session.frame(arguments) if arguments.has("frameId") else None
+        value = evaluate(parsed(text), debugger.values.names(frame))
         self._intervene(setting(debugger.session, debugger.sources, entry.variable, value))
         return {"value": shown(value), "type": entry.type or type_of(value)}
 

@@ -24,6 +24,7 @@ CAPABILITIES: dict[str, Any] = {
     "supportsEvaluateForHovers": True,
     "supportsStepBack": True,
     "supportsSetVariable": True,
+    "supportsSetExpression": True,
     "supportsCompletionsRequest": True,
     "completionTriggerCharacters": [" ", "/"],
     "supportsRestartFrame": True,

@@ -10,7 +10,7 @@ from as2fm_lsp.debug.arguments import Arguments, RequestError
 from roaml import api
 from roaml.debugging.debugger import Debugger, Log
 from roaml.debugging.sources import Sources
-from roaml.debugging.start import Start, StartError, start
+from roaml.debugging.start import Start, StartError, Watch, start
 from roaml.diagnostics import Diagnostic
 from roaml.disk import NotReadableError, required
 from roaml.language.grammar import XML_GRAMMARS
@@ -100,14 +100,14 @@ def _saved(path: str) -> SavedSession:
         raise RequestError(f"{path}: {error}") from None
 
 
-def load(launch: Launch, log: Log, is_cancelled: Callable[[], bool]) -> Debugger:
+def load(launch: Launch, log: Log, watch: Watch) -> Debugger:
     """The debugger for a `launch` request.
 
     Raises:
         RequestError: the model cannot be run, or the run does not exist.
     """
     try:
-        return start(_sources(launch), launch.start, log, is_cancelled)
+        return start(_sources(launch), launch.start, log, watch)
     except api.ModelError as error:
         raise RequestError(_first(error.result.diagnostics, error.result.source)) from None
     except api.JaniError as error:

@@ -51,6 +51,13 @@ class MovementRequests:
         return None
 
     def _go_to_step(self, arguments: Arguments) -> Body:
-        debugger = self._session.stopped
-        self._session.report_later(debugger.go_to(arguments.natural("step")))
+        debugger, step = self._session.stopped, arguments.natural("step")
+        debugger.begin_going_to(step)
+        stop = debugger.advance()
+        if stop is not None:
+            self._session.report_later(stop)
+        else:
+            thread = debugger.threads[0].number if debugger.threads else 0
+            continued = {"threadId": thread, "allThreadsContinued": True}
+            self._session.after.append(lambda: self._session.connection.event("continued", continued))
         return {"step": debugger.session.position}

@@ -14,7 +14,9 @@ from as2fm_lsp.debug.framing import write_message
 from as2fm_lsp.debug.launch import Launch
 from as2fm_lsp.debug.variables import References, Shown
 from roaml.debugging.debugger import Debugger, Stop, StopReason
+from roaml.debugging.evaluate import dotted, parsed
 from roaml.debugging.frames import Frame
+from roaml.debugging.scopes import ScopeEntry
 from roaml.disk import is_valid_path
 from roaml.jani.node import Origin
 from roaml.record import Record
@@ -43,17 +45,19 @@ class MessageWriter:
 
 
 class ClientFormat(Record, frozen=True):
-    """How the client counts lines and columns and writes paths.
+    """How the client counts lines and columns and writes paths, and what it can show.
 
     Attributes:
         first_line: the number of the first line, 0 or 1.
         first_column: the number of the first column, 0 or 1.
         uses_uris: whether paths are URIs.
+        shows_progress: whether the client shows the progress of requests.
     """
 
     first_line: int = 1
     first_column: int = 1
     uses_uris: bool = False
+    shows_progress: bool = False
 
     def path(self, source: Arguments) -> str:
         """The absolute path of a `Source`.
@@ -161,6 +165,18 @@ class DebugSession:
         if number not in self.frames:
             raise RequestError(f"there is no frame {number}; frames are valid only until the run continues")
         return self.frames[number]
+
+    def variable(self, expression: str, arguments: Arguments) -> ScopeEntry | None:
+        """The variable or blackboard entry that an expression denotes in the frame of a request, if it has one; `None`
+        if there is none.
+
+        Raises:
+            RequestError: there is no such frame.
+            WatchError: the text is not an expression.
+        """
+        frame = self.frame(arguments) if arguments.has("frameId") else None
+        path = dotted(parsed(expression))
+        return None if path is None else self.stopped.values.entry(path, frame)
 
     def children(self, reference: int) -> list[Shown]:
         """The variables that a reference denotes.

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import enum
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
 from roaml.debugging.evaluate import Scope, WatchError, condition, evaluate, parsed
@@ -144,18 +144,6 @@ class Breakpoints(Record):
     names: list[tuple[str, Breakpoint]] = field(default_factory=list)
     variables: list[tuple[WatchedVariable, Breakpoint]] = field(default_factory=list)
     filters: dict[ExceptionFilter, Breakpoint] = field(default_factory=dict)
-
-    def reset(self) -> None:
-        """Set all counts of hits to zero."""
-        for breakpoint_ in self.all():
-            breakpoint_.hits = 0
-
-    def all(self) -> Iterator[Breakpoint]:
-        for of_file in self.lines.values():
-            yield from (breakpoint_ for _, breakpoint_ in of_file)
-        yield from (breakpoint_ for _, breakpoint_ in self.names)
-        yield from (breakpoint_ for _, breakpoint_ in self.variables)
-        yield from self.filters.values()
 
 
 class BreakpointPlaces:

@@ -76,11 +76,15 @@ class Stop(Record, frozen=True):
 
 
 class _Movement(Record):
+    """A movement that has begun. `until` is the position at which a movement to a position ends, which passes over
+    breakpoints; -1 for other movements."""
+
     unit: Unit
     forwards: bool
     position: int
     steps: int = 0
     is_first: bool = True
+    until: int = -1
 
 
 Log = Callable[[str, "Origin | None"], None]
@@ -192,6 +196,13 @@ class Debugger:
         self._remember()
         self._movement = _Movement(unit, forwards, self.session.position, is_first=not stops_here)
 
+    def begin_going_to(self, position: int) -> None:
+        """Begin a movement to a position. If the run is shorter, new steps are taken, at most up to its end."""
+        self._remember()
+        self.session.jump(min(position, len(self.session.steps)))
+        self._follow()
+        self._movement = _Movement(Unit.STEP, True, self.session.position, until=position)
+
     def interrupt(self) -> Stop:
         """End the movement at the position that it has reached; return the stop."""
         self._settle()
@@ -215,7 +226,7 @@ class Debugger:
         deadline = time.monotonic() + portion
         stop = None
         while stop is None and time.monotonic() < deadline:
-            stop = self._forwards(movement) if movement.forwards else self._backwards(movement)
+            stop = self._portion(movement)
             movement.is_first = False
             movement.steps += 1
             if stop is None and movement.steps >= MAX_STEPS:
@@ -225,13 +236,26 @@ class Debugger:
             self._movement = None
         return stop
 
-    def _forwards(self, movement: _Movement) -> Stop | None:
+    def _portion(self, movement: _Movement) -> Stop | None:
+        """Take or examine a step."""
         try:
-            step = self.session.step()
+            if movement.until >= 0:
+                return self._nearer(movement.until)
+            return self._forwards(movement) if movement.forwards else self._backwards(movement)
         except FaultError as fault:
             self._looked_at, self._upcoming, self.fault = self.session.position, None, fault
             self._state = self._values = self._stacks = None
             return self._stop(StopReason.EXCEPTION, fault.message, filter_="fault")
+
+    def _nearer(self, position: int) -> Stop | None:
+        if self.session.position < position and self.session.step() is not None:
+            self._follow()
+            return None
+        is_there = self.session.position == position
+        return self._stop(StopReason.GOTO, "" if is_there else f"the run ends after {self.session.position:,} steps")
+
+    def _forwards(self, movement: _Movement) -> Stop | None:
+        step = self.session.step()
         if step is None:
             return self._end()
         decided = self._follow()
@@ -280,12 +304,9 @@ class Debugger:
                 return False
 
     def go_to(self, position: int) -> Stop:
-        """Go to a position, and take new steps if the run is shorter."""
+        """Go to a position of the run; to its last one if it has fewer steps."""
         self._remember()
-        try:
-            self.session.jump(position)
-        except FaultError:
-            self.upcoming()
+        self.session.jump(min(position, len(self.session.steps)))
         self._follow()
         return self._stop(StopReason.GOTO)
 
@@ -336,19 +357,6 @@ class Debugger:
 
     def _enters(self, source: str, destination: str, instance: int) -> bool:
         return destination != source and self.session.is_resting(instance, destination)
-
-    def restart(self) -> None:
-        """Go back to the start."""
-        self._remember()
-        self.session.jump(0)
-        self.breakpoints.reset()
-
-    def replace(self, session: Session, verdicts: Verdicts) -> None:
-        """Continue with another session of the same model."""
-        self.session, self._verdicts = session, verdicts
-        self.__dict__.pop("places", None)
-        self._matcher, self._looked_at, self.before = None, -1, None
-        self._follow()
 
     # ------------------------------------------------------------ parts
 

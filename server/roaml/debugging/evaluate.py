@@ -44,8 +44,10 @@ def parsed(text: str) -> Expr:
         WatchError: the text is not an expression.
     """
     expr, findings = parser.parse(Decoded(text, 0))
+    if findings:
+        raise WatchError(findings[0].message)
     if any(isinstance(part, ErrorExpr) for part in walk(expr)):
-        raise WatchError(findings[0].message if findings else "the expression is not complete")
+        raise WatchError("the expression is not complete")
     return expr
 
 
@@ -103,7 +105,7 @@ def _value(expr: Expr, scope: Scope) -> Value:
 
 
 def _member(expr: Member, scope: Scope) -> Value:
-    path = _dotted(expr)
+    path = dotted(expr)
     if path is not None:  # the name of a variable may contain dots
         value = scope(path)
         if value is not None:
@@ -116,12 +118,13 @@ def _member(expr: Member, scope: Scope) -> Value:
     return _part(owner, expr.name)
 
 
-def _dotted(expr: Expr) -> str | None:
+def dotted(expr: Expr) -> str | None:
+    """The text of a name with its members, such as `Arm.way`; `None` for another expression."""
     match expr:
         case Name():
             return expr.name
         case Member():
-            owner = _dotted(expr.object)
+            owner = dotted(expr.object)
             return None if owner is None else f"{owner}.{expr.name}"
     return None
 

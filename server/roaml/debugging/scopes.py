@@ -12,7 +12,7 @@ from roaml.debugging.sources import Sources
 from roaml.debugging.values import SEPARATOR, Value, nested, type_of, typed_value, untyped_values
 from roaml.exhaustive import Vocabulary
 from roaml.model.expand import PortConstant
-from roaml.record import Record
+from roaml.record import Record, replace
 from roaml.scxml.names import (
     BLACKBOARD,
     FIELD_PREFIX,
@@ -97,7 +97,9 @@ class Values:
                 own_scopes.append(ScopeEntries("Message", tuple(entries), ScopeHint.ARGUMENTS))
         if frame.node:
             own_scopes.append(ScopeEntries("Ports", tuple(self._ports(frame.node)), ScopeHint.ARGUMENTS))
-        return [scope for scope in (*own_scopes, *self.shared_scopes()) if scope.entries]
+        own = {entry.name for scope in own_scopes if scope.hint is not None for entry in scope.entries}
+        shared = (_without_expressions(scope, own) for scope in self.shared_scopes())
+        return [scope for scope in (*own_scopes, *shared) if scope.entries]
 
     def shared_scopes(self) -> Iterator[ScopeEntries]:
         """The scopes that all frames have."""
@@ -197,16 +199,29 @@ class Values:
             if value is not None:
                 values[name.removeprefix(FIELD_PREFIX)] = value
         if not types:
-            own = {name.removeprefix(prefix): value for name, value in stored.items() if name.startswith(prefix)}
+            own = {name.removeprefix(prefix): stored[name] for name in self._session.event_variables(event)}
             values = {name.removeprefix(FIELD_PREFIX): value for name, value in untyped_values(own).items()}
         return nested(values)
 
     # ------------------------------------------------------------ expressions
 
+    def entry(self, path: str, frame: Frame | None) -> ScopeEntry | None:
+        """The variable or blackboard entry that an expression such as `way`, `pose.x` or `Arm.pose.x` denotes; `None`
+        if there is none. Variables of the frame take precedence over those of the system."""
+        own = () if frame is None or frame.instance < 0 else self._own(frame.instance)
+        owned = (
+            ScopeEntry(f"{machine.name}.{entry.name}", entry.value, entry.type, entry.expression, entry.variable)
+            for machine, entries in self.machines()
+            for entry in entries
+        )
+        entries = (*own, *self._blackboard(), *self._shared(), *owned)
+        return next((found for entry in entries if (found := _member(entry, path)) is not None), None)
+
     def names(self, frame: Frame | None) -> Scope:
         """The values of the names that an expression can use. Names of the frame take precedence over those of the
         system."""
         known: dict[str, Value] = {status: status for status in STATUS_NAMES.values()}
+        known |= {name: verdict.value for name, verdict in self._verdicts.items()}
         for entry in self._time():
             known[entry.name] = entry.value
         for machine in self._state.machines:
@@ -229,6 +244,26 @@ class Values:
             return plain if not isinstance(plain, list) else untyped_values({name: plain}).get(name)
 
         return value
+
+
+def _without_expressions(scope: ScopeEntries, names: Collection[str]) -> ScopeEntries:
+    """A scope whose entries with one of the names have no expression, because the name denotes another variable."""
+    entries = (replace(entry, expression="") if entry.expression in names else entry for entry in scope.entries)
+    return replace(scope, entries=tuple(entries))
+
+
+def _member(entry: ScopeEntry, path: str) -> ScopeEntry | None:
+    """The entry itself or the member of its struct that has a path."""
+    if path == entry.name:
+        return entry
+    if not path.startswith(f"{entry.name}.") or entry.variable is None:
+        return None
+    value, variable = entry.value, entry.variable
+    for member in path.removeprefix(f"{entry.name}.").split("."):
+        if not isinstance(value, dict) or member not in value:
+            return None
+        value, variable = value[member], WatchedVariable(variable.instance, f"{variable.name}{SEPARATOR}{member}")
+    return ScopeEntry(path, value, "", path, variable)
 
 
 def _is_stored(name: str, stored: Mapping[str, Plain]) -> bool:

@@ -43,11 +43,15 @@ class Start(Record, frozen=True):
     saved: SavedSession | None = None
 
 
-def start(sources: Sources, begin: Start, log: Log, is_cancelled: Callable[[], bool] = lambda: False) -> Debugger:
+Watch = Callable[[int], bool]
+"""Is called during a search with the number of traces that have been simulated; returns whether the search ends."""
+
+
+def start(sources: Sources, begin: Start, log: Log, watch: Watch = lambda _: False) -> Debugger:
     """A debugger at the start of a run, or at the position of the saved session.
 
     Raises:
-        StartError: there is no such trace, or `is_cancelled` was true during the search for it.
+        StartError: there is no such trace, or `watch` has ended the search for it.
         PropertyError: the model has no such property.
         FaultError: the model cannot be run, or the property cannot be decided.
         RunError: the saved decisions are not possible in the model.
@@ -60,7 +64,7 @@ def start(sources: Sources, begin: Start, log: Log, is_cancelled: Callable[[], b
     seed, trace = begin.seed, begin.trace
     if begin.nth and begin.saved is None:
         recorder = Recorder(checker, property_, seed, MAX_TRACE_STEPS)
-        trace = _nth(recorder, begin, property_.question.name, is_cancelled)
+        trace = _nth(recorder, begin, property_.question.name, watch)
     session = Session(checker, property_, seed, trace, sources.target.clock, begin.saved)
     return Debugger(session, sources, Verdicts(checker, session.seed, session.trace), log)
 
@@ -75,7 +79,8 @@ def _compiled_property(checker: ModelChecker, sources: Sources, name: str) -> Co
     return checker.stuck
 
 
-def _nth(recorder: Recorder, begin: Start, name: str, is_cancelled: Callable[[], bool]) -> int:
+def _nth(recorder: Recorder, begin: Start, name: str, watch: Watch) -> int:
+    relation = "violate" if begin.verdict is TraceVerdict.FAILED else "satisfy"
     missing = begin.nth
     for trace in range(MAX_TRACES):
         recording = Recording(trace)
@@ -83,9 +88,9 @@ def _nth(recorder: Recorder, begin: Start, name: str, is_cancelled: Callable[[],
         missing -= VERDICTS[recording.verdict] is begin.verdict
         if missing == 0:
             return trace
-        if is_cancelled():
-            raise StartError("the search for a trace was cancelled")
+        if watch(trace + 1):
+            counted = f"{begin.nth - missing} of {trace + 1:,} traces {relation} `{name}`"
+            raise StartError(f"the search for a trace was cancelled: {counted}")
     count = begin.nth - missing
-    relation = "violate" if begin.verdict is TraceVerdict.FAILED else "satisfy"
     counted = f"only {count} of {MAX_TRACES:,} traces with seed {begin.seed} {relation} `{name}`"
     raise StartError(f"{counted}, but trace {begin.nth} of these is requested; use another seed")

@@ -9,7 +9,7 @@ for an event that the user has named, `role_of` derives the role from the name; 
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
 from roaml.exhaustive import Vocabulary, assert_never
@@ -218,10 +218,18 @@ def client_of(event: str, clients: Collection[str]) -> str:
     """The client that sends or receives an event of a service or action: the automaton of `clients` whose name, in the
     form of `safe_name`, is the last part of the name of the event; "" if there is none. If there are several, the one
     with the longest name."""
-    if _CLIENT not in event:
-        return ""
-    own = (client for client in clients if event.endswith(f"{_CLIENT}{safe_name(client)}"))
+    ends = set(_ends_after(_CLIENT, event))
+    lengths = {len(end) for end in ends}  # `safe_name` keeps the length
+    own = (client for client in clients if len(client) in lengths and safe_name(client) in ends) if ends else ()
     return max(own, key=len, default="")
+
+
+def _ends_after(separator: str, text: str) -> Iterator[str]:
+    """The parts of a text after each occurrence of a separator."""
+    at = text.find(separator)
+    while at >= 0:
+        yield text[at + len(separator) :]
+        at = text.find(separator, at + 1)
 
 
 def without_client(event: str, client: str) -> str:

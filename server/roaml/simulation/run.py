@@ -108,6 +108,7 @@ class Run:
         self._reader = StepReader(self._kernel, self.legend)
         self.steps: list[TraceStep] = []
         self.decisions: list[ByHand | None] = []
+        self._first_by_hand: int | None = None
         self._interventions: list[int] = []
         self._snapshots: dict[int, tuple[Any, ...]] = {}
         self._begin()
@@ -168,12 +169,16 @@ class Run:
         else:
             self.steps.append(self._reader.read(self.position))
         self.decisions.append(decision)
+        if decision is not None and self._first_by_hand is None:
+            self._first_by_hand = self.position
         return self.steps[-1]
 
     def _discard(self, position: int) -> None:
         """Discard the steps after `position`."""
         del self.steps[position:], self.decisions[position:]
         self._interventions = [number for number in self._interventions if number <= position]
+        if self._first_by_hand is not None and self._first_by_hand > position:
+            self._first_by_hand = None
         self._snapshots = {at: saved for at, saved in self._snapshots.items() if at <= position}
 
     def _return(self) -> None:
@@ -225,6 +230,11 @@ class Run:
         self._check_end()
         if self.position % SNAPSHOT_INTERVAL == 0 and self.position not in self._snapshots:
             self._snapshots[self.position] = self.status, self.has_ended, self._kernel.save()
+
+    @property
+    def is_by_hand(self) -> bool:
+        """Whether the user has decided a step up to the position."""
+        return self._first_by_hand is not None and self._first_by_hand <= self.position
 
     @property
     def is_changed(self) -> bool:

@@ -173,7 +173,7 @@ class Session:
     @property
     def is_by_hand(self) -> bool:
         """Whether the user has decided a step up to the position, so that the run is not a trace of `verify`."""
-        return any(decision is not None for decision in self._run.decisions[: self.position])
+        return self._run.is_by_hand
 
     @property
     def is_changed(self) -> bool:
@@ -221,6 +221,10 @@ class Session:
     def parameters(self, event: str) -> dict[str, Plain]:
         """The parameters with which an event was last sent."""
         return self._follower.events.parameters(event)
+
+    def event_variables(self, event: str) -> Sequence[str]:
+        """The variables of the model that contain the parameters of an event and their lengths."""
+        return self._follower.events.variables(event)
 
     def actors(self, step: TraceStep) -> list[AutomatonStep]:
         """The parts of a step, except those of automata that only buffer an event."""

@@ -30,6 +30,7 @@ class EventReader:
         self.hearing = [any(map(received_by, used)) for used in actions]
         self._values = dict(start)
         self._parameters: dict[str, list[str]] = {event: [] for event in self._events}
+        self._variables: dict[str, list[str]] = {event: [] for event in self._events}
         self._of_events = {name for name in self._values if self._is_of_event(name)}
 
     def copied(self) -> EventReader:
@@ -54,8 +55,7 @@ class EventReader:
 
     def carries_event(self, variable: str) -> bool:
         """Whether a variable of the model belongs to an event: it contains a parameter, a length, or whether the event
-            is
-        valid."""
+        is valid."""
         return variable in self._of_events
 
     def parameters(self, event: str) -> dict[str, Plain]:
@@ -64,6 +64,10 @@ class EventReader:
             variable.removeprefix(f"{event}__").removeprefix(FIELD_PREFIX): self._values[variable]
             for variable in self._parameters.get(event, ())
         }
+
+    def variables(self, event: str) -> Sequence[str]:
+        """The variables of the model that contain the parameters of an event and their lengths."""
+        return self._variables.get(event, ())
 
     def name(self, event: str) -> str:
         """The name of an event without the name of the client of a service or action."""
@@ -76,6 +80,7 @@ class EventReader:
         at = name.rfind("__")
         while at > 0:
             if name[:at] in self._events:
+                self._variables[name[:at]].append(name)
                 if not is_length(name):
                     self._parameters[name[:at]].append(name)
                 return True
