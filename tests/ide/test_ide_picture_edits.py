@@ -396,3 +396,189 @@ def test_a_place_that_has_changed_is_refused() -> None:
     place = node(picture, "on")
     later, _ = machine(MACHINE.replace("It is dark", "It is very dark"))
     assert isinstance(answer(later, place.path, place.span, PictureAction.DELETE), ActionRefusal)
+
+
+# --------------------------------------------------------------------- trees
+
+TREE = """\
+<root BTCPP_format="4" main_tree_to_execute="Main">
+    <BehaviorTree ID="Main">
+        <Sequence name="all">
+            <!-- Wait for
+                 the robot. -->
+            <Wait wait_duration="5" />
+            <Fallback>
+                <Spin spin_dist="1.57"
+                      name="turn" />
+                <SubTree ID="Home" speed="2" />
+            </Fallback>
+            <Inverter><GoalUpdated /></Inverter>
+        </Sequence>
+    </BehaviorTree>
+    <BehaviorTree ID="Home">
+        <Action ID="BackUp" backup_dist="0.3" backup_speed="0.05" />
+    </BehaviorTree>
+</root>
+"""
+
+
+def lone_tree(text: str = TREE) -> tuple[Analysis, Picture]:
+    analysis = analysis_of({"tree.xml": text})
+    picture = picture_of(DiagramKind.TREE, analysis, path_of("tree.xml"))
+    assert picture is not None
+    return analysis, picture
+
+
+def tree_texts(question: Answer) -> dict[str, str]:
+    assert isinstance(question, UserQuestion)
+    return {option.answer: option.description for option in question.options}
+
+
+def test_a_child_is_added_with_the_ports_that_it_needs() -> None:
+    analysis, picture = lone_tree()
+    place = node(picture, "Fallback")
+    nodes = tree_texts(respond(analysis, place, "addChild"))
+    assert nodes["SubTree Home"] == "subtree"
+    assert "SubTree Main" not in nodes
+    assert (nodes["Delay"], nodes["AlwaysSuccess"], nodes["IsBatteryLow"]) == ("decorator", "action", "condition")
+    removed, added = lines_after(analysis, place, "addChild", "AlwaysSuccess")
+    assert (removed, added) == ([], ["<AlwaysSuccess />"])
+    question = respond(analysis, place, "addChild", "FollowPath")
+    assert isinstance(question, UserQuestion)
+    assert "`path`" in question.text
+    assert question.proposal == "{path}"
+    assert isinstance(respond(analysis, place, "addChild", "FollowPath", " "), ActionRefusal)
+    text = text_after(analysis, place, "addChild", "FollowPath", 'a"&<b')
+    assert "                <FollowPath path='a\"&amp;&lt;b' />\n            </Fallback>" in text
+    assert '<SubTree ID="Home" />' in text_after(analysis, node(picture, "all : Sequence"), "addChild", "SubTree Home")
+    assert isinstance(respond(analysis, place, "addChild", "Nothing"), ActionRefusal)
+
+
+def test_a_node_is_added_after_another() -> None:
+    analysis, picture = lone_tree()
+    text = text_after(analysis, node(picture, "turn : Spin"), "addAfter", "ForceSuccess")
+    assert 'name="turn" />\n                <ForceSuccess />\n                <SubTree' in text
+
+
+@pytest.mark.parametrize(
+    ("label", "actions"),
+    [
+        # A sequence has any number of children, a tree one root.
+        ("all : Sequence", "addChild rename changeNode wrap"),
+        # A leaf has none; it is the first child.
+        ("Wait", "addAfter setName changeNode wrap moveLater delete"),
+        ("turn : Spin", "addAfter rename changeNode wrap moveLater delete"),
+        ("Fallback", "addChild addAfter setName changeNode wrap unwrap moveEarlier moveLater delete"),
+        # A decorator has one child, which may replace it.
+        ("Inverter", "addAfter setName changeNode wrap unwrap moveEarlier delete"),
+        ("GoalUpdated", "setName changeNode wrap delete"),
+        ("BackUp", "setName changeNode wrap"),
+    ],
+)
+def test_a_node_allows_what_its_tree_allows(label: str, actions: str) -> None:
+    analysis, picture = lone_tree()
+    allowed = [action.value for action in PictureParts(analysis).actions(node(picture, label))]
+    assert [action for action in allowed if action != "rename" or "rename" in actions] == actions.split()
+
+
+def test_a_node_is_wrapped_and_unwrapped() -> None:
+    analysis, picture = lone_tree()
+    place = node(picture, "Fallback")
+    nodes = tree_texts(respond(analysis, place, "wrap"))
+    assert {"Inverter", "Sequence", "RetryUntilSuccessful"} <= nodes.keys()
+    assert not {"Wait", "SubTree Home", "IfThenElse", "WhileDoElse"} & nodes.keys()
+    text = text_after(analysis, place, "wrap", "RetryUntilSuccessful", "3")
+    assert text == TREE.replace(
+        """\
+            <Fallback>
+                <Spin spin_dist="1.57"
+                      name="turn" />
+                <SubTree ID="Home" speed="2" />
+            </Fallback>
+""",
+        """\
+            <RetryUntilSuccessful num_attempts="3">
+                <Fallback>
+                    <Spin spin_dist="1.57"
+                          name="turn" />
+                    <SubTree ID="Home" speed="2" />
+                </Fallback>
+            </RetryUntilSuccessful>
+""",
+    )
+    analysis, picture = lone_tree(text)
+    assert text_after(analysis, node(picture, "RetryUntilSuccessful"), "unwrap") == TREE
+
+
+def test_nodes_in_one_line_are_wrapped_and_unwrapped_in_it() -> None:
+    analysis, picture = lone_tree()
+    text = text_after(analysis, node(picture, "GoalUpdated"), "wrap", "ForceFailure")
+    assert "<Inverter><ForceFailure><GoalUpdated /></ForceFailure></Inverter>" in text
+    analysis, picture = lone_tree(text)
+    assert text_after(analysis, node(picture, "ForceFailure"), "unwrap") == TREE
+    analysis, picture = lone_tree()
+    assert text_after(analysis, node(picture, "Inverter"), "unwrap") == TREE.replace(
+        "<Inverter><GoalUpdated /></Inverter>", "<GoalUpdated />"
+    )
+
+
+def test_lines_in_values_of_attributes_are_not_moved() -> None:
+    text = TREE.replace('wait_duration="5"', '_skipIf="a == 1 ||\n  b == 2"')
+    analysis, picture = lone_tree(text)
+    changed = text_after(analysis, node(picture, "Wait"), "wrap", "Inverter")
+    assert '                <Wait _skipIf="a == 1 ||\n  b == 2" />\n            </Inverter>' in changed
+
+
+def test_a_node_gets_another_type() -> None:
+    analysis, picture = lone_tree()
+    place = node(picture, "turn : Spin")
+    nodes = tree_texts(respond(analysis, place, "changeNode"))
+    assert {"Wait", "SubTree Home", "GoalUpdated"} <= nodes.keys()
+    assert not {"Spin", "Sequence", "Inverter"} & nodes.keys()
+    # The ports that the new type does not have are removed; those that it needs are added.
+    text = text_after(analysis, place, "changeNode", "FollowPath", "{p}")
+    assert '                <FollowPath path="{p}"\n                      name="turn" />' in text
+    text = text_after(analysis, place, "changeNode", "SubTree Home")
+    assert '<SubTree ID="Home" spin_dist="1.57"\n                      name="turn" />' in text
+    # An explicit node stays explicit, and a subtree becomes a node in the compact form.
+    assert '<Condition ID="GoalUpdated" />' in text_after(
+        analysis, node(picture, "BackUp"), "changeNode", "GoalUpdated"
+    )
+    (use,) = (shown.use for shown in picture.nodes if shown.label == "Home")
+    assert use is not None
+    assert "                <AlwaysSuccess />\n" in text_after(analysis, use, "changeNode", "AlwaysSuccess")
+    # The end tag changes, too.
+    text = text_after(analysis, node(picture, "Fallback"), "changeNode", "ReactiveFallback")
+    assert text == TREE.replace("Fallback", "ReactiveFallback")
+    nodes = tree_texts(respond(analysis, node(picture, "Inverter"), "changeNode"))
+    assert "ForceSuccess" in nodes
+    assert "Wait" not in nodes
+
+
+def test_nodes_are_moved_with_their_comments() -> None:
+    analysis, picture = lone_tree()
+    text = text_after(analysis, node(picture, "Wait"), "moveLater")
+    assert text.index("<Fallback>") < text.index("Wait for") < text.index("<Wait ") < text.index("<Inverter>")
+    analysis, picture = lone_tree(text)
+    assert text_after(analysis, node(picture, "Wait"), "moveEarlier") == TREE
+
+
+def test_a_subtree_is_edited_where_it_is_used() -> None:
+    analysis, picture = lone_tree()
+    (home,) = (shown for shown in picture.nodes if shown.label == "Home")
+    assert home.use is not None
+    assert home.place != home.use
+    assert lines_after(analysis, home.use, "delete") == (['<SubTree ID="Home" speed="2" />'], [])
+    assert '<SubTree ID="Home" name="base" speed="2" />' in text_after(analysis, home.use, "setName", "base")
+    text = text_after(analysis, home.use, "moveEarlier")
+    assert text.index('<SubTree ID="Home"') < text.index("<Spin")
+
+
+def test_a_node_gets_a_name() -> None:
+    analysis, picture = lone_tree()
+    place = node(picture, "Wait")
+    assert respond(analysis, place, "setName") == UserQuestion("The name of the node")
+    assert '<Wait name="a &amp; b" wait_duration="5" />' in text_after(analysis, place, "setName", " a & b ")
+    assert isinstance(respond(analysis, place, "setName", ""), ActionRefusal)
+    backup = text_after(analysis, node(picture, "BackUp"), "setName", "away")
+    assert '<Action ID="BackUp" name="away" backup_dist' in backup

@@ -23,7 +23,8 @@ def parts(analysis: Analysis, system: str) -> Iterator[tuple[Location, PictureAc
     allowed = PictureParts(analysis)
     pictures = [picture_of(kind, analysis, system) for kind in (DiagramKind.SYSTEM, DiagramKind.TREE, DiagramKind.ROS)]
     shown = [part for picture in pictures if picture for part in (*picture.nodes, *picture.edges)]
-    for place in dict.fromkeys(part.place for part in shown):
+    uses = [node.use for picture in pictures if picture for node in picture.nodes]
+    for place in dict.fromkeys((*(part.place for part in shown), *uses)):
         for action in allowed.actions(place):
             assert place is not None
             yield place, action
@@ -55,3 +56,5 @@ def test_each_action_leaves_a_well_formed_file(model: Path) -> None:
         assert machine is None or all(chart.states for chart in machine.charts), (place, action)
         edited.add(action)
     assert {PictureAction.ADD_STATE, PictureAction.ADD_TRANSITION, PictureAction.RENAME} <= edited
+    if snapshot.analysis.tree_paths(str(model)):
+        assert {PictureAction.WRAP, PictureAction.CHANGE_NODE, PictureAction.SET_NAME} <= edited

@@ -45,7 +45,7 @@ export interface PictureEditParams extends DocumentParams {
 /** A question to the user: a choice if there are options, otherwise a text, which begins with the proposal. */
 export interface PictureQuestion {
     readonly text: string;
-    readonly options: readonly { readonly label: string; readonly answer: string }[];
+    readonly options: readonly { readonly label: string; readonly answer: string; readonly description: string }[];
     readonly proposal: string;
 }
 

@@ -29,7 +29,8 @@ function place(startLine: number, startColumn: number, endLine: number, endColum
 }
 
 function node(id: string, more: Partial<PictureNode> = {}): PictureNode {
-    return { id, kind: "state", label: id, details: [], parent: "", initial: false, place: null, actions: [], ...more };
+    const places = { place: null, actions: [], use: null, useActions: [] };
+    return { id, kind: "state", label: id, details: [], parent: "", initial: false, ...places, ...more };
 }
 
 function edge(source: string, target: string, more: Partial<PictureEdge> = {}): PictureEdge {
@@ -99,6 +100,8 @@ const WORDS = { byChance: "random", kinds: new Proxy({}, { get: (_, kind) => kin
 
 test("the caret is in the narrowest part", () => {
     const at = (line: number, character: number, uri = URI) => partAt(MACHINE, uri, { line, character });
+    const subtree = node("s", { kind: "subtree", place: place(30, 0, 40, 9), use: place(3, 0, 3, 9) });
+    assert.deepEqual(partAt({ ...TREE, nodes: [subtree] }, URI, { line: 3, character: 4 }), { node: 0 });
     assert.deepEqual(at(1, 3), { node: 0 });
     assert.deepEqual(at(3, 0), { edge: 0 });
     assert.deepEqual(at(12, 10), { edge: 2 });

@@ -55,7 +55,10 @@ def register(context: Context) -> None:
             case ActionRefusal(reason):
                 return {"edit": None, "question": None, "problem": f"{reason[0].upper()}{reason[1:]}."}
             case UserQuestion(text, options, proposal):
-                shown = [{"label": option.label, "answer": option.answer} for option in options]
+                shown = [
+                    {"label": option.label, "answer": option.answer, "description": option.description}
+                    for option in options
+                ]
                 return {
                     "edit": None,
                     "question": {"text": text, "options": shown, "proposal": proposal},

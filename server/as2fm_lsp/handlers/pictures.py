@@ -51,6 +51,8 @@ def register(context: Context) -> None:
                     "initial": node.initial,
                     "place": place(analysis, node.place),
                     "actions": [action.value for action in parts.actions(node.place)],
+                    "use": place(analysis, node.use),
+                    "useActions": [action.value for action in parts.actions(node.use)],
                 }
                 for node in picture.nodes
             ],

@@ -140,7 +140,7 @@ def removals(document: Document, elements: Iterable[Element]) -> Iterator[Edit]:
     unwanted = set(map(id, elements))
     for parent in document.root.walk() if document.root else ():
         children = [child for child in parent.elements if id(child) in unwanted]
-        spans = [Span(_with_comments(parent, child), child.span.end) for child in children]
+        spans = [with_comments(parent, child) for child in children]
         if not children:
             continue
         if parent.complete and all(
@@ -152,9 +152,8 @@ def removals(document: Document, elements: Iterable[Element]) -> Iterator[Edit]:
             yield from (removal(document.text, span) for span in spans)
 
 
-def _with_comments(parent: Element, child: Element) -> int:
-    """The offset at which the comments directly above a child element begin, each on a separate line; the offset of the
-    child if there are none."""
+def with_comments(parent: Element, child: Element) -> Span:
+    """The span of a child element with the comments directly above it, each on a separate line."""
     start = child.span.start
     index = parent.nodes.index(child)
     while index >= 2:
@@ -166,7 +165,7 @@ def _with_comments(parent: Element, child: Element) -> int:
             break
         start = comment.span.start
         index -= 2
-    return start
+    return Span(start, child.span.end)
 
 
 def _is_blank(node: Node) -> bool:

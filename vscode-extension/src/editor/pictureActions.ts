@@ -63,7 +63,7 @@ export class PictureActions implements vscode.Disposable {
 async function chooseOne(parts: readonly MenuPart[]): Promise<MenuPart | undefined> {
     if (parts.length < 2) return parts[0];
     const items = parts.map((part) => ({ label: part.label, part }));
-    return (await vscode.window.showQuickPick(items, { title: vscode.l10n.t("Which transition?") }))?.part;
+    return (await vscode.window.showQuickPick(items, { title: vscode.l10n.t("Which part?") }))?.part;
 }
 
 /** Put a question to the user. `problem` returns why a text is no answer, or an empty text. */
@@ -72,8 +72,8 @@ async function put(
     problem: (text: string) => Promise<string | undefined>,
 ): Promise<string | undefined> {
     if (options.length > 0) {
-        const items = options.map(({ label, answer }) => ({ label, answer }));
-        return (await vscode.window.showQuickPick(items, { title: text }))?.answer;
+        const items = options.map(({ label, description, answer }) => ({ label, description, answer }));
+        return (await vscode.window.showQuickPick(items, { title: text, matchOnDescription: true }))?.answer;
     }
     const validateInput = async (written: string) => (written === proposal ? undefined : await problem(written));
     return vscode.window.showInputBox({ title: text, value: proposal, validateInput });

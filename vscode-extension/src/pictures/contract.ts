@@ -58,8 +58,16 @@ export type EdgeKind = (typeof EDGE_KINDS)[number];
 export const PICTURE_ACTIONS = [
     "addState",
     "addTransition",
+    "addChild",
+    "addAfter",
     "rename",
+    "setName",
     "setInitial",
+    "changeNode",
+    "wrap",
+    "unwrap",
+    "moveEarlier",
+    "moveLater",
     "deleteTransition",
     "delete",
 ] as const;
@@ -99,9 +107,13 @@ export interface PictureNode {
     readonly details: readonly string[];
     readonly parent: string;
     readonly initial: boolean;
+    /** The place in a file that the node represents; that of a subtree is its `<BehaviorTree>`. */
     readonly place: Place | null;
     /** The actions that the place allows. */
     readonly actions: readonly PictureAction[];
+    /** The place of the `<SubTree>` of a subtree, and the actions that this place allows. */
+    readonly use: Place | null;
+    readonly useActions: readonly PictureAction[];
 }
 
 export interface PictureEdge {

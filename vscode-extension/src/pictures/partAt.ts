@@ -11,6 +11,7 @@ export function partAt(picture: Picture, uri: string, position: Position): Part 
     };
     picture.nodes.forEach((node, index) => {
         consider(node.place, { node: index });
+        consider(node.use, { node: index });
     });
     picture.edges.forEach((edge, index) => {
         consider(edge.place, { edge: index });

@@ -107,8 +107,10 @@ class DiagramNode(Record, frozen=True):
         details: lines below the label.
         parent: the id of the enclosing node; "" if there is none.
         initial: whether it is an initial state.
-        place: the place in a file that the node represents; `None` if there is none.
+        place: the place in a file that the node represents; `None` if there is none. That of a subtree is its
+            `<BehaviorTree>`.
         title: the parts of the label, for nodes of trees and subtrees.
+        use: the place of the `<SubTree>` of a subtree; `None` for other nodes.
     """
 
     id: str
@@ -119,6 +121,7 @@ class DiagramNode(Record, frozen=True):
     initial: bool = False
     place: Location | None = None
     title: TreeNodeTitle | None = None
+    use: Location | None = None
 
 
 class DiagramEdge(Record, frozen=True):

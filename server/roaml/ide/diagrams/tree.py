@@ -134,14 +134,25 @@ class _Tree:
         scripts = (
             Detail(DetailKind.SCRIPT, f"{attribute} = {text}", attribute) for attribute, text in self.uses[use].scripts
         )
-        details = (*self.given(self.uses[use].frame), *scripts)
-        place, title = next(places, None), TreeNodeTitle(name, tree)
-        return DiagramNode(f"subtree {use}", DiagramNodeKind.SUBTREE, label, details, place=place, title=title)
+        frame = self.uses[use].frame
+        node = self.subtree_node(frame)
+        return DiagramNode(
+            f"subtree {use}",
+            DiagramNodeKind.SUBTREE,
+            label,
+            (*self.given(node), *scripts),
+            place=next(places, None),
+            title=TreeNodeTitle(name, tree),
+            use=Location(frame.use.path, node.element.span) if frame.use is not None and node else None,
+        )
 
-    def given(self, frame: Frame) -> Iterator[Detail]:
-        """The names and values that the `<SubTree>` of a frame sets, one line for each name."""
+    def subtree_node(self, frame: Frame) -> TreeNode | None:
+        """The `<SubTree>` of a frame; `None` for the executed tree."""
         file = self.files.get(frame.use.path) if frame.use is not None else None
-        node = node_at(file, frame.use) if file is not None and frame.use is not None else None
+        return node_at(file, frame.use) if file is not None and frame.use is not None else None
+
+    def given(self, node: TreeNode | None) -> Iterator[Detail]:
+        """The names and values that a `<SubTree>` sets, one line for each name."""
         if node is None:
             return
         for setting in node_ports(node):

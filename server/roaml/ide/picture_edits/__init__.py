@@ -10,11 +10,11 @@ from __future__ import annotations
 import enum
 from collections.abc import Sequence
 
-from roaml.edit.elements import removals
 from roaml.exhaustive import assert_never
 from roaml.ide.code_actions.action import WorkspaceEdit
-from roaml.ide.picture_edits import machine
-from roaml.ide.picture_edits.answers import ActionRefusal, Answer, Option, UserQuestion
+from roaml.ide.picture_edits import machine, tree
+from roaml.ide.picture_edits.answers import ActionRefusal, Answer, EditAnswer, Option, UserQuestion
+from roaml.ide.picture_edits.palette import Palette
 from roaml.ide.picture_edits.parts import ChartPart, HandlerPart, Part, StatePart, TreeNodePart, name_offset, parts_of
 from roaml.ide.rename import RenameRefusal, prepare, rename
 from roaml.project.analysis import Analysis
@@ -30,8 +30,16 @@ class PictureAction(enum.Enum):
 
     ADD_STATE = "addState"
     ADD_TRANSITION = "addTransition"
+    ADD_CHILD = "addChild"
+    ADD_AFTER = "addAfter"
     RENAME = "rename"
+    SET_NAME = "setName"
     SET_INITIAL = "setInitial"
+    CHANGE_NODE = "changeNode"
+    WRAP = "wrap"
+    UNWRAP = "unwrap"
+    MOVE_EARLIER = "moveEarlier"
+    MOVE_LATER = "moveLater"
     DELETE_TRANSITION = "deleteTransition"
     DELETE = "delete"
 
@@ -71,9 +79,25 @@ def _allows(part: Part, action: PictureAction) -> bool:
         case PictureAction.DELETE_TRANSITION:
             return isinstance(part, StatePart) and bool(part.state.handlers)
         case PictureAction.DELETE:
-            return isinstance(part, (StatePart, HandlerPart)) or (isinstance(part, TreeNodePart) and not part.is_root)
+            return isinstance(part, (StatePart, HandlerPart)) or (
+                isinstance(part, TreeNodePart) and part.parent is not None
+            )
         case PictureAction.RENAME:
             return name_offset(part) is not None
+        case PictureAction.ADD_CHILD:
+            return isinstance(part, TreeNodePart) and len(part.node.children) < part.children[1]
+        case PictureAction.ADD_AFTER:
+            return isinstance(part, TreeNodePart) and len(part.siblings) < part.parent_children[1]
+        case PictureAction.SET_NAME:
+            return isinstance(part, TreeNodePart) and part.node.name is None
+        case PictureAction.CHANGE_NODE | PictureAction.WRAP:
+            return isinstance(part, TreeNodePart)
+        case PictureAction.UNWRAP:
+            return isinstance(part, TreeNodePart) and tree.can_unwrap(part)
+        case PictureAction.MOVE_EARLIER:
+            return isinstance(part, TreeNodePart) and part.node is not part.siblings[0]
+        case PictureAction.MOVE_LATER:
+            return isinstance(part, TreeNodePart) and part.node is not part.siblings[-1]
         case _:
             return assert_never(action)
 
@@ -105,7 +129,7 @@ def answer(
 
 def _edits(
     analysis: Analysis, path: str, document: Document, part: Part, action: PictureAction, answers: Sequence[str]
-) -> machine.EditAnswer:
+) -> EditAnswer:
     match action, part:
         case PictureAction.ADD_STATE, ChartPart():
             return machine.add_state(document, part.chart, None, answers)
@@ -123,7 +147,23 @@ def _edits(
         case PictureAction.DELETE, HandlerPart():
             return machine.delete_transition(document, part)
         case PictureAction.DELETE, TreeNodePart():
-            return tuple(removals(document, [part.node.element]))
+            return tree.delete(document, part)
+        case PictureAction.ADD_CHILD, TreeNodePart():
+            return tree.add_child(document, part, Palette(analysis, path), answers)
+        case PictureAction.ADD_AFTER, TreeNodePart():
+            return tree.add_after(document, part, Palette(analysis, path), answers)
+        case PictureAction.SET_NAME, TreeNodePart():
+            return tree.set_name(analysis, path, part, answers)
+        case PictureAction.CHANGE_NODE, TreeNodePart():
+            return tree.change(document, part, Palette(analysis, path), answers)
+        case PictureAction.WRAP, TreeNodePart():
+            return tree.wrap(document, part, Palette(analysis, path), answers)
+        case PictureAction.UNWRAP, TreeNodePart():
+            return tree.unwrap(document, part)
+        case PictureAction.MOVE_EARLIER, TreeNodePart():
+            return tree.move(document, part, -1)
+        case PictureAction.MOVE_LATER, TreeNodePart():
+            return tree.move(document, part, 1)
     raise AssertionError((action, part))
 
 

@@ -7,13 +7,15 @@ from typing import TypeAlias
 
 from roaml.ide.code_actions.action import WorkspaceEdit
 from roaml.record import Record
+from roaml.text import Edit
 
 
 class Option(Record, frozen=True):
-    """An answer to choose: its text for the user, and the answer itself."""
+    """An answer to choose: its text for the user, the answer itself, and a few words beside the text."""
 
     label: str
     answer: str
+    description: str = ""
 
 
 class UserQuestion(Record, frozen=True):
@@ -35,5 +37,8 @@ class ActionRefusal(Record, frozen=True):
 
     reason: str
 
+
+EditAnswer: TypeAlias = tuple[Edit, ...] | UserQuestion | ActionRefusal
+"""The edits of one file, or what is missing for them."""
 
 Answer: TypeAlias = WorkspaceEdit | UserQuestion | ActionRefusal

@@ -5,12 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from typing import TypeAlias
 from xml.sax.saxutils import quoteattr
 
 from roaml.edit.elements import after, last_in, removals, set_attribute, without_attribute
 from roaml.ide.diagrams.actions import Wording, guard, trigger_text
-from roaml.ide.picture_edits.answers import ActionRefusal, Option, UserQuestion
+from roaml.ide.picture_edits.answers import ActionRefusal, EditAnswer, Option, UserQuestion
 from roaml.ide.picture_edits.parts import HandlerPart, StatePart
 from roaml.ide.rename.new_name import state_problem
 from roaml.language import HL_SCXML, ElementType
@@ -20,9 +19,6 @@ from roaml.project.analysis import Analysis
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.text import Edit
 from roaml.xml_syntax import Document, Element, Text
-
-EditAnswer: TypeAlias = tuple[Edit, ...] | UserQuestion | ActionRefusal
-"""The edits of the file, or what is missing for them."""
 
 _OF_PLUGINS = (ProtocolPart.BT_TICK, ProtocolPart.BT_HALT)
 _OF_CHILDREN = (ProtocolPart.CHILD_STATUS, ProtocolPart.CHILD_HALTED)

@@ -6,9 +6,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TypeAlias
 
+from roaml.ide.picture_edits.palette import Palette
 from roaml.model.machine import Chart, Declaration, Handler, Machine, State, Target
 from roaml.model.syntax import Name
-from roaml.model.tree import PortSetting, Tree, TreeNode, nodes
+from roaml.model.tree import PortSetting, Tree, TreeNode
 from roaml.project.analysis import Analysis
 from roaml.record import Record
 from roaml.text import Span
@@ -43,10 +44,24 @@ class TreePart(Record, frozen=True, eq=False):
 
 
 class TreeNodePart(Record, frozen=True, eq=False):
-    """A node of a tree; `is_root` says whether it is the root of its tree."""
+    """A node of a tree.
 
+    Attributes:
+        parent: the parent of the node; `None` if it is the root of its tree.
+        children: the minimum and maximum number of children of the node.
+        parent_children: those of its parent; a tree has one root.
+    """
+
+    tree: Tree
     node: TreeNode
-    is_root: bool
+    parent: TreeNode | None
+    children: tuple[int, int]
+    parent_children: tuple[int, int]
+
+    @property
+    def siblings(self) -> tuple[TreeNode, ...]:
+        """The children of the parent, or the roots of the tree, with the node itself."""
+        return self.tree.roots if self.parent is None else self.parent.children
 
 
 class PortPart(Record, frozen=True, eq=False):
@@ -61,7 +76,7 @@ def parts_of(analysis: Analysis, path: str) -> Mapping[Span, Part]:
     machine, file = analysis.machine(path), analysis.tree(path)
     if machine is not None:
         return dict(_of_machine(machine))
-    return dict(_of_trees(file.trees)) if file is not None else {}
+    return dict(_of_trees(file.trees, Palette(analysis, path))) if file is not None else {}
 
 
 def _of_machine(machine: Machine) -> Iterator[tuple[Span, Part]]:
@@ -79,13 +94,17 @@ def _of_machine(machine: Machine) -> Iterator[tuple[Span, Part]]:
                         yield target.element.span, HandlerPart(handler, target)
 
 
-def _of_trees(trees: tuple[Tree, ...]) -> Iterator[tuple[Span, Part]]:
+def _of_trees(trees: tuple[Tree, ...], palette: Palette) -> Iterator[tuple[Span, Part]]:
     for tree in trees:
         yield tree.element.span, TreePart(tree)
-        for node in nodes(tree):
-            yield node.element.span, TreeNodePart(node, node in tree.roots)
+        pending: list[tuple[TreeNode, TreeNode | None, tuple[int, int]]] = [(node, None, (1, 1)) for node in tree.roots]
+        while pending:
+            node, parent, around = pending.pop()
+            children = palette.children(node)
+            yield node.element.span, TreeNodePart(tree, node, parent, children, around)
             for setting in node.ports:
                 yield setting.attribute.span, PortPart(setting)
+            pending += [(child, node, children) for child in node.children]
 
 
 def name_offset(part: Part) -> int | None:
@@ -100,8 +119,8 @@ def name_offset(part: Part) -> int | None:
             name = declaration.interface if isinstance(declaration.interface, Name) else None
         case TreePart(tree):
             name = tree.id
-        case TreeNodePart(node):
-            name = node.name or node.plugin
+        case TreeNodePart():
+            name = part.node.name or part.node.plugin
         case PortPart(setting):
             # A reference to the blackboard begins with a brace.
             return setting.attribute.value_span.start + 1 if setting.variable is not None else None

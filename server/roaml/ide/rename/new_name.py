@@ -61,6 +61,13 @@ def state_problem(name: str) -> str:
     return "" if _is_word(name) else f"`{name}` is not a valid name of a state"
 
 
+def tree_node_problem(name: str, *, in_system: bool) -> str:
+    """Why a node of a tree cannot have a name, as a clause; "" if it can. Only in systems, the name is a part of names
+    of the translation."""
+    is_valid = _is_word(name) if in_system else bool(name)
+    return "" if is_valid else f"`{name}` is not a valid name of a node"
+
+
 def _is_word(name: str) -> bool:
     return _WORD.match(name) is not None and name not in STATUSES
 

@@ -18,9 +18,14 @@ export function menuOf(parts: readonly MenuPart[], more: readonly PictureAction[
     return JSON.stringify(context);
 }
 
+/** The parts of a node: a subtree is used at one place, and defined at another. */
 export function nodeParts(picture: Picture, index: number): MenuPart[] {
     const node = picture.nodes[index];
-    return node?.place ? [{ label: node.label, place: node.place, actions: node.actions }] : [];
+    if (!node) return [];
+    const { place, actions, use, useActions } = node;
+    const used = use ? [{ label: `<SubTree> ${node.label}`, place: use, actions: useActions }] : [];
+    const label = use ? `<BehaviorTree> ${node.label}` : node.label;
+    return [...used, ...(place ? [{ label, place, actions }] : [])];
 }
 
 /** The parts of edges that share a line; the hover texts describe them. */
