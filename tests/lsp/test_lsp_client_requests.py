@@ -80,6 +80,8 @@ async def test_pictures(tmp_path: Path) -> None:
         "initial": True,
         "place": {"uri": uri, "range": {"start": {"line": 12, "character": 4}, "end": {"line": 22, "character": 12}}},
         "actions": ["addState", "addTransition", "rename", "deleteTransition", "delete"],
+        "use": None,
+        "useActions": [],
     }
     assert machine["edges"][1] == {
         "source": "/driving",
@@ -114,6 +116,12 @@ async def test_picture_edits(tmp_path: Path) -> None:
     assert {edit["newText"] for edit in answer["edit"]["changes"][uri]} == {"going"}
     (refused,) = await asked(tmp_path, "as2fm/pictureEdit", name, **part, answers=["charging"])
     assert refused == {"edit": None, "question": None, "problem": "A state `charging` already exists."}
+    (tree,) = await asked(tmp_path, "as2fm/picture", "tree.xml", kind="tree")
+    deliver = next(node["place"] for node in tree["nodes"] if node["label"] == "Deliver")
+    (choice,) = await asked(
+        tmp_path, "as2fm/pictureEdit", "tree.xml", range=deliver["range"], action="wrap", answers=[]
+    )
+    assert {"label": "Inverter", "answer": "Inverter", "description": "decorator"} in choice["question"]["options"]
     (whole,) = await asked(tmp_path, "as2fm/pictureEdit", name, action="addState", answers=["third"])
     assert '<state id="third" />' in whole["edit"]["changes"][uri][0]["newText"]
     (gone,) = await asked(tmp_path, "as2fm/pictureEdit", "none.ascxml", action="addState", answers=[])
