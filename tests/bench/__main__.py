@@ -7,7 +7,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from bench import check, debug, growth, observers, requests, scan, sharing, storm, translate, trees, verify
+from bench import check, debug, growth, observers, qvbs, requests, scan, sharing, storm, translate, trees, verify
 from bench.report import Benchmark, machine, table
 
 BENCHMARKS: dict[str, Benchmark] = {
@@ -15,6 +15,7 @@ BENCHMARKS: dict[str, Benchmark] = {
     **debug.BENCHMARKS,
     **growth.BENCHMARKS,
     **observers.BENCHMARKS,
+    **qvbs.BENCHMARKS,
     **requests.BENCHMARKS,
     **scan.BENCHMARKS,
     **sharing.BENCHMARKS,

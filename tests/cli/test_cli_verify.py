@@ -680,7 +680,29 @@ def test_constants_without_value_and_other_kinds_of_models(command: Command, tmp
     written = coin()
     del written["variables"][0]["initial-value"]
     done = command("verify", write(tmp_path, written))
-    assert (done.status, "`x` has no initial value" in done.err) == (1, True)
+    assert (done.status, "`x` has no initial value, its type has no bounds" in done.err) == (1, True)
+
+
+def test_several_initial_states(command: Command, tmp_path: Path) -> None:
+    written = coin()
+    row = written["variables"][0]
+    del row["initial-value"]
+    row["type"] = {"kind": "bounded", "base": "int", "lower-bound": 0, "upper-bound": 1}
+    expression = written["properties"][0]["expression"]
+    name = write(tmp_path, written)
+    done = command("verify", name, "--exhaustive")
+    assert "  the scheduler chooses one of 2 initial states\n" in done.out
+    expression["fun"] = "max"
+    name = write(tmp_path, written)
+    done = command("verify", name)
+    assert "  maximum over 2 initial states\n" in done.out
+    done = command("verify", name, "--format", "json")
+    assert rows(done.out)["heads"]["exact"]["initial_states"] == {"number": 2, "combined": "max"}
+    done = command("verify", name, "--method", "adaptive")
+    assert "warning: this is the mean over 2 initial states under uniform choices" in done.out
+    assert "one of 2 initial states and all choices were drawn uniformly at random\n" in done.out
+    done = command("verify", name, "--scheduler", "lss")
+    assert "minimum or maximum over several initial states" in done.err
 
 
 def test_a_property_on_an_unknown_variable(command: Command, tmp_path: Path, robot: Path) -> None:

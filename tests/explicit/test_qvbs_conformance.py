@@ -17,7 +17,9 @@ from roaml.jani.reader import read_model
 from roaml.json_syntax import parse
 from roaml.smc.fault import FaultError
 from roaml.smc.model import ModelChecker
-from roaml.verification.exhaustive import exact_values
+from roaml.smc.pool import Pool
+from roaml.smc.run import EstimationMethod, Options
+from roaml.verification.exhaustive import UndecidedError, exact_values
 from roaml.verification.schedulers import is_minimised
 
 FOLDER = conformance.ROOT.parent / "qvbs"
@@ -35,14 +37,16 @@ BOUNDED = [
 ]
 """Properties with bounds on rewards, or with rewards up to a step, that `expected.json` does not contain, with the
 values that Storm computes for the same files."""
+SEVERAL_INITIAL_STATES = [
+    {"model": "herman.jani", "property": "steps", "asked": 4 / 3, "initial": 8, "uniform": 1 / 3},
+    {"model": "herman#2.jani", "property": "steps", "asked": 16 / 5, "initial": 32, "uniform": 29 / 15},
+]
+"""Properties that ask for the maximum over all initial states, with the mean value of these states: Storm's values."""
 REFUSED = {
-    "bluetooth": "no initial value",
     "brp-pta": "type `pta`",
     "cluster": "type `ctmc`",
     "embedded": "type `ctmc`",
     "ftwc": "type `ma`",
-    "herman": "no initial value",
-    "herman#2": "no initial value",
     "jobs": "type `ma`",
     "polling": "type `ctmc`",
     "repudiation_malicious": "type `pta`",
@@ -92,6 +96,33 @@ def test_values_with_bounds_on_rewards_are_those_of_storm(row: dict[str, Any]) -
     assert extreme.upper - extreme.lower <= WIDTH * max(1.0, row["asked"])
     assert extreme.lower - STORM * max(1.0, row["asked"]) <= row["asked"]
     assert row["asked"] <= extreme.upper + STORM * max(1.0, row["asked"])
+
+
+@pytest.mark.parametrize("row", SEVERAL_INITIAL_STATES if FOLDER.is_dir() else (), ids=lambda row: row["model"])
+def test_values_over_several_initial_states_are_those_of_storm(row: dict[str, Any]) -> None:
+    model = load(row["model"])
+    checker = ModelChecker(model)
+    assert checker.initial_states == row["initial"]
+    exact = exact_values(checker, checker.compiled_properties[0], StateLimits())
+    for bounds in (exact.minimum, exact.maximum, exact.uniform):
+        assert bounds.lower - WIDTH <= row["asked"] <= bounds.upper + WIDTH
+    options = Options(method=EstimationMethod.FIXED, max_traces=40_000)
+    with Pool() as pool:
+        answer = checker.answer(checker.compiled_properties[0], options, pool)
+    assert abs(answer.value - row["uniform"]) < 0.04
+
+
+@pytest.mark.parametrize("name", ["bluetooth"] if FOLDER.is_dir() else ())
+def test_initial_states_need_not_be_listed(name: str) -> None:
+    """Storm cannot list them either."""
+    checker = ModelChecker(load(f"{name}.jani"))
+    property_ = checker.compiled_properties[0]
+    assert checker.initial_states == 4096 * 32 * 2 * 16 * 128
+    with pytest.raises(UndecidedError, match="536,870,912 states: they are initial states"):
+        exact_values(checker, property_, StateLimits(states=1_000_000))
+    with Pool() as pool:
+        answer = checker.answer(property_, Options(method=EstimationMethod.FIXED, max_traces=200), pool)
+    assert (answer.tally.successes, 1_000 < answer.value < 4_000) == (200, True)
 
 
 @pytest.mark.parametrize("name", REFUSED if FOLDER.is_dir() else ())

@@ -370,7 +370,10 @@ class _Verification:
         if self.options.scheduler is Scheduler.LSS:
             how = f"with each scheduler found; others may be more extreme; seed {self.limits.seed}"
             return f"{self.limits.confidence:g} confidence {how}"
-        how = f"{self.limits.confidence:g} confidence, seed {self.limits.seed}; choices were made uniformly at random"
+        drawn = "choices were made uniformly at random"
+        if (states := self.verifier.checker.initial_states) > 1:
+            drawn = f"one of {states:,} initial states and all choices were drawn uniformly at random"
+        how = f"{self.limits.confidence:g} confidence, seed {self.limits.seed}; {drawn}"
         if all(result.exact is None for result in self.results):
             return how
         over = "" if self.verifier.only_uniform else "over all schedulers and "

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from roaml.smc.goal import InitialFold
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.statistics import Bounds
 from roaml.verification.results import EXACT_WIDTH, Exact, Proof, Result
@@ -15,6 +16,13 @@ EXACT = "exact"
 _PROOFS = {Proof.ALL: "all", Proof.NONE: "none", None: ""}
 """The words in JSON for what an exploration of all states has proved: that the condition of a property holds in all
 states, or in none; empty if neither is proved."""
+
+_OVER_INITIAL_STATES = {
+    InitialFold.CHOICE: "the scheduler chooses one of {:,} initial states",
+    InitialFold.MINIMUM: "minimum over {:,} initial states",
+    InitialFold.MAXIMUM: "maximum over {:,} initial states",
+    InitialFold.MEAN: "mean over {:,} initial states",
+}
 
 
 def lines(name: str, exact: Exact, seconds: float, *, only_uniform: bool = False) -> list[str]:
@@ -34,6 +42,8 @@ def lines(name: str, exact: Exact, seconds: float, *, only_uniform: bool = False
     else:
         both = f"minimum {_number(exact.minimum)}, maximum {_number(exact.maximum)}"
         shown.append(f"{name}: {both}, {_number(exact.uniform)} under uniform choices, {quality}, {end}")
+    if exact.initial_states > 1:
+        shown.append(f"  {_OVER_INITIAL_STATES[exact.fold].format(exact.initial_states)}")
     fails, holds = exact.shortest(FALSE), exact.shortest(TRUE)
     if exact.proof is Proof.ALL:
         shown.append(f"  proof: its condition holds in all {states}")
@@ -62,6 +72,7 @@ def row(exact: Exact) -> dict[str, Any]:
         "precise": exact.is_precise,
         "proof": _PROOFS[exact.proof],
         "states": exact.states,
+        "initial_states": {"number": exact.initial_states, "combined": exact.fold.value},
         "shortest": {
             name: None if (trace := exact.shortest(verdict)) is None else trace.steps
             for name, verdict in (("failed", FALSE), ("passed", TRUE))

@@ -43,7 +43,10 @@ def as_text(
     open_ = [
         (result.answer.question, result.choices or Choices())
         for result in results
-        if result.answer is not None and result.exact is None and may_differ(result.choices)
+        if result.answer is not None
+        and result.exact is None
+        and may_differ(result.choices)
+        and not result.answer.question.asks_for_extreme_state
     ]
     return "".join(f"{line}\n" for line in (*blocks, *_without_expectation(results), *scheduler_report.note(open_)))
 
@@ -85,7 +88,7 @@ def _block(result: Result, place_of: PlaceOf, level: StuckLevel, shown: str, *, 
         if result.stuck is not None and not is_stuck:
             lines += _stuck_lines(result.stuck, place_of, level, shown)
         lines += _remarks(result.answer)
-        if is_alone or not may_differ(result.choices):
+        if is_alone or not may_differ(result.choices) or result.answer.question.asks_for_extreme_state:
             about = scheduler_report.remark(result.answer.question, result.choices)
             lines += [f"  {about}"] if about else []
         if not result.is_interrupted and not result.answer.is_complete:

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from roaml.smc.choices import Choices, Extreme, ExtremeMethod
-from roaml.smc.goal import Question
-from roaml.verification.schedulers import extreme_of, interval_text
+from roaml.smc.goal import InitialFold, Question
+from roaml.verification.schedulers import extreme_of, interval_text, is_minimised
 
 
 def remark(question: Question, choices: Choices | None) -> str:
@@ -19,6 +19,8 @@ def remark(question: Question, choices: Choices | None) -> str:
     Args:
         choices: `None` if the property asks only for uniform choices; the line is then empty.
     """
+    if question.asks_for_extreme_state:
+        return _initial_states_remark(question, choices)
     if choices is None:
         return ""
     if choices.agreement:
@@ -29,6 +31,22 @@ def remark(question: Question, choices: Choices | None) -> str:
     if least is not None and greatest is not None and choices.differ:
         return f"{head}; the values of schedulers range from {_reached(least)} to {_reached(greatest)}"
     return f"{head}, which may differ; {_looked(question, choices)}"
+
+
+def _initial_states_remark(question: Question, choices: Choices | None) -> str:
+    """A warning that traces have the mean of the values of several initial states, and not the extreme one."""
+    extreme = extreme_of(question)
+    asked = {
+        InitialFold.CHOICE: f"{extreme} over the initial states and all schedulers",
+        InitialFold.MINIMUM: "minimum over the initial states",
+        InitialFold.MAXIMUM: "maximum over the initial states",
+    }[question.fold]
+    known = None if choices is None else choices.minimum if is_minimised(question) else choices.maximum
+    number = f"{question.initial_states:,}"
+    head = f"warning: this is the mean over {number} initial states under uniform choices, and the property asks for"
+    if known is not None and known.is_exact:
+        return f"{head} the {asked}, which is {known.value:.6g} (exact, from all states)"
+    return f"{head} the {asked}, which may differ"
 
 
 def warning(question: Question, choices: Choices | None) -> str:

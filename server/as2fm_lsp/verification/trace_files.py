@@ -70,7 +70,7 @@ def csv_lines(recorder: Recorder, trace: int, clock: tuple[str, str] | None = No
             cells.append(seconds + nanoseconds / 1e9)
         return csv_line([*cells, end, *(cell for value in values for cell in cells_of(value))])
 
-    start = recorder.initial(storages)
+    start = recorder.initial(storages, trace)
     header = ["step", *(() if places is None else ("time",)), "end"]
     for name, value in zip(names, start, strict=True):
         header += (name + suffix for suffix in suffixes_of(value))
@@ -87,7 +87,7 @@ def json_lines(target: VerificationTarget, recorder: Recorder, trace: int) -> It
     """The text of a JSON file with a trace, in parts. Each step is on one line."""
     recording = Recording(trace)
     automata = [instance.automaton.name for instance in recorder.legend.layout.instances]
-    start = dict(zip((s.name for s in recorder.shared), recorder.initial(recorder.shared), strict=True))
+    start = dict(zip((s.name for s in recorder.shared), recorder.initial(recorder.shared, trace), strict=True))
     yield "{\n"
     name = _json(recorder.compiled_property.question.name)
     yield f' "property": {name},\n "trace": {trace},\n "seed": {recorder.seed},\n'

@@ -3,15 +3,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from roaml.explicit import codes
 from roaml.explicit.space import Space
 from roaml.record import Record
 from roaml.smc.end import End
+from roaml.smc.names import Storage
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
-from roaml.smc.record import Recorder, Recording, TraceStep
+from roaml.smc.record import Plain, Recorder, Recording, TraceStep
 
 
 class PathStep(NamedTuple):
@@ -29,11 +30,16 @@ class PathStep(NamedTuple):
 
 
 class Path(Record, frozen=True):
-    """The steps to a state, and the verdict on the goal for a trace with these steps."""
+    """The steps to a state, and the verdict on the goal for a trace with these steps.
+
+    Attributes:
+        root: the number of the initial state in which the path begins.
+    """
 
     state: int
     steps: tuple[PathStep, ...]
     verdict: int
+    root: int = 0
 
 
 def shortest(space: Space, verdict: int) -> Path | None:
@@ -42,11 +48,12 @@ def shortest(space: Space, verdict: int) -> Path | None:
     state = _first(space, verdict)
     if state is None:
         return None
-    return Path(state, tuple(path_to(space, state)), verdict)
+    first, steps = path_to(space, state)
+    return Path(state, tuple(steps), verdict, space.roots.index(first))
 
 
-def path_to(space: Space, state: int) -> list[PathStep]:
-    """The steps of a shortest path to a state."""
+def path_to(space: Space, state: int) -> tuple[int, list[PathStep]]:
+    """The initial state and the steps of a shortest path to a state."""
     search = space.search
     steps = []
     while (parent := search.parent_of(state)) >= 0:
@@ -54,7 +61,7 @@ def path_to(space: Space, state: int) -> list[PathStep]:
         assert choice is not None
         steps.append(PathStep(*choice))
         state = parent
-    return steps[::-1]
+    return state, steps[::-1]
 
 
 def _first(space: Space, verdict: int) -> int | None:
@@ -85,9 +92,13 @@ class PathRecorder(Recorder):
         self._path = path
         self._label = space.search.label_of(path.state)
 
+    def initial(self, storages: Sequence[Storage], trace: int) -> list[Plain]:
+        self._kernel.root(self._path.root)
+        return self.values(storages)
+
     def walk(self, recording: Recording) -> Iterator[TraceStep]:
         kernel = self._kernel
-        kernel.begin(self.seed, 0)
+        kernel.root(self._path.root)
         self._steps.start()
         for number, (vector, edges, ways) in enumerate(self._path.steps, 1):
             kernel.go(vector, edges, ways)

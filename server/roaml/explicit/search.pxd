@@ -49,7 +49,12 @@ cdef class StateSearch:
     cdef int real_count
     cdef public int status, is_weighted
     cdef i64 branches
+    cdef public int[::1] roots
+    cdef i64 root_room
+    cdef public u64 entered
 
+    @cython.locals(most=u64, cell=int, state=i64, i=int)
+    cdef void _enter_roots(self, i64 many) except *
     @cython.locals(value=i64)
     cdef i64 _current(self, int cell) noexcept
     cdef void _set_current(self, int cell, i64 value) noexcept

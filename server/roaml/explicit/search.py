@@ -70,6 +70,7 @@ class StateSearch:
 
     Attributes:
         count: the number of states.
+        roots: the initial states; the first `entered` numbers are valid when the search is complete.
         expanded: the number of states whose choices are known; they are the first ones.
         problem: the state whose choices could not be computed; -1 if there is none.
     """
@@ -163,7 +164,7 @@ class StateSearch:
         self.is_weighted = 0
 
         self._number(1.0)
-        self.kernel.begin(0, 0)
+        self.kernel.root(0)
         for leaf in range(self.leaves):
             self.memory[leaf] = UNKNOWN
         for cell in range(self.cells):
@@ -182,6 +183,9 @@ class StateSearch:
         self.key_room = self.state_room * self.words
         self.keys = flat("Q", self.key_room)
         self._find(-1)
+        self.roots = flat("i", 64)
+        self.root_room = 64
+        self.entered = 1
 
     # ------------------------------------------------------------ public
 
@@ -189,6 +193,10 @@ class StateSearch:
         """Expand about `states` further states; return the status of the search."""
         goal = self.expanded + states
         try:
+            if self.entered < self.kernel.roots:
+                self._enter_roots(states)
+                if self.entered < self.kernel.roots:
+                    return self.status
             while self.status == PART and self.expanded < goal:
                 if self.count > SPARE_BITS_FROM_STATES and self.has_learned == 0:
                     self.has_learned = 1
@@ -273,6 +281,36 @@ class StateSearch:
     def visit(self, state: int) -> None:
         """Restore the kernel to the state with the number `state`."""
         self._visit(state)
+
+    # ------------------------------------------------------------ initial states
+
+    def _enter_roots(self, many: int) -> None:
+        """Add about `many` further initial states. All are added before the first state is expanded."""
+        most = self.entered + many
+        while self.entered < self.kernel.roots and self.entered < most:
+            self.kernel.root(self.entered)
+            if self.kernel.fault != 0:
+                self.status = FAULT
+                return
+            for cell in range(self.cells):
+                self._pack(cell)
+            while self.misfit >= 0:
+                self._widen()
+                for cell in range(self.cells):
+                    self._pack(cell)
+            state = self._find(-1)
+            if state < 0:
+                return
+            if self.entered == self.root_room:
+                self.root_room *= 2
+                self.roots = grown(self.roots, self.root_room)
+            self.roots[self.entered] = state
+            self.entered += 1
+        # The kernel is in the state that `value` and `now` describe.
+        self.kernel.root(0)
+        for i in range(self.words):
+            self.now[i] = self.keys[i]
+        self.layer_end = self.count
 
     # ------------------------------------------------------------ packing
 
@@ -366,7 +404,7 @@ class StateSearch:
                     if ((value - self.low[cell]) & UINT64_MASK) > self.room[cell]:
                         self._fit(cell, value)
         self._repack()
-        self.kernel.begin(0, 0)
+        self.kernel.root(0)
         for cell in range(self.cells):
             value = self._decoded(0, cell)
             self.value[cell] = value

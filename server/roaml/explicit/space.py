@@ -87,6 +87,11 @@ class Space(Record, frozen=True):
         return int(self.search.count)
 
     @property
+    def roots(self) -> list[int]:
+        """The initial states, in their order."""
+        return list(memoryview(self.search.roots)[: self.search.entered])
+
+    @property
     def can_get_stuck(self) -> bool:
         """Whether a trace can get stuck before the goal is decided."""
         labels = set(bytes(memoryview(self.search.label)[: self.search.expanded]))
@@ -109,6 +114,10 @@ def explore(
         LimitError: a limit was exceeded.
     """
     kernel_module, search_module = modules or _modules()
+    if checker.initial_states > limits.states:
+        raise LimitError(
+            checker.initial_states, f"they are initial states, and more than {limits.states:,} (--max-states)"
+        )
     compiled = checker.compiled(property_)
     goal = compiled.goal
     program = compiled.program

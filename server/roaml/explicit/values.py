@@ -4,12 +4,13 @@ schedulers, and its value under uniform choices."""
 
 from __future__ import annotations
 
+from math import fsum
 from typing import Any
 
 from roaml.explicit import codes, solver
 from roaml.explicit.space import Space
 from roaml.record import Record
-from roaml.smc.goal import NOT
+from roaml.smc.goal import NOT, InitialFold
 from roaml.smc.program import AT_END, FALSE, TRUE, UNKNOWN
 from roaml.smc.statistics import Bounds
 
@@ -32,6 +33,9 @@ class GoalValues(Record, frozen=True):
     Attributes:
         minimum, maximum: the bounds of the extreme values over all schedulers.
         uniform: the bounds of the value under uniform choices.
+
+    With several initial states, these are the minimum, the maximum or the mean of their values, as the property asks
+    (`goal.InitialFold`).
         is_precise: whether the bounds of all three values are as close as intended.
     """
 
@@ -83,6 +87,11 @@ class _Question:
         return solver_
 
     def bounds(self, mode: int) -> Bounds:
+        """The bounds of the value that the property asks for over all initial states."""
+        return _folded(self.of_each_root(mode), _FOLDS.get(self.question.fold, mode))
+
+    def of_each_root(self, mode: int) -> list[Bounds]:
+        """The bounds of the values of the initial states, in their order."""
         goal = self.goal
         is_until = len(goal.left) == 1 and goal.lower[0] != AT_END
         if self.question.is_reward and goal.upper[0] >= 0:
@@ -107,13 +116,14 @@ class _Question:
                 bounds = self.closed(self.solver(mode), "bounded", target, goal.lower[0], goal.upper[0])
             else:
                 bounds = self.closed(self.solver(mode), "probability", target, 0, NOTHING)
-            return Bounds(1 - bounds.upper, 1 - bounds.lower) if is_negated else bounds
+            return _complements(bounds) if is_negated else bounds
         if mode == MINIMUM:
             bounds = self.closed(self.solver(MAXIMUM), "probability", FALSE, 0, NEGATED)
-            return Bounds(1 - bounds.upper, 1 - bounds.lower)
+            return _complements(bounds)
         return self.closed(self.solver(mode), "probability", TRUE, 0, AS_JUDGED)
 
-    def closed(self, solver_: Any, method: str, *arguments: int) -> Bounds:
+    def closed(self, solver_: Any, method: str, *arguments: int) -> list[Bounds]:
+        """The bounds that a method of the solver computes for the initial states."""
         low, high = getattr(solver_, method)(*arguments)
         if solver_.is_unclear:
             raise NoValueError("rewards are negative in a part of the model that can be repeated for ever")
@@ -121,5 +131,26 @@ class _Question:
             if self.work is not None:
                 raise NoValueError(_TOO_MUCH_WORK)
             self.is_precise = False
+        values = [(low, high)]
+        if self.question.initial_states > 1:
+            high_of = solver_.low if method == "accumulated" else solver_.high
+            values = [(solver_.low[root], high_of[root]) for root in self.space.roots]
         # Equal bounds can be in the wrong order after rounding.
-        return Bounds(min(low, high), max(low, high))
+        return [Bounds(min(low, high), max(low, high)) for low, high in values]
+
+
+_FOLDS = {InitialFold.MINIMUM: MINIMUM, InitialFold.MAXIMUM: MAXIMUM, InitialFold.MEAN: MEAN}
+
+
+def _complements(values: list[Bounds]) -> list[Bounds]:
+    return [Bounds(1 - bounds.upper, 1 - bounds.lower) for bounds in values]
+
+
+def _folded(values: list[Bounds], mode: int) -> Bounds:
+    """The minimum, maximum or mean of values."""
+    if len(values) == 1:
+        return values[0]
+    lower, upper = [bounds.lower for bounds in values], [bounds.upper for bounds in values]
+    if mode == MEAN:
+        return Bounds(fsum(lower) / len(values), fsum(upper) / len(values))
+    return Bounds(min(lower), min(upper)) if mode == MINIMUM else Bounds(max(lower), max(upper))

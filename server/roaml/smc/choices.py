@@ -105,9 +105,11 @@ def check_choices(
     Raises:
         TraceFaultError: a trace under some scheduler failed.
     """
-    if model.type is ModelType.DTMC:
-        return Choices(NO_NONDETERMINISM, *_of_answer(answer))
     question, tally = answer.question, answer.tally
+    if model.type is ModelType.DTMC and not question.asks_for_extreme_state:
+        return Choices(NO_NONDETERMINISM, *_of_answer(answer))
+    if model.type is ModelType.DTMC or question.has_opposite_extremes:
+        return Choices()
     if question.is_reward or not tally.traces:
         return Choices()
     size = program.int_count + program.real_count + program.instances

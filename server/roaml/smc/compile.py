@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 from roaml.jani.expressions import Real
 from roaml.jani.model import Assignment, Destination, Edge, Model, ModelType
@@ -16,11 +17,12 @@ from roaml.smc.assign import AssignmentAssembler
 from roaml.smc.cells import CellAssembler
 from roaml.smc.end import Marks
 from roaml.smc.fault import FaultError
+from roaml.smc.initial import MAX_INITIAL_STATES, Cells
 from roaml.smc.layout import MemoryLayout, lay_out
 from roaml.smc.names import Storage, StorageNames
 from roaml.smc.network import CompiledNetwork, EdgeStep, Slot, root
 from roaml.smc.program import Ints, Program
-from roaml.smc.registers import Tape
+from roaml.smc.registers import REAL, Tape
 
 SUPPORTED = (ModelType.DTMC, ModelType.MDP, ModelType.LTS)
 
@@ -281,6 +283,7 @@ class Compilation:
             real_count=self.real_count,
             instances=len(self.layout.instances),
             initial=_ints(initial),
+            **self._initial_tables(),
             first_location=_ints(self.network.first_location),
             group_start=_ints(self.group_start),
             group_slot=_ints(self.group_slot),
@@ -326,6 +329,58 @@ class Compilation:
             zero_variables=_ints([0] * len(self.watched)),
             zero_instances=_ints([0] * len(self.layout.instances)),
         )
+
+    @property
+    def initial_states(self) -> int:
+        """The number of initial states.
+
+        Raises:
+            FaultError: there are too many to number them.
+        """
+        count = 1
+        for _, rows in self._initial_choices():
+            count *= len(rows)
+        if count > MAX_INITIAL_STATES:
+            raise FaultError(
+                "the model has more than 2⁶² initial states; give more variables an `initial-value`", self.model.origin
+            )
+        return count
+
+    def _initial_choices(self) -> list[tuple[list[int], Sequence[Cells]]]:
+        """The independent choices between initial locations or values: their cells (see `Program.root_cell`) and the
+        combinations of values."""
+        choices: list[tuple[list[int], Sequence[Cells]]] = []
+        for number, instance in enumerate(self.layout.instances):
+            names = dict.fromkeys(instance.automaton.initial_locations)
+            if len(names) > 1:
+                choices.append(([number], [(self.network.location_of[number][name],) for name in names]))
+        instances = len(self.layout.instances)
+        for choice in self.layout.choices:
+            firsts = [instances + (self.int_count if s.kind == REAL else 0) for s in choice.storages]
+            cells = [first + s.base for first, s in zip(firsts, choice.storages, strict=True)]
+            choices.append((cells, choice.rows))
+        return choices
+
+    def _initial_tables(self) -> dict[str, Any]:
+        """The members of `Program` about the choices between initial values."""
+        start, cells, first = [0], list[int](), list[int]()
+        ints, reals, counts = array("q"), array("d"), array("q")
+        for own, rows in self._initial_choices():
+            cells += own
+            start.append(len(cells))
+            first.append(len(ints))
+            counts.append(len(rows))
+            for row in rows:
+                ints.extend(0 if isinstance(value, float) else int(value) for value in row)
+                reals.extend(float(value) for value in row)
+        return {
+            "root_start": _ints(start),
+            "root_cell": _ints(cells),
+            "root_count": counts,
+            "root_first": _ints(first),
+            "root_int": ints,
+            "root_real": reals,
+        }
 
     @property
     def legend(self) -> Legend:

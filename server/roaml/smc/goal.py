@@ -74,6 +74,16 @@ class Threshold(Record, frozen=True):
         return self.relation in (BinaryOperator.GREATER, BinaryOperator.GREATER_EQUAL)
 
 
+class InitialFold(enum.Enum):
+    """How a property combines the values of several initial states (docs/spec/properties.md#initial-states)."""
+
+    CHOICE = "choice"
+    """The scheduler chooses the initial state: the least minimum, the greatest maximum, the mean of uniform values."""
+    MINIMUM = "min"
+    MAXIMUM = "max"
+    MEAN = "avg"
+
+
 class Question(Record, frozen=True):
     """What a property asks about all traces, such as the minimum of a probability.
 
@@ -87,6 +97,8 @@ class Question(Record, frozen=True):
         can_be_vacuous: whether there may be traces that do not exercise the property (`Activity`).
         can_be_late: see `ObserverOutputs`.
         is_conditional: whether it is only about traces that satisfy assumptions.
+        initial_states: the number of initial states.
+        fold: how the property combines their values.
     """
 
     name: str
@@ -98,6 +110,26 @@ class Question(Record, frozen=True):
     can_be_vacuous: bool = False
     can_be_late: bool = False
     is_conditional: bool = False
+    initial_states: int = 1
+    fold: InitialFold = InitialFold.CHOICE
+
+    @property
+    def is_minimised(self) -> bool:
+        """Whether the property asks for the minimum over all schedulers."""
+        return self.operator.endswith("min")
+
+    @property
+    def asks_for_extreme_state(self) -> bool:
+        """Whether the property asks for the extreme value of several initial states. Traces with uniform choices have
+        the mean of these values."""
+        return self.initial_states > 1 and self.fold is not InitialFold.MEAN
+
+    @property
+    def has_opposite_extremes(self) -> bool:
+        """Whether the property asks for the maximum over the initial states and the minimum over the schedulers, or for
+        the reverse. The value of a scheduler that chooses the initial state at random is then no bound."""
+        opposite = InitialFold.MAXIMUM if self.is_minimised else InitialFold.MINIMUM
+        return self.initial_states > 1 and self.fold is opposite
 
 
 class Activity(enum.IntEnum):
@@ -202,7 +234,15 @@ def compile_stuck(compilation: Compilation) -> CompiledProperty:
         sum_exit=array("i"),
         sum_limit=array("d"),
     )
-    question = Question(STUCK_PROPERTY, ProbabilityOperator.PMAX.value, False, None, (), is_stuck=True)
+    question = Question(
+        STUCK_PROPERTY,
+        ProbabilityOperator.PMAX.value,
+        False,
+        None,
+        (),
+        is_stuck=True,
+        initial_states=compilation.initial_states,
+    )
     return CompiledProperty(Property(STUCK_PROPERTY, formula), question, goal)
 
 
@@ -224,7 +264,7 @@ class _Writer:
         self.is_bounded = 0
 
     def compiled_property(self) -> CompiledProperty:
-        formula, threshold = self.opened(self.property.expression)
+        formula, threshold, function = self.opened(self.property.expression)
         step_reward = exit_reward = -1
         match formula:
             case Probability(operator, path):
@@ -245,6 +285,8 @@ class _Writer:
             variables,
             can_be_vacuous=outputs.triggered is not None or outputs.opened is not None,
             can_be_late=outputs.can_be_late,
+            initial_states=self.compilation.initial_states,
+            fold=self.fold(function, threshold),
         )
         seen_start, seen_leaf = array("i", [0]), array("i")
         for storage in self.compilation.watched:
@@ -291,13 +333,15 @@ class _Writer:
         names = dict.fromkeys(name for formula in self.conditions for name, _ in identifiers(formula))
         return tuple(name for name in names if not isinstance(self.names.values.get(name), Operand))
 
-    def opened(self, formula: Formula) -> tuple[Formula, Threshold | None]:
-        """Remove filters and the comparison with a number. Return the probability or reward in them, and the
-        comparison."""
+    def opened(self, formula: Formula) -> tuple[Formula, Threshold | None, FilterFunction]:
+        """Remove filters and the comparison with a number. Return the probability or reward in them, the comparison,
+        and the function of the innermost filter: to others, its result is the value of every initial state."""
         threshold: Threshold | None = None
+        function = FilterFunction.VALUES
         while True:
             match formula:
                 case Filter():
+                    function = formula.function
                     formula = formula.values
                 case BinaryFormula(operator, left, right) if operator in _MIRRORED and threshold is None:
                     if isinstance(left, ProperFormula):
@@ -306,7 +350,23 @@ class _Writer:
                         formula, other, operator = right, left, _MIRRORED[operator]
                     threshold = Threshold(operator, self.number(other))
                 case _:
-                    return formula, threshold
+                    return formula, threshold, function
+
+    def fold(self, function: FilterFunction, threshold: Threshold | None) -> InitialFold:
+        """How a filter combines the values of the initial states.
+
+        Raises:
+            FaultError: it adds the values of several initial states.
+        """
+        if function is FilterFunction.SUM and self.compilation.initial_states > 1:
+            message = "the filter `sum` adds the values of several initial states; use `avg`, `min` or `max`"
+            raise FaultError(message, self.property.origin, code=UNSUPPORTED)
+        if function in _FOLDS:
+            return _FOLDS[function]
+        if threshold is None:
+            return InitialFold.CHOICE
+        is_minimum = threshold.is_lower is not (function is FilterFunction.EXISTS)
+        return InitialFold.MINIMUM if is_minimum else InitialFold.MAXIMUM
 
     def number(self, formula: Formula) -> float:
         """The value of an expression that does not depend on the state."""
@@ -484,6 +544,11 @@ class _Writer:
         )
 
 
+_FOLDS = {
+    FilterFunction.MIN: InitialFold.MINIMUM,
+    FilterFunction.MAX: InitialFold.MAXIMUM,
+    FilterFunction.AVG: InitialFold.MEAN,
+}
 _COMBINE = {BinaryOperator.AND: AND, BinaryOperator.OR: OR, BinaryOperator.IMPLIES: OR}
 
 

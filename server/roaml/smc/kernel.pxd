@@ -23,6 +23,10 @@ cdef class Kernel:
     cdef double[::1] reals_0, reals, reals_before
     cdef int int_count, real_count, instances, settle
     cdef int[::1] place_0, place, first_location
+    cdef int[::1] root_start, root_cell, root_first
+    cdef i64[::1] root_count, root_int
+    cdef double[::1] root_real
+    cdef public u64 roots
     cdef int[::1] group_start, group_slot, edge_start, guard, way_start, way_target, way_code, way_chance, way_move
     cdef double[::1] way_sum
     cdef int[::1] move_start, move_slot, move_count
@@ -60,6 +64,9 @@ cdef class Kernel:
     cdef void _prepare(self) noexcept
     @cython.locals(i=int)
     cdef void _reset(self) noexcept
+    @cython.locals(rest=u64, choice=int, first=int, end=int, at=i64, k=int, cell=int, slot=int, a=int, group=int, i=int)
+    cdef void _enter(self, u64 number) noexcept
+    cpdef void root(self, u64 number) noexcept
     @cython.locals(z=u64)
     cdef u64 _mixed(self, u64 value) noexcept
     cdef u64 _draw(self) noexcept

@@ -8,6 +8,7 @@
   *gate*, which counts the slots that are not ready; a gate is open if all its slots are ready, and a vector counts its
   gates that are not open. A step updates only the slots of the locations that it leaves and enters, and the guards that
   read a variable that has changed.
+- A model with several initial states starts in one of them, which random number 0 of the trace selects.
 - A *way* is a destination of an edge. A *part* of a step is a slot with the way that it takes.
 - If a vector has too many combinations of edges to number them all, the edge of each automaton is drawn separately. The
   weight of the vector is the number of its combinations in both cases.
@@ -66,6 +67,15 @@ class Kernel:
         self.instances = program.instances
         self.place_0 = program.initial
         self.place = program.initial[:]
+        self.root_start = program.root_start
+        self.root_cell = program.root_cell
+        self.root_count = program.root_count
+        self.root_first = program.root_first
+        self.root_int = program.root_int
+        self.root_real = program.root_real
+        self.roots = 1
+        for i in range(len(program.root_count)):
+            self.roots *= program.root_count[i]
         self.first_location = program.first_location
         self.group_start = program.group_start
         self.group_slot = program.group_slot
@@ -208,7 +218,15 @@ class Kernel:
         self.drawn = 0
         self.scheduler = scheduler & UINT64_MASK
         self._reset()
+        if self.roots > 1:
+            self._enter(self._mixed(self.key) % self.roots)
         return self._finish(self._look())
+
+    def root(self, number: int) -> None:
+        """Go to the initial state with this number, from 0 to `roots` - 1, without evaluating the goal."""
+        self._reset()
+        if self.roots > 1:
+            self._enter(number)
 
     def advance(self, limit: int) -> int:
         """Continue until the goal is decided or the trace has `limit` steps; return the status of the goal then."""
@@ -430,6 +448,37 @@ class Kernel:
             if self.asked[i] == 0:
                 self.known[i] = FALSE
                 self._drop(i)
+
+    def _enter(self, number: int) -> None:
+        """Replace the first initial state by the one with this number."""
+        rest = number
+        for choice in range(len(self.root_count)):
+            first = self.root_start[choice]
+            end = self.root_start[choice + 1]
+            at = self.root_first[choice] + (rest % self.root_count[choice]) * (end - first)
+            rest //= self.root_count[choice]
+            for k in range(first, end):
+                cell = self.root_cell[k]
+                if cell < self.instances:
+                    self.place[cell] = self.root_int[at]
+                elif cell < self.instances + self.int_count:
+                    self.ints[cell - self.instances] = self.root_int[at]
+                else:
+                    self.reals[cell - self.instances - self.int_count] = self.root_real[at]
+                at += 1
+        self.fault = 0
+        if self.settle >= 0:
+            self._execute(self.settle)
+        for slot in range(len(self.ready)):
+            self._set_ready(slot, 0)
+        for a in range(self.instances):
+            self._settle_location(a)
+        for a in range(self.instances):
+            for group in range(self.group_start[self.place[a]], self.group_start[self.place[a] + 1]):
+                self._set_ready(self.group_slot[group], self._count(group))
+        for i in range(self.note_count):
+            self.noted[self.notes[i]] = 0
+        self.note_count = 0
 
     # ------------------------------------------------------------ random numbers
 

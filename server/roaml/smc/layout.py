@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, MutableSequence
+from collections.abc import Iterable, Iterator, Mapping, MutableSequence, Sequence
 from typing import Any
 
 from roaml.jani.expressions import ArrayAccess, Expression, Name
@@ -13,6 +13,7 @@ from roaml.jani.types import ArrayType, BoundedType, Type
 from roaml.record import Record
 from roaml.smc import shapes
 from roaml.smc.fault import FaultError
+from roaml.smc.initial import InitialChoice, InitialCondition, OpenVariable, initial_choices
 from roaml.smc.names import Meaning, Storage, StorageNames
 from roaml.smc.registers import INT, REAL, Number, Operand, Tape, product
 from roaml.smc.shapes import kind_of, larger, shape_of
@@ -34,13 +35,15 @@ class MemoryLayout(Record, frozen=True):
     Attributes:
         names: the meanings of names outside of automata.
         shared: the variables of the model.
-        initial: the initial value of each storage, by the identity (`id`) of the storage.
+        initial: the value of each storage in the first initial state, by the identity (`id`) of the storage.
+        choices: the choices between initial values; empty if all variables have a single one.
     """
 
     names: StorageNames
     shared: tuple[Storage, ...]
     instances: tuple[AutomatonInstance, ...]
     initial: Mapping[int, Value]
+    choices: tuple[InitialChoice, ...] = ()
 
     @property
     def storages(self) -> tuple[Storage, ...]:
@@ -59,7 +62,8 @@ def lay_out(model: Model, tape: Tape) -> MemoryLayout:
     constants = _constants(model, functions)
     initial: dict[int, Value] = {}
     values: dict[str, Meaning] = {}
-    shared = _storages(model.variables, constants, functions, initial)
+    open_: list[OpenVariable] = []
+    shared = _storages(model.variables, constants, functions, initial, open_)
     values.update({storage.name: storage for storage in shared})
     arrays = {c.name: constants[c.name] for c in model.constants if isinstance(c.type, ArrayType)}
     constant_arrays = []
@@ -77,11 +81,12 @@ def lay_out(model: Model, tape: Tape) -> MemoryLayout:
         if automaton is None:
             raise FaultError(f"there is no automaton `{element.automaton}`", element.origin)
         inner = {**functions, **{function.name: function for function in automaton.functions}}
-        own = _storages(automaton.variables, constants, inner, initial)
+        own = _storages(automaton.variables, constants, inner, initial, open_)
         drafts.append((automaton, inner, own))
     scopes = [{**values, **{storage.name: storage for storage in own}} for _, _, own in drafts]
     named = [(a, StorageNames(scope, inner)) for (a, inner, _), scope in zip(drafts, scopes, strict=True)]
     _grow(named, constants)
+    choices = initial_choices(_conditions(model, shared, drafts, functions), open_, constants, initial)
     for storage in (*shared, *(storage for _, _, own in drafts for storage in own)):
         _place(storage, initial[id(storage)], tape)
     for storage in constant_arrays:
@@ -103,30 +108,23 @@ def lay_out(model: Model, tape: Tape) -> MemoryLayout:
         )
         for (automaton, inner, own), scope in zip(drafts, scopes, strict=True)
     )
-    layout = MemoryLayout(StorageNames(values, functions), shared, instances, initial)
-    _check_start(model, layout)
-    return layout
+    return MemoryLayout(StorageNames(values, functions), shared, instances, initial, choices)
 
 
-def _check_start(model: Model, layout: MemoryLayout) -> None:
-    known: dict[str, Value] = dict(layout.names.constants())
-    for storage in layout.shared:
-        known[storage.name] = layout.initial[id(storage)]
-    scopes = [(model.restrict_initial, known)]
-    for instance in layout.instances:
-        own = {storage.name: layout.initial[id(storage)] for storage in instance.own}
-        scopes.append((instance.automaton.restrict_initial, {**known, **own}))
-    for clause, values in scopes:
-        if clause is None:
-            continue
-        try:
-            holds = evaluate(clause.exp, values, layout.names.functions)
-        except EvaluationError as error:
-            raise FaultError(error.message, error.origin) from None
-        if not holds:
-            raise FaultError(
-                "there is no initial state: the initial values do not satisfy this condition", clause.exp.origin
-            )
+def _conditions(
+    model: Model,
+    shared: tuple[Storage, ...],
+    drafts: Sequence[tuple[Automaton, Mapping[str, Function], tuple[Storage, ...]]],
+    functions: Mapping[str, Function],
+) -> Iterator[InitialCondition]:
+    """The conditions on initial states."""
+    names = {storage.name: storage for storage in shared}
+    if model.restrict_initial is not None:
+        yield InitialCondition(model.restrict_initial.exp, names, functions)
+    for automaton, inner, own in drafts:
+        if automaton.restrict_initial is not None:
+            known = {**names, **{storage.name: storage for storage in own}}
+            yield InitialCondition(automaton.restrict_initial.exp, known, inner)
 
 
 def _constants(model: Model, functions: Mapping[str, Function]) -> dict[str, Value]:
@@ -154,16 +152,22 @@ def _storages(
     constants: Mapping[str, Value],
     functions: Mapping[str, Function],
     initial: dict[int, Value],
+    open_: list[OpenVariable],
 ) -> tuple[Storage, ...]:
+    """The storages of variables. Those without initial value are added to `open_`, the initial values of the others to
+    `initial`."""
     storages = []
     for variable in variables:
         try:
             kind_of(variable.type)
         except FaultError as fault:
             raise FaultError(f"`{variable.name}`: {fault.message}", variable.origin) from None
-        if variable.initial_value is None:
-            raise FaultError(f"the variable `{variable.name}` has no initial value", variable.origin)
-        value = _evaluated(variable.initial_value, constants, functions)
+        value: Value = None
+        if variable.initial_value is not None:
+            value = _evaluated(variable.initial_value, constants, functions)
+        elif variable.transient or isinstance(variable.type, ArrayType):
+            kind = "transient variable" if variable.transient else "array"
+            raise FaultError(f"the {kind} `{variable.name}` has no initial value", variable.origin)
         storage = _storage(variable.name, variable.type, value)
         if isinstance(variable.type, BoundedType):
             ends: list[Number | None] = []
@@ -173,12 +177,19 @@ def _storages(
                 ends.append(bound)
             low, high = ends
             storage.bounds = low, high
-            assert isinstance(value, (int, float))
-            if (low is not None and value < low) or (high is not None and value > high):
+            assert value is None or isinstance(value, (int, float))
+            if value is not None and ((low is not None and value < low) or (high is not None and value > high)):
                 raise FaultError(f"the initial value of `{variable.name}` is outside of its bounds", variable.origin)
-        initial[id(storage)] = value
+        if value is None:
+            open_.append(OpenVariable(storage, variable.origin))
+        else:
+            initial[id(storage)] = value
         storages.append(storage)
     return tuple(storages)
+
+
+def _is_between(value: Number, low: Number | None, high: Number | None) -> bool:
+    return (low is None or value >= low) and (high is None or value <= high)
 
 
 def _storage(name: str, type_: Type, value: Value) -> Storage:

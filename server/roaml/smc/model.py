@@ -17,7 +17,14 @@ from roaml.smc.choices import Choices, check_choices
 from roaml.smc.compile import Compilation, Legend
 from roaml.smc.end import Marks
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import NO_OUTPUTS, CompiledProperty, ObserverOutputs, compile_property, compile_stuck, conditional
+from roaml.smc.goal import (
+    NO_OUTPUTS,
+    CompiledProperty,
+    ObserverOutputs,
+    compile_property,
+    compile_stuck,
+    conditional,
+)
 from roaml.smc.lss import Search, candidates, search
 from roaml.smc.opcodes import MESSAGES, FaultCode
 from roaml.smc.pool import Pool, Pulse, Runner
@@ -57,6 +64,7 @@ class ModelChecker:
         compiled_properties: the properties that can be answered.
         refused: name of a property that cannot be answered -> the reason.
         stuck: the property that asks for the probability that a trace gets stuck.
+        initial_states: the number of initial states.
 
     Raises:
         FaultError: the model cannot be run.
@@ -103,6 +111,7 @@ class ModelChecker:
                 self.compiled_properties += (self.stuck,)
                 self._names += (self.stuck.question.name,)
             self.program: Program = self._compilation.program(marks)
+            self.initial_states = self._compilation.initial_states
         except RecursionError:
             raise FaultError("an expression of this model is nested too deeply", model.origin) from None
         finally:
@@ -113,8 +122,8 @@ class ModelChecker:
 
     @property
     def is_deterministic(self) -> bool:
-        """Whether the type of the model excludes nondeterminism."""
-        return self.model.type is ModelType.DTMC
+        """Whether nothing is nondeterministic: the type of the model excludes it, and there is one initial state."""
+        return self.model.type is ModelType.DTMC and self.initial_states == 1
 
     @property
     def legend(self) -> Legend:
@@ -233,6 +242,12 @@ class ModelChecker:
             )
         if property_.question.is_conditional:
             message = "schedulers cannot be sampled for a probability given assumptions; use `--scheduler uniform`"
+            raise FaultError(message, property_.property.origin)
+        if property_.question.asks_for_extreme_state:
+            message = (
+                "schedulers cannot be sampled for the minimum or maximum over several initial states; use "
+                "`--exhaustive`, or the filter `avg`"
+            )
             raise FaultError(message, property_.property.origin)
         try:
             schedulers = candidates(len(self.automata))

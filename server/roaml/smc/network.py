@@ -110,9 +110,9 @@ class CompiledNetwork:
                 table[location.name] = len(self.locations)
                 self.locations.append((number, location.name))
             self.location_of.append(table)
-            if len(instance.automaton.initial_locations) != 1:
+            if not instance.automaton.initial_locations:
                 name = instance.automaton.name
-                raise FaultError(f"`{name}` must have exactly one initial location", instance.automaton.origin)
+                raise FaultError(f"`{name}` has no initial location", instance.automaton.origin)
 
     def _collect_steps(self) -> None:
         prepared: dict[int, list[EdgeStep | None]] = {}

@@ -33,7 +33,13 @@ class Program(Record, frozen=True, eq=False):
         code, functions: the bytecode, and the operators whose functions it calls.
         ints, reals: the initial values of all registers: variables, then constants, then intermediate results.
         int_count, real_count: the numbers of registers that are variables.
-        initial: the first location of each instance.
+        initial: the location of each instance in the first initial state.
+        root_start, root_cell: the independent choices between initial values, and the cells that each sets: an
+            instance for its location; the number of instances plus a register for an integer variable; for a real one,
+            also plus the number of integer variables.
+        root_count: the number of combinations of values of each choice.
+        root_first, root_int, root_real: the values of the cells: for each choice its combinations, one after the other.
+            The values of integer cells are in `root_int`, those of real cells at the same index in `root_real`.
         way_sum: the sum of the probabilities of the ways of an edge up to this way, included.
         way_chance: code that returns the register of the probability of a way, if it depends on the state.
         way_move: the move of a way: the number of its pair of a source and a target location; -1 if both are equal.
@@ -62,6 +68,12 @@ class Program(Record, frozen=True, eq=False):
     real_count: int
     instances: int
     initial: Ints
+    root_start: Ints
+    root_cell: Ints
+    root_count: Ints
+    root_first: Ints
+    root_int: Ints
+    root_real: Reals
     first_location: Ints
     group_start: Ints
     group_slot: Ints

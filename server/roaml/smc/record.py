@@ -191,9 +191,9 @@ class Recorder:
         """The values of the variables in the current state."""
         return self._steps.values(storages)
 
-    def initial(self, storages: Sequence[Storage]) -> list[Plain]:
-        """The initial values of the variables."""
-        self._kernel.begin(self.seed, 0)
+    def initial(self, storages: Sequence[Storage], trace: int) -> list[Plain]:
+        """The initial values of the variables in a trace."""
+        self._kernel.begin(self.seed, trace, self.scheduler)
         return self.values(storages)
 
     def rush(self, recording: Recording) -> None:

@@ -53,7 +53,7 @@ def build_story(recorder: Recorder, trace: int, clock: tuple[str, str] | None = 
     """
     recording = Recording(trace)
     shared = recorder.shared
-    start = dict(zip((storage.name for storage in shared), recorder.initial(shared), strict=True))
+    start = dict(zip((storage.name for storage in shared), recorder.initial(shared, trace), strict=True))
     steps = list(recorder.walk(recording))
     variables = recorder.compiled_property.question.variables
     relevant = _relevant(recorder, steps, variables)

@@ -65,6 +65,8 @@ def exact_values(
         values.is_precise,
         _proof(space, values),
         space.can_get_stuck,
+        checker.initial_states,
+        property_.question.fold,
         tuple(ShortestTrace(space, path) for path in paths),
     )
 

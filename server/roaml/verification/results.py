@@ -12,7 +12,7 @@ from roaml.explicit.space import Space
 from roaml.record import PartlyCompared, Record
 from roaml.smc.choices import Choices
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import CompiledProperty, Question
+from roaml.smc.goal import CompiledProperty, InitialFold, Question
 from roaml.smc.lss import Side
 from roaml.smc.model import ModelChecker
 from roaml.smc.record import SHORTEST, Recorder, Recording, TraceStep
@@ -74,6 +74,8 @@ class Exact(PartlyCompared, frozen=True):
         proof: for a property about one condition that is always or never reached: whether the condition holds in all
             states or in none; `None` otherwise.
         can_get_stuck: whether a trace can get stuck before the property is decided.
+        initial_states: the number of initial states.
+        fold: how the values of several initial states are combined.
         traces: the shortest traces in which the property fails or holds, if there are any.
     """
 
@@ -86,6 +88,8 @@ class Exact(PartlyCompared, frozen=True):
     is_precise: bool = True
     proof: Proof | None = None
     can_get_stuck: bool = False
+    initial_states: int = 1
+    fold: InitialFold = InitialFold.CHOICE
     traces: tuple[ShortestTrace, ...] = ()
 
     @property

@@ -42,6 +42,8 @@ def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | No
             slack = 0.0 if is_strict else _SLACK
             met = threshold.met(extreme.value + slack) or threshold.met(extreme.value - slack)
         return replace(verdict, is_met=True, is_certain=True, under="") if met else missed
+    if answer.question.has_opposite_extremes:
+        return replace(verdict, is_uniform=verdict.is_met)
     if threshold.relation is BinaryOperator.EQUAL:
         width = answer.options.epsilon
         bounds = None if extreme is None else extreme.bounds
@@ -69,7 +71,7 @@ def _missed_by(question: Question, extreme: Extreme | None) -> str:
 
 def is_minimised(question: Question) -> bool:
     """Whether a property asks for the minimum."""
-    return question.operator.endswith("min")
+    return question.is_minimised
 
 
 def may_differ(choices: Choices | None) -> bool:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from roaml.explicit.space import StateLimits
 from roaml.smc.choices import Choices, Extreme, ExtremeMethod
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import CompiledProperty
+from roaml.smc.goal import CompiledProperty, InitialFold
 from roaml.smc.model import ModelChecker
 from roaml.verification.exhaustive import UndecidedError, exact_values
 from roaml.verification.results import Exact
@@ -39,9 +39,10 @@ def choices_of(exact: Exact, agreement: str = "") -> Choices:
     Args:
         agreement: the reason why all schedulers have the same value, if it is known without the exact values.
     """
+    asks_for_extreme_state = exact.initial_states > 1 and exact.fold is not InitialFold.MEAN
     states = "1 state" if exact.states == 1 else f"{exact.states:,} states"
     return Choices(
-        agreement or (f"all {states} were explored" if exact.agrees else ""),
+        agreement or (f"all {states} were explored" if exact.agrees and not asks_for_extreme_state else ""),
         Extreme(exact.least, exact.minimum, ExtremeMethod.EXPLORATION),
         Extreme(exact.greatest, exact.maximum, ExtremeMethod.EXPLORATION),
     )

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Benchmarks on the models of the Quantitative Verification Benchmark Set, if it is in a folder beside the project."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from typing import Any, NamedTuple
+
+import conformance
+from bench.report import Benchmark, Row, median, seconds
+
+FOLDER = conformance.ROOT.parent / "qvbs"
+TRACES = 2_000
+TIMEOUT_S = 180
+"""The wall time in s after which a command is ended."""
+REPETITIONS, LONG_S = 3, 3
+"""The number of calls of which the cheapest is shown; a call that takes more CPU time than LONG_S, in s, is not
+repeated."""
+KINDS = ("dtmc", "mdp")
+"""The types of models that can be answered."""
+
+
+class Command(NamedTuple):
+    """A call of `as2fm-lsp verify`: its CPU time in s, its exit status, -1 if it was ended after `TIMEOUT_S`, and its
+    output."""
+
+    processor: float
+    status: int
+    output: str
+
+
+def verify(*arguments: str) -> Command:
+    """Call `as2fm-lsp verify` with results in JSON."""
+    command = [sys.executable, "-m", "as2fm_lsp", "verify", "--format", "json", *arguments]
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, start_new_session=True
+    ) as process:
+        before = os.times()
+        try:
+            output, _ = process.communicate(timeout=TIMEOUT_S)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.communicate()
+            return Command(TIMEOUT_S, -1, "")
+    after = os.times()
+    spent = after.children_user + after.children_system - before.children_user - before.children_system
+    return Command(spent, process.returncode, output)
+
+
+def models() -> dict[str, Any]:
+    """Name -> content of each model, in alphabetical order."""
+    texts = {path.stem: path.read_text(encoding="utf-8-sig") for path in sorted(FOLDER.glob("*.jani"))}
+    return {name: json.loads(text) for name, text in texts.items()}
+
+
+def expected() -> list[dict[str, Any]]:
+    """The answers that are known."""
+    rows: list[dict[str, Any]] = json.loads((FOLDER / "expected.json").read_text(encoding="utf-8"))
+    return rows
+
+
+def asked(name: str, model: Any) -> str:
+    """The property of a model for which traces are generated: the first one with a known answer, else the first one."""
+    known = [row["property"] for row in expected() if row["model"] == f"{name}.jani"]
+    return str(known[0] if known else model["properties"][0]["name"])
+
+
+def best(name: str, property_: str, count: int) -> Command:
+    """The cheapest call that generates a number of traces for a property of a model."""
+    options = ("--method", "fixed", "--max-traces", str(count), "--jobs", "1", "--scheduler", "uniform")
+    calls: list[Command] = []
+    while len(calls) < REPETITIONS and (not calls or calls[-1].processor < LONG_S):
+        calls.append(verify(str(FOLDER / f"{name}.jani"), "--property", property_, *options))
+    return min(calls, key=lambda call: call.processor)
+
+
+def traces() -> list[Row]:
+    """The CPU time of 2,000 traces for one property of each model, and the part that exceeds the time of one trace."""
+    if not FOLDER.is_dir():
+        return []
+    rows, whole, net = [], [], []
+    for name, model in models().items():
+        if model["type"] not in KINDS:
+            continue
+        property_ = asked(name, model)
+        one, last = (best(name, property_, count) for count in (1, TRACES))
+        if last.status < 0:
+            rows.append(Row("QVBS traces", f"more than {TIMEOUT_S} s", "", f"{name}, {property_}"))
+            continue
+        results = json.loads(last.output)["results"]
+        if not results or results[0].get("traces") is None:
+            rows.append(Row("QVBS traces", "not answered", "", f"{name}, {property_}"))
+            continue
+        whole.append(last.processor)
+        net.append(last.processor - one.processor)
+        steps = results[0]["steps"] / max(1, results[0]["traces"])
+        value = f"{seconds(whole[-1])} whole, {seconds(net[-1])} net"
+        rows.append(Row("QVBS traces", value, "", f"{name}, {property_}, {steps:,.0f} steps in a trace"))
+    if whole:
+        value = f"{seconds(median(whole))} whole, {seconds(median(net))} net"
+        how = f"median of {len(whole)} models: CPU time of {TRACES:,} traces, minimum of 3; net of a run of one trace"
+        rows.append(Row("QVBS traces", value, "", how))
+    return rows
+
+
+BENCHMARKS: dict[str, Benchmark] = {"qvbs-traces": traces}
