@@ -12,7 +12,8 @@ import pytest
 
 from as2fm_lsp.cli.main import run
 from roaml import api
-from roaml.figures.drawing import Drawing, TextItem
+from roaml.figures.drawing import Drawing, Shape, TextItem
+from roaml.figures.text import text_width
 from roaml.simulation import Session
 from roaml.simulation.state import NodeStatus
 from roaml.timeline import Axis, LaneKind, Timeline, View, draw_timeline, extent, position_of, step_at
@@ -121,6 +122,28 @@ def test_drawings_stay_within_their_width(axis: Axis) -> None:
         for row in rows:
             boxes = sorted(text.box for text in texts if text.y == row and text.role != "muted")
             assert all(left.right <= right.x for left, right in itertools.pairwise(boxes))
+
+
+@pytest.mark.parametrize("axis", list(Axis))
+@pytest.mark.parametrize("path", [ROBOT, DELIVERY, CASE_STUDY], ids=lambda path: path.parent.name)
+def test_names_of_messages_overlap_no_name_and_no_mark(path: Path, axis: Axis) -> None:
+    session = api.session(api.load(str(path)), seed=3)
+    session.until_decided(2_000)
+    timeline = timeline_of(session)
+    end = extent(timeline, axis)
+    named = 0
+    for start, stop, width in ((0.0, end, 700.0), (0.0, end / 3, 900.0), (end / 2, end * 1.2, 500.0)):
+        drawing = draw_timeline(timeline, View(axis, start, stop, width))
+        events = [group for group in drawing.groups if group.role == "event"]
+        marks = [item.box for group in events for item in group.items if isinstance(item, Shape)]
+        texts = [item for group in events for item in group.items if isinstance(item, TextItem)]
+        named += len(texts)
+        boxes = sorted((text.x, text.x + text_width(text.text, text.size)) for text in texts)
+        assert all(right <= left for (_, right), (left, _) in itertools.pairwise(boxes))
+        for left, right in boxes:
+            assert 0.0 <= left <= right <= width
+            assert not any(left < mark.x + mark.width / 2 < right for mark in marks)
+    assert named
 
 
 def _texts(drawing: Drawing) -> list[TextItem]:

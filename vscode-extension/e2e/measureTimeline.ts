@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /**
- * Frames while the timeline of a long run scrolls and zooms: the time between them, and the time in which the view
- * handles the input and lays out the page.
+ * Frames while the timeline of a long run scrolls and zooms: the time between them, the time in which the view handles
+ * the input and lays out the page, and the CPU time of its process. Only the CPU time does not depend on what else the
+ * machine does.
  */
 
 import type { Frame } from "playwright-core";
@@ -38,9 +39,29 @@ await timeline.locator(`body[data-step="${STEPS}"]`).waitFor();
 
 // The whole run becomes visible, then a hundredth of it.
 await timeline.getByRole("button", { name: "Fit", exact: true }).click();
-console.log(`zooming: ${await frames(timeline, { deltaX: 0, deltaY: -4, ctrlKey: true })}`);
-console.log(`scrolling: ${await frames(timeline, { deltaX: -40, deltaY: 0, ctrlKey: false })}`);
+console.log(`zooming: ${await withCpu(() => frames(timeline, { deltaX: 0, deltaY: -4, ctrlKey: true }))}`);
+console.log(`scrolling: ${await withCpu(() => frames(timeline, { deltaX: -40, deltaY: 0, ctrlKey: false }))}`);
 await workbench.stop();
+
+/** The text of a measurement with the CPU time of the process and of the main thread of the view, in ms for each frame. */
+async function withCpu(measured: () => Promise<string>): Promise<string> {
+    // A webview may share the process of the workbench.
+    const session = await page
+        .context()
+        .newCDPSession(timeline)
+        .catch(() => page.context().newCDPSession(page));
+    await session.send("Performance.enable", { timeDomain: "threadTicks" });
+    const read = async () => {
+        const { metrics } = await session.send("Performance.getMetrics");
+        const of = (name: string) => metrics.find((metric) => metric.name === name)?.value ?? NaN;
+        return { process: of("ProcessTime"), thread: of("ThreadTime") };
+    };
+    const before = await read();
+    const text = await measured();
+    const after = await read();
+    const each = (one: number, other: number) => (((other - one) * 1000) / FRAMES).toFixed(1);
+    return `${text}; CPU for each frame ${each(before.process, after.process)} ms, main thread ${each(before.thread, after.thread)} ms`;
+}
 
 /** Sends one event of the wheel in each frame; the median and the 95th percentile of the times in ms. */
 async function frames(view: Frame, wheel: { deltaX: number; deltaY: number; ctrlKey: boolean }): Promise<string> {

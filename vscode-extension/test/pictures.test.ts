@@ -5,6 +5,7 @@ import type { Box, Picture, PictureEdge, PictureNode, Place, Words } from "../sr
 import { partAt } from "../src/pictures/partAt";
 import {
     around,
+    besideCorner,
     bestDrawing,
     centered,
     fit,
@@ -142,6 +143,17 @@ test("fitting, zooming and revealing", () => {
     assert.deepEqual(reveal(sight, { x: 10, y: 10, width: 20, height: 20 }, 100, 100), sight);
     const moved = reveal(sight, { x: 200, y: 10, width: 20, height: 20 }, 100, 100);
     assert.ok(moved.x > 120 && moved.x < 200 && moved.y === 0);
+});
+
+test("a node is not left below the map", () => {
+    const sight = { x: 0, y: 0, scale: 1 };
+    const map = { width: 40, height: 60 };
+    const beside = { x: 10, y: 10, width: 40, height: 20 };
+    assert.deepEqual(besideCorner(sight, beside, 100, 100, map), sight);
+    assert.deepEqual(besideCorner(sight, { ...beside, x: 50, y: 10 }, 100, 100, map), sight);
+    // The drawing moves to the left if the node fits beside the map, otherwise up.
+    assert.deepEqual(besideCorner(sight, { ...beside, x: 50, y: 70 }, 100, 100, map), { ...sight, x: 30 });
+    assert.deepEqual(besideCorner(sight, { ...beside, width: 80, y: 70 }, 100, 100, map), { ...sight, y: 50 });
 });
 
 test("a picture is legible at first, and drawn in the direction that suits the window", () => {

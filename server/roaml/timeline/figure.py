@@ -235,11 +235,13 @@ class _Painter:
             x = self._x(message.received)
             if x > self._view.width:
                 return
-            width = text_width(message.name, SMALL)
+            following = bisect_left(messages, self._first_step(x + 1.0), number + 1, last, key=_received)
             items: list[Item] = [Shape(Box(x - 1.0, AXIS + 2.0, 2.0, MESSAGES - 4.0), Outline.RECTANGLE, "pulse")]
-            if x >= free_from and x + width + 3.0 < self._view.width:
-                items.append(TextItem(message.name, x + 3.0, AXIS + MESSAGES / 2 + SMALL * 0.35, SMALL, "text"))
-                free_from = x + width + 12.0
+            beside = self._x(messages[following].received) if following < last else min(self._view.width, self._end)
+            left, text = _beside(message.name, x, free_from, beside)
+            if text:
+                items.append(TextItem(text, left, AXIS + MESSAGES / 2 + SMALL * 0.35, SMALL, "text"))
+            free_from = max(free_from, (left + text_width(text, SMALL) if text else x) + 6.0, x + 6.0)
             if has_arrows:
                 start = Point(self._x(message.sent), _middle(message.sender))
                 items += (
@@ -253,7 +255,7 @@ class _Painter:
             yield Group("event", Tone.PLAIN, tuple(items), hint=hint, step=message.received)
             number += 1
             if not has_arrows:  # without those in the same pixel
-                number = max(number, bisect_left(messages, self._first_step(x + 1.0), number, last, key=_received))
+                number = max(number, following)
 
     # ------------------------------------------------------------ plots
 
@@ -297,6 +299,15 @@ class _Painter:
             if low != high:
                 items.append(TextItem(_number(low), 2.0, top + PLOT - 2.0, SMALL, "muted"))
         return Group("variable", Tone.ROS, tuple(items), hint=plot.name)
+
+
+def _beside(name: str, x: float, free_from: float, beside: float) -> tuple[float, str]:
+    """The left end of the text beside a mark at `x`, and the text. It is right of the mark if it ends before `beside`,
+    otherwise left of it if it begins after `free_from`, otherwise shortened and right of the mark."""
+    width = text_width(name, SMALL)
+    if x + 3.0 + width > beside - 3.0 and x - 3.0 - width >= max(free_from, 0.0):
+        return x - 3.0 - width, name
+    return x + 3.0, _fitting(name, beside - x - 6.0) if x >= free_from - 6.0 else ""
 
 
 def _received(message: SentMessage) -> int:

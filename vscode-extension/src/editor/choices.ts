@@ -80,9 +80,11 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
     getTreeItem({ choice, outcome }: Entry): vscode.TreeItem {
         const { Expanded, None } = vscode.TreeItemCollapsibleState;
         const hasOutcomes = outcome === undefined && choice.outcomes.length > 1;
-        const item = new vscode.TreeItem(outcome?.text ?? choice.text, hasOutcomes ? Expanded : None);
-        item.description = percent((outcome ?? choice).probability);
-        item.tooltip = outcome?.text ?? choice.text;
+        const { text, probability } = outcome ?? choice;
+        // The probability comes first, because a narrow view cuts the end of the text.
+        const label = probability < 1 ? `${percent(probability)}  ${text}` : text;
+        const item = new vscode.TreeItem(label, hasOutcomes ? Expanded : None);
+        item.tooltip = text;
         item.iconPath = new vscode.ThemeIcon(
             outcome || hasOutcomes ? "git-branch" : choice.isNext ? "debug-stackframe" : "circle-outline",
         );

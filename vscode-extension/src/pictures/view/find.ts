@@ -119,6 +119,20 @@ export function reveal(sight: Sight, box: Box, width: number, height: number): S
     return { ...sight, x: inside(sight.x, box.x, box.width, w), y: inside(sight.y, box.y, box.height, h) };
 }
 
+/**
+ * The view moved by the minimum distance so that a box is not below something of a given size at the lower right corner
+ * of the window. If there is no space beside it, the box is moved above it.
+ */
+export function besideCorner(sight: Sight, box: Box, width: number, height: number, corner: Area): Sight {
+    const covered = {
+        x: (box.x + box.width - sight.x) * sight.scale - (width - corner.width),
+        y: (box.y + box.height - sight.y) * sight.scale - (height - corner.height),
+    };
+    if (covered.x <= 0 || covered.y <= 0) return sight;
+    const fitsBeside = box.width * sight.scale <= width - corner.width;
+    return fitsBeside ? pan(sight, covered.x, 0) : pan(sight, 0, covered.y);
+}
+
 /** The view moved so that a point of the drawing is in the middle of the window. */
 export function centered(sight: Sight, point: Point, width: number, height: number): Sight {
     return { ...sight, x: point.x - width / sight.scale / 2, y: point.y - height / sight.scale / 2 };

@@ -10,6 +10,10 @@ import { element } from "./scene";
 const LARGEST = { width: 200, height: 300 };
 /** A drawing needs no map if it is at most this many times as large as the visible part. */
 const ALMOST_ALL = 1.4;
+/** A smaller window has no space for a map, in pixels. */
+const SMALLEST_WINDOW = { width: 280, height: 220 };
+/** The distance of the map from what is beside it, with its border, in pixels. */
+const DISTANCE = 24;
 
 export class Minimap {
     readonly svg = element("svg", { class: "minimap", "aria-hidden": "true" });
@@ -18,6 +22,7 @@ export class Minimap {
     private scale: MapScale | undefined;
     private view = { width: 0, height: 0 };
     private sight: Sight = { x: 0, y: 0, scale: 1 };
+    private isHidden = true;
 
     constructor(move: (sight: Sight) => void) {
         const center = (event: PointerEvent) => {
@@ -59,10 +64,18 @@ export class Minimap {
         const seen = { width: width / sight.scale, height: height / sight.scale };
         const fits = (size: number, window: number) => size <= window * ALMOST_ALL;
         const isVisible = fits(this.drawing.width, seen.width) && fits(this.drawing.height, seen.height);
-        this.svg.classList.toggle("hidden", isVisible);
+        const isSmall = width < SMALLEST_WINDOW.width || height < SMALLEST_WINDOW.height;
+        this.isHidden = isVisible || isSmall;
+        this.svg.classList.toggle("hidden", this.isHidden);
         this.scale = mapOf(this.drawing, Math.min(LARGEST.width, width / 4), Math.min(LARGEST.height, height / 2));
         place(this.svg, { width: this.scale.width, height: this.scale.height });
         place(this.frame, { x: sight.x, y: sight.y, ...seen });
+    }
+
+    /** The size of the lower right corner of the window that the map covers; undefined if it is hidden. */
+    get size(): { readonly width: number; readonly height: number } | undefined {
+        if (this.isHidden || !this.scale) return undefined;
+        return { width: this.scale.width + DISTANCE, height: this.scale.height + DISTANCE };
     }
 
     /** Emphasise nodes, such as those that a search has found. */
@@ -73,6 +86,7 @@ export class Minimap {
 
     clear(): void {
         this.drawing = undefined;
+        this.isHidden = true;
         this.svg.classList.add("hidden");
         this.svg.replaceChildren();
     }

@@ -15,6 +15,7 @@ import {
 } from "../contract";
 import {
     around,
+    besideCorner,
     bestDrawing,
     fit,
     fitLegibly,
@@ -69,7 +70,10 @@ class View {
         this.legend.className = "legend";
         this.notice.className = "notice";
         this.notice.setAttribute("role", "status");
-        document.body.append(this.svg, this.bar, this.legend, this.notice, this.minimap.svg);
+        const stage = document.createElement("div");
+        stage.className = "stage";
+        stage.append(this.svg, this.notice, this.minimap.svg);
+        document.body.append(this.bar, stage, this.legend);
         this.listen();
         new ResizeObserver(() => {
             this.refit();
@@ -205,10 +209,14 @@ class View {
         this.look(zoom(this.sight, factor, about ?? { x: width / 2, y: height / 2 }));
     }
 
+    /** Move the drawing so that a node is visible, and not below the map. */
     private reveal(node: number): void {
         const box = this.drawing?.nodes.find((candidate) => candidate.index === node);
         const { width, height } = this.svg.getBoundingClientRect();
-        if (box) this.look(reveal(this.sight, box, width, height));
+        if (!box) return;
+        this.look(reveal(this.sight, box, width, height));
+        const map = this.minimap.size;
+        if (map) this.look(besideCorner(this.sight, box, width, height, map));
     }
 
     // ------------------------------------------------------------------ choosing
@@ -264,10 +272,21 @@ class View {
             const isActive = activity.edges.some(({ from, to }) => from === edge?.source && to === edge.target);
             for (const group of groups) group.classList.toggle("active", isActive);
         }
-        const next = picture.nodes.findIndex(
-            ({ id }) => activity.nodes[id] === "next" || activity.nodes[id] === "message",
-        );
-        if (next >= 0) this.reveal(next);
+        this.revealActivity(picture, activity);
+    }
+
+    /** Show the node that is next; otherwise the innermost node that is running, or the ends of an active edge. */
+    private revealActivity(picture: Picture, activity: Activity): void {
+        const lookOf = ({ id }: PictureNode) => activity.nodes[id] ?? "";
+        const next = picture.nodes.findIndex((node) => ["next", "message"].includes(lookOf(node)));
+        // Children follow their parents.
+        const running = picture.nodes.findLastIndex((node) => ["running", "ticked"].includes(lookOf(node)));
+        if (next >= 0 || running >= 0) {
+            this.reveal(next >= 0 ? next : running);
+            return;
+        }
+        for (const id of activity.edges.slice(0, 1).flatMap(({ from, to }) => [to, from]))
+            this.reveal(picture.nodes.findIndex((node) => node.id === id));
     }
 
     private parts(part: Part | null): readonly SVGGElement[] {
@@ -442,11 +461,11 @@ function emphasise(group: SVGGElement): void {
 
 function entry({ tone, text, isLine }: LegendEntry): HTMLElement {
     const made = document.createElement("span");
-    const sample = element("svg", { width: 24, height: 10, class: "scene", "aria-hidden": "true" });
+    const sample = element("svg", { width: isLine ? 24 : 10, height: 10, class: "scene", "aria-hidden": "true" });
     const group = element("g", { class: `link tone-${tone}` });
     const shape = isLine
         ? element("path", { d: "M 1 5 H 23", class: "line" })
-        : element("rect", { x: 7, y: 0, width: 10, height: 10, rx: 2, class: "badge" });
+        : element("rect", { x: 0, y: 0, width: 10, height: 10, rx: 2, class: "badge" });
     group.append(shape);
     sample.append(group);
     made.append(sample, text);

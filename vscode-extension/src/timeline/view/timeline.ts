@@ -6,7 +6,7 @@
 
 import { EXPORTS, type Axis, type FromTimeline, type Tile, type TileRequest, type TimelineWords } from "../contract";
 import type { ToTimeline } from "../contract";
-import { covers, pan, reveal, withMargins, zoom, type Stretch } from "./window";
+import { contains, covers, pan, reveal, withMargins, zoom, type Stretch } from "./window";
 import { theme } from "../../pictures/view/theme";
 
 declare function acquireVsCodeApi(): { postMessage(message: FromTimeline): void };
@@ -14,6 +14,8 @@ declare function acquireVsCodeApi(): { postMessage(message: FromTimeline): void 
 const editor = acquireVsCodeApi();
 const SVG = "http://www.w3.org/2000/svg";
 const ZOOM = 1.5;
+/** While the user zooms, the drawing is stretched for this time before a new one replaces it, in ms. */
+const STRETCH_MS = 150;
 /** The rows above and below the visible ones that are drawn, in pixels. */
 const MARGIN = 400;
 /** A pointer that moves less has clicked. */
@@ -34,6 +36,9 @@ class TimelineView {
     private selection: Stretch | undefined;
     private tile: Tile | undefined;
     private pending = false;
+    /** When the drawing was replaced, on the clock of `performance`. */
+    private drawnAt = 0;
+    private redraw: ReturnType<typeof setTimeout> | undefined;
     private hasChanged = true;
     private drag: { x: number; at: number; selects: boolean; moved: boolean } | undefined;
 
@@ -93,6 +98,17 @@ class TimelineView {
         const { scrollTop, clientHeight } = this.body;
         const isCovered = this.tile !== undefined && covers(this.tile, this.visible, this.width) && this.hasRows();
         if (this.pending || (isCovered && !this.hasChanged) || this.width < 50) return;
+        if (this.tile && !this.hasChanged && this.hasRows() && contains(this.tile, this.visible)) {
+            // Only the scale differs. A new drawing costs more than a frame, so it does not replace each one.
+            const wait = this.drawnAt + STRETCH_MS - performance.now();
+            if (wait > 0) {
+                this.redraw ??= setTimeout(() => {
+                    this.redraw = undefined;
+                    this.refresh();
+                }, wait);
+                return;
+            }
+        }
         const isFirst = this.tile === undefined;
         const part = isFirst ? { from: 0, width: this.width } : withMargins(this.visible, this.width);
         this.pending = true;
@@ -112,6 +128,8 @@ class TimelineView {
     }
 
     private top = 0;
+    /** The distance by which the numbers of the axis are moved down, in pixels. */
+    private axisTop = 0;
 
     private hasRows(): boolean {
         return Math.abs(this.body.scrollTop - this.top) < MARGIN;
@@ -121,6 +139,7 @@ class TimelineView {
         const before = this.tile;
         if (asked.axis !== this.axis) return;
         this.tile = tile;
+        this.drawnAt = performance.now();
         if (!tile.hasTime) this.axis = "steps";
         if (!before) {
             // The first answer says how long the run is.
@@ -136,7 +155,9 @@ class TimelineView {
         this.notice.textContent = "";
         this.drawing.replaceChildren(sceneOf(tile.scene, tile.width, tile.height));
         if (tile.names !== undefined) this.names.replaceChildren(sceneOf(tile.names, NAMES_WIDTH, tile.height));
+        this.axisTop = 0;
         this.rows.style.height = `${tile.height}px`;
+        this.cursor.style.height = `${tile.height}px`;
         const label = this.words ? `${this.words.steps} ${tile.step}. ${this.words.help}` : "";
         this.rows.setAttribute("aria-label", label);
         document.body.dataset["step"] = String(tile.step);
@@ -150,14 +171,21 @@ class TimelineView {
         const stretch = (x(tile.to) - x(tile.from)) / tile.width;
         this.drawing.style.transform = `translateX(${x(tile.from)}px) scaleX(${stretch})`;
         this.cursor.style.transform = `translateX(${x(tile.cursor)}px)`;
-        this.cursor.style.height = `${tile.height}px`;
-        for (const axis of this.drawing.querySelectorAll(".axis-names"))
-            axis.setAttribute("transform", `translate(0 ${this.body.scrollTop})`);
+        this.placeAxis();
         this.selected.hidden = !this.selection;
         if (this.selection) {
             this.selected.style.left = `${x(this.selection.from)}px`;
             this.selected.style.width = `${Math.max(1, x(this.selection.to) - x(this.selection.from))}px`;
         }
+    }
+
+    /** Keep the numbers of the axis above the rows. A change in the drawing is painted anew, so it is made only if needed. */
+    private placeAxis(): void {
+        const { scrollTop } = this.body;
+        if (scrollTop === this.axisTop) return;
+        this.axisTop = scrollTop;
+        for (const axis of this.drawing.querySelectorAll(".axis-names"))
+            axis.setAttribute("transform", `translate(0 ${scrollTop})`);
     }
 
     private look(visible: Stretch): void {

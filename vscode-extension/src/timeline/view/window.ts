@@ -41,5 +41,10 @@ export function withMargins({ from, to }: Stretch, width: number): Stretch & { w
 /** Whether a tile has all that is visible, in about the right size. */
 export function covers(tile: Pick<Tile, "from" | "to" | "width">, { from, to }: Stretch, width: number): boolean {
     const scale = width / (to - from) / (tile.width / (tile.to - tile.from));
-    return tile.from <= from && to <= tile.to && Math.abs(scale - 1) < 0.01;
+    return contains(tile, { from, to }) && Math.abs(scale - 1) < 0.01;
+}
+
+/** Whether a tile has all that is visible, in any size. */
+export function contains(tile: Stretch, { from, to }: Stretch): boolean {
+    return tile.from <= from && to <= tile.to;
 }
