@@ -14,7 +14,13 @@ from setuptools import Extension, setup
 from setuptools.command.build_py import build_py
 
 SCHEMAS = Path(__file__).parent / "schemas"
-COMPILED = ("roaml.smc.kernel", "roaml.explicit.search", "roaml.explicit.elimination", "roaml.explicit.solver")
+COMPILED = (
+    "roaml.smc.kernel",
+    "roaml.explicit.ample",
+    "roaml.explicit.search",
+    "roaml.explicit.elimination",
+    "roaml.explicit.solver",
+)
 """The modules that Cython translates, each after those whose types it uses."""
 IS_PURE = os.environ.get("AS2FM_PURE_PYTHON") == "1"
 DIRECTIVES = {

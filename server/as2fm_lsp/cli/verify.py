@@ -295,7 +295,9 @@ class _Verification:
 
     def _exhaustive(self, property_: CompiledProperty, bar: ProgressBar, began: float) -> Result:
         """The exact values from all states."""
-        limits = StateLimits(self.options.max_states or MAX_STATES, self.options.max_memory)
+        limits = StateLimits(
+            self.options.max_states or MAX_STATES, self.options.max_memory, reduces=not self.options.no_reductions
+        )
         try:
             return self.verifier.exhaustive(
                 property_, limits, lambda states, done: bar.states(property_.question, states, done)

@@ -32,30 +32,34 @@ def lines(name: str, exact: Exact, seconds: float, *, only_uniform: bool = False
         only_uniform: whether only the value under uniform choices is of interest.
     """
     states = "1 state" if exact.states == 1 else f"{exact.states:,} states"
-    end = f"{states}, {seconds:.1f} s"
+    end = f"{states}{' after reductions' if exact.is_reduced else ''}, {seconds:.1f} s"
     quality = "exact" if exact.is_precise else "not exact, because the bounds no longer converge"
     shown: list[str] = []
     if exact.agrees:
         shown.append(f"{name}: = {_number(exact.minimum)} for all schedulers, {quality}, {end}")
-    elif only_uniform:
+    elif only_uniform and exact.uniform is not None:
         shown.append(f"{name}: = {_number(exact.uniform)} under uniform choices, {quality}, {end}")
     else:
         both = f"minimum {_number(exact.minimum)}, maximum {_number(exact.maximum)}"
-        shown.append(f"{name}: {both}, {_number(exact.uniform)} under uniform choices, {quality}, {end}")
+        if exact.uniform is not None:
+            both += f", {_number(exact.uniform)} under uniform choices"
+        shown.append(f"{name}: {both}, {quality}, {end}")
+        if exact.uniform is None:
+            shown.append("  not computed: the value under uniform choices; use --no-reductions")
     if exact.initial_states > 1:
         shown.append(f"  {_OVER_INITIAL_STATES[exact.fold].format(exact.initial_states)}")
     fails, holds = exact.shortest(FALSE), exact.shortest(TRUE)
     if exact.proof is Proof.ALL:
-        shown.append(f"  proof: its condition holds in all {states}")
+        shown.append(f"  proof: its condition holds in all {'states' if exact.is_reduced else states}")
     elif exact.proof is Proof.NONE:
-        shown.append(f"  proof: its condition holds in none of the {states}")
+        shown.append(f"  proof: its condition holds in {'no state' if exact.is_reduced else f'none of the {states}'}")
     shortest = [
         f"{what} after {trace.steps:,} {'step' if trace.steps == 1 else 'steps'}"
         for what, trace in (("fails", fails), ("holds", holds))
         if trace is not None
     ]
     if shortest:
-        shown.append(f"  shortest traces: it {', it '.join(shortest)}")
+        shown.append(f"  {'traces' if exact.is_reduced else 'shortest traces'}: it {', it '.join(shortest)}")
     return shown
 
 
@@ -66,15 +70,16 @@ def row(exact: Exact) -> dict[str, Any]:
         "greatest": _finite(exact.greatest),
         "uniform": _finite(exact.average),
         "bounds": {
-            name: [_finite(bounds.lower), _finite(bounds.upper)]
+            name: None if bounds is None else [_finite(bounds.lower), _finite(bounds.upper)]
             for name, bounds in (("least", exact.minimum), ("greatest", exact.maximum), ("uniform", exact.uniform))
         },
         "precise": exact.is_precise,
         "proof": _PROOFS[exact.proof],
         "states": exact.states,
         "initial_states": {"number": exact.initial_states, "combined": exact.fold.value},
+        "reduced": exact.is_reduced,
         "shortest": {
-            name: None if (trace := exact.shortest(verdict)) is None else trace.steps
+            name: None if (trace := exact.shortest(verdict)) is None or exact.is_reduced else trace.steps
             for name, verdict in (("failed", FALSE), ("passed", TRUE))
         },
     }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The shortest trace to a state, as a `Recording`."""
+"""A trace to a state, as a `Recording`: the shortest one if the search has left nothing out."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Path(Record, frozen=True):
 
 def shortest(space: Space, verdict: int) -> Path | None:
     """The shortest trace with the given verdict on the goal; `None` if no trace has this verdict after finitely many
-    steps."""
+    steps. If the space is reduced, a shorter trace may exist that contains choices which were left out."""
     state = _first(space, verdict)
     if state is None:
         return None
@@ -53,13 +53,13 @@ def shortest(space: Space, verdict: int) -> Path | None:
 
 
 def path_to(space: Space, state: int) -> tuple[int, list[PathStep]]:
-    """The initial state and the steps of a shortest path to a state."""
+    """The initial state and the steps of a path to a state, which is a shortest one if the space is not reduced."""
     search = space.search
-    steps = []
+    steps: list[PathStep] = []
     while (parent := search.parent_of(state)) >= 0:
-        choice = search.steps_to(parent, state)
-        assert choice is not None
-        steps.append(PathStep(*choice))
+        choices = search.steps_to(parent, state)
+        assert choices is not None
+        steps += (PathStep(*choice) for choice in reversed(choices))
         state = parent
     return state, steps[::-1]
 

@@ -25,6 +25,12 @@ def plain_search() -> ModuleType:
 
 
 @cache
+def plain_ample() -> ModuleType:
+    """The module of ample sets as plain Python, even if it is compiled."""
+    return _loaded("plain_ample", Path(__file__).with_name("ample.py"))
+
+
+@cache
 def plain_solver() -> ModuleType:
     """The module of the solver as plain Python, even if the solver is compiled. It uses `elimination` as plain Python,
     too."""

@@ -3,6 +3,7 @@
 # cython: language_level=3
 
 cimport cython
+from roaml.explicit.ample cimport AmpleSets
 from roaml.smc.kernel cimport Kernel
 
 ctypedef unsigned long long u64
@@ -10,7 +11,7 @@ ctypedef long long i64
 
 cdef u64 UINT64_MASK, HASH_1, HASH_2, UINT32_MASK, MAX_INT64
 cdef i64 MAX_COUNTED_STATES, SPARE_BITS_FROM_STATES
-cdef int SAMPLED_TRACES, SAMPLED_STEPS
+cdef int SAMPLED_TRACES, SAMPLED_STEPS, MAX_PASSED
 cdef int FALSE, TRUE, UNKNOWN, FAULTY
 cdef int TIME, STUCK
 cdef int COMPLETE, PART, STATES, MEMORY, FAULT, CHOICES
@@ -35,7 +36,10 @@ cdef class StateSearch:
     cdef int misfit, has_learned, old_words
     cdef i64 misfit_value
     cdef double[::1] chance
-    cdef int[::1] edges, edge_from, slots, picks, ways, moved
+    cdef int[::1] edges, edge_from, slots, picks, ways, moved, pending
+    cdef AmpleSets ample
+    cdef int leaves_out, has_passed
+    cdef public i64 alone, passed
     cdef public u64[::1] keys
     cdef u64[::1] table
     cdef u64 table_mask
@@ -87,14 +91,20 @@ cdef class StateSearch:
     cdef void _make_room(self) except *
     cdef int _emit(self, int word) except -1
     cdef int _number(self, double value) except -1
-    @cython.locals(first=i64, moved=int, w=int, code=u64, i=int, cell=int, value=i64, place=int, group=int)
+    @cython.locals(value=u64, tag=u64, at=u64, entry=u64, state=i64, first=i64, i=int, same=int)
+    cdef int _known(self) noexcept
+    @cython.locals(first=i64, w=int)
     cdef void _visit(self, i64 state) noexcept
+    @cython.locals(moved=int, w=int, code=u64, i=int, cell=int, value=i64, place=int, group=int)
+    cdef void _enter(self) noexcept
     @cython.locals(steps=i64, label=int, lasting=int, leaf=int, verdict=int, lower=i64, status=int)
     cdef int _judged(self) noexcept
     cdef int _combined(self) noexcept
-    @cython.locals(label=int, leads_on=int, combinations=double, many=double, most=int, exit_reward=double, i=int, vector=int, count=int,
+    @cython.locals(label=int, leads_on=int, combinations=double, many=double, most=int, exit_reward=double, i=int, vector=int, count=int, pending=int,
                    weight=double, k=int, j=int)
     cdef void _expand(self, i64 state) except *
+    @cython.locals(at=i64, transitions=i64, count=int, j=int, is_new=int, k=int)
+    cdef int _take_alone(self, int vector, i64 state) except? -9
     @cython.locals(reason=int, added=int, leaf=int)
     cdef int _end(self) noexcept
     @cython.locals(count=int, edge_count=int, i=int, slot=int, place=int, group=int, first=int, end=int, edge=int, guard=int)
@@ -109,5 +119,18 @@ cdef class StateSearch:
     cdef int _next_edges(self, int count) noexcept
     @cython.locals(is_plain=int, j=int, edge=int, successor=i64, head=i64, reward=double, leads_on=int, chance=double)
     cdef int _choose(self, int vector, int count, i64 state, double weight, double exit_reward) except? -9
-    @cython.locals(j=int, i=int, way=int, k=int, cell=int, successor=i64)
+    @cython.locals(j=int, i=int, cell=int, successor=i64)
     cdef int _successor(self, int vector, int count, i64 state) except? -9
+    @cython.locals(j=int)
+    cdef void _execute_choice(self, int vector, int count) noexcept
+    @cython.locals(i=int, j=int, k=int, way=int, cell=int)
+    cdef void _pack_parts(self) noexcept
+    @cython.locals(j=int, k=int, way=int, cell=int)
+    cdef void _undo_parts(self) noexcept
+    @cython.locals(successor=i64)
+    cdef int _pass_on(self, i64 state) except? -9
+    cdef void _return(self, i64 state) noexcept
+    @cython.locals(label=int, vector=int, count=int, i=int, slot=int, way=int, cell=int)
+    cdef int _pass(self) except? -9
+    @cython.locals(place=int, group=int, first=int, end=int, edge=int, way=int)
+    cdef int _only_way(self, int slot) noexcept

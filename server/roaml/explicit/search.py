@@ -11,6 +11,8 @@
   its weight, the number of its reward, and for each destination a state and the number of its probability. These
   numbers index `reals`.
 - When the choices of a state are computed, the state gets a *label*, which contains the status of the goal there.
+- With `leave_out`, choices are left out as `ample` permits, and a state in which only one step is taken, without
+  chance, is not stored: the search goes on from its successor (docs/spec/reductions.md).
 """
 
 from __future__ import annotations
@@ -21,6 +23,7 @@ from typing import TYPE_CHECKING, Any
 from roaml.explicit.memory import flat, grown
 
 if TYPE_CHECKING:
+    from roaml.explicit.ample import AmpleSets
     from roaml.explicit.tables import Tables
     from roaml.smc.kernel import Kernel
 
@@ -35,6 +38,8 @@ SAMPLED_TRACES, SAMPLED_STEPS = 32, 1000
 """The numbers of random traces, and of steps in each, from which the values that cells will have are estimated."""
 MAX_COUNTED_STATES = 0x7FFFFFF0
 """The maximum number of states: numbers of states have 31 bits."""
+MAX_PASSED = 1000
+"""The maximum number of states in sequence that are not stored, because they may form a cycle."""
 
 FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
 TIME, STUCK = 1, 3
@@ -73,6 +78,8 @@ class StateSearch:
         roots: the initial states; the first `entered` numbers are valid when the search is complete.
         expanded: the number of states whose choices are known; they are the first ones.
         problem: the state whose choices could not be computed; -1 if there is none.
+        alone: the number of stored states in which choices were left out.
+        passed: the number of times that a state was not stored.
     """
 
     def __init__(
@@ -139,6 +146,11 @@ class StateSearch:
         self.picks = array("i", [0] * slots)
         self.ways = array("i", [0] * slots)
         self.moved = array("i", [0] * slots)
+        self.leaves_out = 0
+        self.alone = 0
+        self.passed = 0
+        self.has_passed = 0
+        self.pending = array("i", [0] * (len(self.kernel.enabled) + 1))
 
         self.keys = flat("Q", 64)
         self.table_mask = 255
@@ -188,6 +200,11 @@ class StateSearch:
         self.entered = 1
 
     # ------------------------------------------------------------ public
+
+    def leave_out(self, ample: AmpleSets) -> None:
+        """Leave out choices where `ample` finds a vector that may be taken alone."""
+        self.ample = ample
+        self.leaves_out = 1
 
     def run(self, states: int) -> int:
         """Expand about `states` further states; return the status of the search."""
@@ -246,14 +263,13 @@ class StateSearch:
             choices.append((weight, reward, branches))
         return choices
 
-    def steps_to(self, state: int, successor: int) -> tuple[int, list[int], list[int]] | None:
-        """A choice by which `successor` is reached from `state`; `None` if there is none. It consists of the vector
-        and, for each slot that has an effect, the number of the edge among the enabled edges, and the number of the
-        destination of the edge."""
+    def steps_to(self, state: int, successor: int) -> list[tuple[int, list[int], list[int]]] | None:
+        """The choices by which `successor` is reached from `state` without another state that is stored; `None` if
+        there are none. A choice consists of the vector and, for each slot that has an effect, the number of the edge
+        among the enabled edges, and the number of the destination of the edge."""
         self._visit(state)
-        self.label[state] = self._judged()
-        for i in range(self.kernel.enabled_count):
-            vector = self.kernel.enabled[i]
+        self._judged()
+        for vector in [self.kernel.enabled[i] for i in range(self.kernel.enabled_count)]:
             count = self._open(vector)
             for j in range(count):
                 self.picks[j] = self.edge_from[j]
@@ -263,15 +279,34 @@ class StateSearch:
                     chance = 1.0
                     for j in range(count):
                         chance *= self.chance[self.ways[j]]
-                    if chance > 0.0 and self._successor(vector, count, state) == successor:
+                    if chance > 0.0:
                         picks = [self.picks[j] - self.edge_from[j] for j in range(count)]
                         ways = [self.ways[j] - self.kernel.way_start[self.edges[self.picks[j]]] for j in range(count)]
-                        return vector, picks, ways
+                        passed = self._steps_on(vector, count, state, successor)
+                        if passed is not None:
+                            return [(vector, picks, ways), *passed]
                     if self._next_ways(count) == 0:
                         break
                 if self._next_edges(count) == 0:
                     break
         return None
+
+    def _steps_on(
+        self, vector: int, count: int, state: int, successor: int
+    ) -> list[tuple[int, list[int], list[int]]] | None:
+        """The single steps after the choice in `ways` until `successor` is reached; `None` if it is not reached."""
+        if self.leaves_out == 0:
+            return [] if self._successor(vector, count, state) == successor else None
+        self._execute_choice(vector, count)
+        self._pack_parts()
+        self._undo_parts()
+        steps: list[tuple[int, list[int], list[int]]] = []
+        while self._known() != successor:
+            if len(steps) == MAX_PASSED or self._pass() == 0:
+                self._return(state)
+                return None
+            steps.append((self.kernel.vector, [0] * self.kernel.parts, [0] * self.kernel.parts))
+        return steps
 
     def fault(self) -> tuple[int, int, int, int, float]:
         """The undefined operation that ended the search; see `Kernel.problem`."""
@@ -558,6 +593,32 @@ class StateSearch:
             self._rehash((self.table_mask + 1) * 2)
         return state
 
+    def _known(self) -> int:
+        """The number of the state with the key `following`; -1 if it has not been stored."""
+        value = HASH_2
+        for i in range(self.words):
+            value = ((value ^ self.following[i]) * HASH_1) & UINT64_MASK
+            value ^= value >> 32
+        value = (value * HASH_2) & UINT64_MASK
+        tag = value >> 32
+        state: int
+        at = (value >> 7) & self.table_mask
+        while True:
+            entry = self.table[at]
+            if entry == 0:
+                return -1
+            if entry >> 32 == tag:
+                state = (entry & UINT32_MASK) - 1
+                first = state * self.words
+                same = 1
+                for i in range(self.words):
+                    if self.keys[first + i] != self.following[i]:
+                        same = 0
+                        break
+                if same != 0:
+                    return state
+            at = (at + 1) & self.table_mask
+
     def _used(self) -> int:
         """The bytes in use. Memory that was reserved but never written is not included."""
         return self.count * (8 * self.words + 13) + 8 * (self.table_mask + 1) + 4 * self.code_end + 8 * self.real_count
@@ -605,9 +666,15 @@ class StateSearch:
         """Restore the kernel to the state with the number `state`, and update what is enabled. Only cells that differ
         from those of the previous state are examined."""
         first = state * self.words
+        for w in range(self.words):
+            self.following[w] = self.keys[first + w]
+        self._enter()
+
+    def _enter(self) -> None:
+        """Do the same as `_visit` for the state with the key `following`."""
         moved = 0
         for w in range(self.words):
-            code = self.keys[first + w]
+            code = self.following[w]
             if code == self.now[w]:
                 continue
             self.now[w] = code
@@ -710,8 +777,19 @@ class StateSearch:
                 self.kernel.reward = 0.0
                 self.kernel._add_reward(self.kernel.exit_reward)
                 exit_reward = self.kernel.reward
-            for i in range(self.kernel.enabled_count):
-                vector = self.kernel.enabled[i]
+            pending = self.kernel.enabled_count
+            for i in range(pending):
+                self.pending[i] = self.kernel.enabled[i]
+            if self.leaves_out != 0:
+                vector = self.ample.find()
+                if vector >= 0 and self._take_alone(vector, state) != 0:
+                    pending = 0
+                    leads_on = 1
+                if self.status != PART:
+                    self.problem = state
+                    return
+            for i in range(pending):
+                vector = self.pending[i]
                 count = self._open(vector)
                 if self.kernel.fault != 0:
                     self.status = FAULT
@@ -751,6 +829,34 @@ class StateSearch:
         self.expanded = state + 1
         if self.expanded == self.count:
             self.status = COMPLETE
+
+    def _take_alone(self, vector: int, state: int) -> int:
+        """Write the choices of one vector, if all of them lead to states that have not been expanded. So each cycle of
+        states contains one whose choices are all known. Return whether the choices were written."""
+        at = self.code_end
+        transitions = self.transitions
+        count = self._open(vector)
+        if self.kernel.fault != 0:
+            self.status = FAULT
+            return 0
+        for j in range(count):
+            self.picks[j] = self.edge_from[j]
+        self._choose(vector, count, state, 1.0, 0.0)
+        if self.status != PART:
+            return 0
+        is_new = 1
+        if self.code[at] >= 0:
+            is_new = 1 if self.code[at] > state else 0
+        else:
+            for k in range(-self.code[at]):
+                if self.code[at + 3 + 2 * k] <= state:
+                    is_new = 0
+        if is_new == 0:
+            self.code_end = at
+            self.transitions = transitions
+            return 0
+        self.alone += 1
+        return 1
 
     def _end(self) -> int:
         """The bits that are added to the label of a state in which nothing changes any more."""
@@ -853,7 +959,7 @@ class StateSearch:
                 return 0
             self._emit(successor)
             self.transitions += 1
-            return 1 if successor != state else 0
+            return 1 if successor != state or self.has_passed != 0 else 0
         if weight != 1.0:
             self.is_weighted = 1
         head = self.code_end
@@ -871,7 +977,7 @@ class StateSearch:
                 successor = self._successor(vector, count, state)
                 if successor < 0:
                     return 0
-                if successor != state:
+                if successor != state or self.has_passed != 0:
                     leads_on = 1
                 if self.kernel.step_reward >= 0:
                     reward += chance * self.kernel.reward
@@ -888,20 +994,39 @@ class StateSearch:
 
     def _successor(self, vector: int, count: int, state: int) -> int:
         """The number of the state to which the ways in `ways` lead; -1 if there is none."""
+        self._execute_choice(vector, count)
+        if self.kernel.fault != 0:
+            self.status = FAULT
+            return -1
+        self._pack_parts()
+        while self.misfit >= 0:
+            self._widen()
+            for i in range(self.words):
+                self.now[i] = self.keys[state * self.words + i]
+            for cell in range(self.cells):
+                self._pack(cell)
+        if self.leaves_out == 0:
+            successor = self._find(state)
+            self._undo_parts()
+            return successor
+        self._undo_parts()
+        return self._pass_on(state)
+
+    def _execute_choice(self, vector: int, count: int) -> None:
         for j in range(count):
             self.kernel.part_slot[j] = self.slots[j]
             self.kernel.part_way[j] = self.ways[j]
         self.kernel.parts = count
         self.kernel.reward = 0.0
         self.kernel._execute_ways(vector)
-        if self.kernel.fault != 0:
-            self.status = FAULT
-            return -1
+
+    def _pack_parts(self) -> None:
+        """Put the key of the state after a step into `following`. The kernel has executed the step."""
         for i in range(self.words):
             self.following[i] = self.now[i]
-        for j in range(count):
-            way = self.ways[j]
-            self._pack(self.kernel.slot_instance[self.slots[j]])
+        for j in range(self.kernel.parts):
+            way = self.kernel.part_way[j]
+            self._pack(self.kernel.slot_instance[self.kernel.part_slot[j]])
             for k in range(self.way_start[way], self.way_start[way + 1]):
                 self._pack(self.way_cell[k])
         for k in range(len(self.settled)):
@@ -909,17 +1034,12 @@ class StateSearch:
         if self.remembers != 0:
             for cell in range(self.variables, self.cells):
                 self._pack(cell)
-        while self.misfit >= 0:
-            self._widen()
-            for i in range(self.words):
-                self.now[i] = self.keys[state * self.words + i]
-            for cell in range(self.cells):
-                self._pack(cell)
-        successor = self._find(state)
-        # Restore the kernel to the state.
-        for j in range(count):
-            way = self.ways[j]
-            cell = self.kernel.slot_instance[self.slots[j]]
+
+    def _undo_parts(self) -> None:
+        """Restore the kernel to the state before a step. What is enabled has not been updated after the step."""
+        for j in range(self.kernel.parts):
+            way = self.kernel.part_way[j]
+            cell = self.kernel.slot_instance[self.kernel.part_slot[j]]
             self.kernel.place[cell] = self.value[cell]
             for k in range(self.way_start[way], self.way_start[way + 1]):
                 self._set_current(self.way_cell[k], self.value[self.way_cell[k]])
@@ -928,4 +1048,85 @@ class StateSearch:
         for k in range(self.kernel.note_count):
             self.kernel.noted[self.kernel.notes[k]] = 0
         self.kernel.note_count = 0
+
+    def _pass_on(self, state: int) -> int:
+        """The number of the first state to be stored on the path of single steps that begins with the key `following`;
+        -1 if there is none. Afterwards the kernel is in the state with the number `state` again."""
+        self.has_passed = 0
+        successor = self._known()
+        if successor >= 0:
+            return successor
+        for _ in range(MAX_PASSED):
+            if self._pass() == 0:
+                break
+            self.has_passed = 1
+            self.passed += 1
+            successor = self._known()
+            if successor >= 0:
+                break
+        if self.kernel.fault != 0:
+            self.status = FAULT
+            return -1
+        if successor < 0:
+            successor = self._find(state)
+        self._return(state)
         return successor
+
+    def _return(self, state: int) -> None:
+        """Go back to a state that is being expanded."""
+        self._visit(state)
+        if self.remembers != 0:
+            self._judged()
+
+    def _pass(self) -> int:
+        """Replace the key `following` of a state by that of its successor if only one step is taken there, without
+        chance. Return whether the key was replaced."""
+        self._enter()
+        label = self._judged()
+        if label & STATUS != UNKNOWN or self.kernel.fault != 0:
+            return 0
+        vector = self.ample.find()
+        if vector < 0:
+            return 0
+        count = 0
+        for i in range(self.kernel.active_start[vector], self.kernel.active_start[vector + 1]):
+            slot = self.kernel.active_slot[i]
+            way = self._only_way(slot)
+            if way < 0:
+                return 0
+            self.kernel.part_slot[count] = slot
+            self.kernel.part_way[count] = way
+            count += 1
+        self.kernel.parts = count
+        self.kernel.vector = vector
+        self.kernel._execute_ways(vector)
+        if self.kernel.fault != 0:
+            return 0
+        self._pack_parts()
+        if self.misfit >= 0:
+            while self.misfit >= 0:
+                self._widen()
+                for cell in range(self.cells):
+                    self._pack(cell)
+            # The key of the state before the step is not known in the new layout: compare all cells.
+            for i in range(self.words):
+                self.now[i] = self.following[i] ^ UINT64_MASK
+        self._undo_parts()
+        for i in range(self.words):
+            if self.following[i] != self.now[i]:
+                return 1
+        return 0
+
+    def _only_way(self, slot: int) -> int:
+        """The way of the only enabled edge of a slot; -1 if the edge has several ways."""
+        place = self.kernel.place[self.kernel.slot_instance[slot]]
+        group = self.kernel.group_start[place]
+        while self.kernel.group_slot[group] != slot:
+            group += 1
+        first = self.kernel.edge_start[group]
+        end = self.kernel.edge_start[group + 1]
+        edge = first
+        while end - first > 1 and self.kernel.guard[edge] >= 0 and self.kernel._execute(self.kernel.guard[edge]) == 0:
+            edge += 1
+        way = self.kernel.way_start[edge]
+        return way if self.kernel.way_start[edge + 1] == way + 1 else -1

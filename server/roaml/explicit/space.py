@@ -6,8 +6,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeAlias
 
-from roaml.explicit import codes
+from roaml.explicit import ample, codes
 from roaml.explicit import search as engine
+from roaml.explicit.independence import independence_of
 from roaml.explicit.memory import available
 from roaml.explicit.tables import tables_of
 from roaml.record import Record
@@ -43,6 +44,7 @@ class StateLimits(Record, frozen=True):
             no limit.
         work: the maximum number of additions for each value that a property asks for; `None` for the limit of the
             solver.
+        reduces: whether choices may be left out where that keeps the minimum and the maximum.
     """
 
     states: int = MAX_STATES
@@ -50,6 +52,7 @@ class StateLimits(Record, frozen=True):
     combinations: int = MAX_COMBINATIONS
     transitions: int | None = None
     work: int | None = None
+    reduces: bool = True
 
 
 class LimitError(Exception):
@@ -74,6 +77,8 @@ class Space(Record, frozen=True):
         fault_at: the state in which an undefined operation was executed, which ended the search early; -1 if there was
             none.
         problem: the undefined operation.
+        is_reduced: whether choices and states were left out. The minimum and the maximum are those of all states; the
+            value under uniform choices is not.
     """
 
     checker: ModelChecker
@@ -81,6 +86,7 @@ class Space(Record, frozen=True):
     search: Any
     fault_at: int = -1
     problem: TraceProblem | None = None
+    is_reduced: bool = False
 
     @property
     def states(self) -> int:
@@ -104,10 +110,13 @@ def explore(
     limits: StateLimits,
     watch: Watch | None = None,
     modules: Any = None,
+    *,
+    is_reduced: bool = False,
 ) -> Space:
     """All states that can be reached before the goal is decided.
 
     Args:
+        is_reduced: whether choices and states are left out (`independence.can_be_reduced` must be true for the goal).
         modules: the modules of the kernel and of the search, for tests.
 
     Raises:
@@ -122,8 +131,9 @@ def explore(
     goal = compiled.goal
     program = compiled.program
     steps, lower, depth = _bounds(goal)
+    simulator = kernel_module.Kernel(program, goal)
     search = search_module.StateSearch(
-        kernel_module.Kernel(program, goal),
+        simulator,
         tables_of(program, goal, checker.legend, _transient(checker)),
         steps,
         lower,
@@ -132,6 +142,9 @@ def explore(
         available() // 2 if limits.bytes is None else limits.bytes,
         limits.combinations,
     )
+    if is_reduced:
+        tables = independence_of(program, goal, checker.legend)
+        search.leave_out(_ample_module(search_module).AmpleSets(simulator, tables))
     stride = STRIDE if limits.transitions is None else SHORT_STRIDE
     while True:
         status = search.run(stride)
@@ -143,9 +156,10 @@ def explore(
             case codes.PART:
                 continue
             case codes.COMPLETE:
-                return Space(checker, property_, search)
+                return Space(checker, property_, search, is_reduced=is_reduced)
             case codes.FAULT:
-                return Space(checker, property_, search, search.problem, TraceProblem(0, *search.fault()))
+                problem = TraceProblem(0, *search.fault())
+                return Space(checker, property_, search, search.problem, problem, is_reduced)
             case codes.STATES:
                 raise LimitError(search.count, f"there are more than {limits.states:,} (--max-states)")
             case codes.MEMORY:
@@ -184,3 +198,13 @@ def _modules() -> tuple[Any, Any]:
 
         return plain_kernel(), engine
     return kernel, engine
+
+
+def _ample_module(search_module: Any) -> Any:
+    """The module of ample sets that fits a module of the search."""
+    if search_module.compiled():
+        return ample
+
+    from roaml.explicit.plain import plain_ample  # noqa: PLC0415
+
+    return plain_ample()

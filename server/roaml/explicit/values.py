@@ -32,16 +32,16 @@ class GoalValues(Record, frozen=True):
 
     Attributes:
         minimum, maximum: the bounds of the extreme values over all schedulers.
-        uniform: the bounds of the value under uniform choices.
+        uniform: the bounds of the value under uniform choices; `None` if the states do not determine it.
+        is_precise: whether the bounds of all three values are as close as intended.
 
     With several initial states, these are the minimum, the maximum or the mean of their values, as the property asks
     (`goal.InitialFold`).
-        is_precise: whether the bounds of all three values are as close as intended.
     """
 
     minimum: Bounds
     maximum: Bounds
-    uniform: Bounds
+    uniform: Bounds | None
     is_precise: bool
 
 
@@ -77,7 +77,8 @@ class _Question:
                     "the time ends (`max_time`) before a deadline of the property; the probability of this is up to "
                     f"{share:.6g}"
                 )
-        minimum, maximum, uniform = (self.bounds(mode) for mode in (MINIMUM, MAXIMUM, MEAN))
+        minimum, maximum = self.bounds(MINIMUM), self.bounds(MAXIMUM)
+        uniform = None if self.space.is_reduced else self.bounds(MEAN)
         return GoalValues(minimum, maximum, uniform, self.is_precise)
 
     def solver(self, mode: int) -> Any:

@@ -25,6 +25,8 @@ Plain: TypeAlias = "bool | int | float | list[Plain]"
 
 SHORTEST = -1
 """The number of the shortest possible trace, which is not generated at random."""
+SELECTED = -2
+"""The number of a trace that is neither generated at random nor necessarily the shortest one."""
 
 
 class TraceVerdict(Vocabulary):

@@ -3,20 +3,28 @@
 
 from __future__ import annotations
 
+from roaml.explicit.independence import can_be_reduced
 from roaml.explicit.path import shortest
 from roaml.explicit.space import LimitError, Space, StateLimits, Watch, explore
 from roaml.explicit.values import GoalValues, NoValueError, values_of
 from roaml.jani.operators import BinaryOperator
+from roaml.record import replace
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import NOT, CompiledProperty, Question
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import AT_END, FALSE, TRUE
+from roaml.smc.statistics import Bounds
 from roaml.verification.expectations import Expectation, Verdict
-from roaml.verification.results import Exact, Proof, ShortestTrace
+from roaml.verification.results import Exact, Proof, ShortestTrace, is_same
 from roaml.verification.schedulers import is_minimised
 
 _SLACK = 1e-6
 """The tolerance of comparisons with `≥` and `≤`, because numbers in models are rounded, and the default for `=`."""
+MAX_STATES_AT_FIRST = 20_000
+"""If there are more states, a second search leaves out choices that change neither the minimum nor the maximum."""
+MAX_STATES_FOR_UNIFORM = 1_000_000
+"""The maximum number of states that are explored without leaving anything out, because the minimum and the maximum
+differ and do not determine the value under uniform choices."""
 _ESTIMATE = "omit --exhaustive to estimate the value from traces with uniform choices"
 """The remedy if a limit ends the exploration, or if only traces can answer the property."""
 
@@ -39,6 +47,9 @@ def exact_values(
     Raises:
         UndecidedError: a limit was reached, or the property has assumptions or no value that can be computed.
         FaultError: an undefined operation is executed in a reachable state.
+
+    Unless `limits.reduces` is false, choices are left out if there are many states
+    (docs/spec/reductions.md#when).
     """
     if property_.question.is_conditional:
         raise UndecidedError(f"a minimum or maximum given assumptions cannot be computed from all states; {_ESTIMATE}")
@@ -46,28 +57,67 @@ def exact_values(
     if reduced is not checker:
         checker, property_ = reduced, reduced.compiled_properties[0]
     try:
-        space = explore(checker, property_, limits, watch)
+        compiled = checker.compiled(property_)
+        if limits.reduces and can_be_reduced(compiled.program, compiled.goal):
+            return _partly(checker, property_, limits, watch)
+        return _wholly(checker, property_, limits, watch)
     except LimitError as error:
         raise UndecidedError(f"{error}; {_ESTIMATE}") from None
+
+
+def _partly(checker: ModelChecker, property_: CompiledProperty, limits: StateLimits, watch: Watch | None) -> Exact:
+    """The exact values, from as few states as possible."""
+
+    def wholly(states: int) -> Exact | None:
+        """The values from all states; `None` if there are more than this number, and the limits allow more."""
+        try:
+            return _wholly(checker, property_, replace(limits, states=min(states, limits.states)), watch)
+        except LimitError as error:
+            if error.states < states or limits.states <= states:
+                raise
+            return None
+
+    exact = wholly(MAX_STATES_AT_FIRST)
+    if exact is not None:
+        return exact
+    exact = _exact(explore(checker, property_, limits, watch, is_reduced=True), limits)
+    if exact.uniform is None and exact.states <= MAX_STATES_FOR_UNIFORM:
+        try:
+            return wholly(MAX_STATES_FOR_UNIFORM) or exact
+        except LimitError:
+            return exact
+    return exact
+
+
+def _wholly(checker: ModelChecker, property_: CompiledProperty, limits: StateLimits, watch: Watch | None) -> Exact:
+    return _exact(explore(checker, property_, limits, watch), limits)
+
+
+def _exact(space: Space, limits: StateLimits) -> Exact:
+    """The exact values from the states of a space."""
     if space.problem is not None:
-        fault = checker.fault(space.problem)
+        fault = space.checker.fault(space.problem)
         raise FaultError(f"{fault.message} (in a reachable state)", fault.origin, code=fault.code)
     try:
         values = values_of(space, work=limits.work)
     except NoValueError as error:
         raise UndecidedError(str(error)) from None
+    uniform = values.uniform
+    if uniform is None and is_same(values.minimum, values.maximum):
+        uniform = Bounds(values.minimum.lower, values.maximum.upper)
     paths = [path for verdict in (FALSE, TRUE) if (path := shortest(space, verdict)) is not None]
     return Exact(
         values.minimum,
         values.maximum,
-        values.uniform,
+        uniform,
         space.states,
         values.is_precise,
         _proof(space, values),
         space.can_get_stuck,
-        checker.initial_states,
-        property_.question.fold,
+        space.checker.initial_states,
+        space.compiled_property.question.fold,
         tuple(ShortestTrace(space, path) for path in paths),
+        space.is_reduced,
     )
 
 

@@ -15,7 +15,7 @@ from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty, InitialFold, Question
 from roaml.smc.lss import Side
 from roaml.smc.model import ModelChecker
-from roaml.smc.record import SHORTEST, Recorder, Recording, TraceStep
+from roaml.smc.record import SELECTED, SHORTEST, Recorder, Recording, TraceStep
 from roaml.smc.run import Answer, Options
 from roaml.smc.statistics import Bounds
 from roaml.smc.story import Story, build_story
@@ -27,7 +27,7 @@ from roaml.verification.target import VerificationTarget
 
 
 class ShortestTrace(Record, frozen=True):
-    """The shortest of all traces with a given verdict."""
+    """The shortest of all traces with a given verdict; if choices were left out, any trace with this verdict."""
 
     space: Space
     path: Path
@@ -49,7 +49,8 @@ class ShortestTrace(Record, frozen=True):
         """
         recorder = PathRecorder(self.space, self.path)
         names = {storage.name for storage in recorder.shared}
-        return build_story(recorder, SHORTEST, clock if clock is not None and names.issuperset(clock) else None)
+        number = SELECTED if self.space.is_reduced else SHORTEST
+        return build_story(recorder, number, clock if clock is not None and names.issuperset(clock) else None)
 
 
 EXACT_WIDTH = 1e-6
@@ -68,8 +69,9 @@ class Exact(PartlyCompared, frozen=True):
 
     Attributes:
         minimum, maximum: the extreme values over all schedulers, enclosed by bounds.
-        uniform: the value with uniform choices, enclosed by bounds.
-        states: the number of states.
+        uniform: the value with uniform choices, enclosed by bounds; `None` if it was not computed, because choices
+            were left out and the minimum and the maximum differ.
+        states: the number of states that were explored.
         is_precise: whether the bounds are as close as intended: at most 0.0001 percent.
         proof: for a property about one condition that is always or never reached: whether the condition holds in all
             states or in none; `None` otherwise.
@@ -77,13 +79,15 @@ class Exact(PartlyCompared, frozen=True):
         initial_states: the number of initial states.
         fold: how the values of several initial states are combined.
         traces: the shortest traces in which the property fails or holds, if there are any.
+        is_reduced: whether choices that change neither the minimum nor the maximum were left out. Then there are more
+            than `states` states, and `traces` are not necessarily the shortest ones.
     """
 
     UNCOMPARED = frozenset({"traces"})
 
     minimum: Bounds
     maximum: Bounds
-    uniform: Bounds
+    uniform: Bounds | None
     states: int
     is_precise: bool = True
     proof: Proof | None = None
@@ -91,6 +95,7 @@ class Exact(PartlyCompared, frozen=True):
     initial_states: int = 1
     fold: InitialFold = InitialFold.CHOICE
     traces: tuple[ShortestTrace, ...] = ()
+    is_reduced: bool = False
 
     @property
     def least(self) -> float:
@@ -102,19 +107,19 @@ class Exact(PartlyCompared, frozen=True):
 
     @property
     def average(self) -> float:
-        """The value with uniform choices."""
-        return _value(self.uniform)
+        """The value with uniform choices; NaN if it was not computed."""
+        return math.nan if self.uniform is None else _value(self.uniform)
 
     @property
     def agrees(self) -> bool:
         """Whether all schedulers have the same value."""
-        return is_same(self.minimum, self.maximum) and is_same(self.minimum, self.uniform)
+        return is_same(self.minimum, self.maximum) and self.uniform is not None and is_same(self.minimum, self.uniform)
 
     def asked_value(self, question: Question, *, only_uniform: bool) -> tuple[Bounds, float]:
         """The bounds and the value of the minimum or maximum that a property asks for; with `only_uniform`, those for
         uniform choices."""
         if only_uniform:
-            return self.uniform, self.average
+            return Bounds(-math.inf, math.inf) if self.uniform is None else self.uniform, self.average
         return (self.minimum, self.least) if is_minimised(question) else (self.maximum, self.greatest)
 
     def shortest(self, verdict: int) -> ShortestTrace | None:

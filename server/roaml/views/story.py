@@ -13,7 +13,7 @@ from roaml.jani.model import Clause
 from roaml.jani.node import Origin
 from roaml.scxml.names import CLOCK, TREE_ROOT_PREFIX
 from roaml.smc.end import End
-from roaml.smc.record import SHORTEST, VERDICTS, Plain, TraceVerdict, VariableChange
+from roaml.smc.record import SELECTED, SHORTEST, VERDICTS, Plain, TraceVerdict, VariableChange
 from roaml.smc.story import Story
 from roaml.views.observed import reads_observer
 from roaml.views.turns import Message, Turn, turns
@@ -121,7 +121,8 @@ def heading(story: Story) -> str:
     verdict = VERDICTS[story.recording.verdict]
     outcome = "went wrong" if verdict is TraceVerdict.FAULT else verdict.value
     steps = f"{len(story.steps):,} {'step' if len(story.steps) == 1 else 'steps'}"
-    trace = "the shortest trace" if story.recording.trace == SHORTEST else f"trace {story.recording.trace}"
+    number = story.recording.trace
+    trace = {SHORTEST: "the shortest trace", SELECTED: "a trace"}.get(number, f"trace {number}")
     text = f"{story.property} {outcome} in {trace} after {steps}"
     if story.recording.end is End.STUCK:
         text = f"{story.property}: {trace} gets stuck after {steps}"

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+# The C types of ample.py. This file contains types only: without them the same code runs as plain Python.
+# cython: language_level=3
+
+cimport cython
+from roaml.smc.kernel cimport Kernel
+
+ctypedef long long i64
+
+@cython.final
+cdef class AmpleSets:
+    cdef Kernel kernel
+    cdef int[::1] slot_start, slot_vector, hidden, dependent_start, dependent_vector, guard_start, guard_vector
+    cdef int[::1] open_guards, frozen_at, candidates
+    cdef int is_fleeting, count
+    cdef i64 runs
+    cdef i64[::1] frozen, waits
+
+    @cython.locals(count=int, i=int, k=int, vector=int)
+    cpdef int find(self) noexcept
+    @cython.locals(i=int)
+    cdef int _is_single(self, int vector) noexcept
+    @cython.locals(place=int, group=int)
+    cdef int _group(self, int slot) noexcept
+    @cython.locals(i=int, group=int, k=int, at=int, place=int, slot=int)
+    cdef int _is_alone(self, int vector) noexcept
+    cdef void _freeze(self, int instance) noexcept
+    @cython.locals(i=int, slot=int)
+    cdef int _bar(self, int vector) noexcept
+    @cython.locals(chosen=int, i=int, slot=int, is_open=bint, group=int, k=int)
+    cdef int _let_wait(self, int vector) noexcept
