@@ -45,7 +45,7 @@ def test_options_that_end_the_run(command: Command, arguments: tuple[str, ...], 
 
 def test_until_a_message_is_sent(command: Command) -> None:
     out = command("simulate", str(ROBOT), "--until", "/arm/command").out
-    assert out.splitlines()[-2].strip() == "sends topic_arm__command_msg(data: 1)"
+    assert out.splitlines()[-2].strip() == "sends /arm/command (data: 1)"
 
 
 def test_until_a_property_is_decided(command: Command) -> None:

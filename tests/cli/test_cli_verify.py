@@ -223,7 +223,7 @@ def test_explains_a_failing_trace(command: Command, robot: Path) -> None:
     (first, *_) = [text for text in story.splitlines() if "  Deliver (bt_" in text and "is ticked" in text]
     assert f"plugins/deliver.ascxml:{number}" in first
     assert ".000 s  Deliver (bt_1004) " in first
-    assert "sends srv_hand_over" in story
+    assert "sends a request to /hand_over" in story
     assert re.search(r"\n +\w+: \S+ → \S+", story)
 
 

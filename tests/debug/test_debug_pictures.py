@@ -60,8 +60,8 @@ def test_a_stretch_is_exported(client: Client) -> None:
     assert [row.split(",")[0] for row in rows] == ["step", *map(str, range(90, 131))]
     mermaid = client.ask("exportTimeline", format="mermaid", **stretch)["text"]
     assert mermaid.startswith("sequenceDiagram")
-    assert "topic_arm__command_msg(data#58; 2)" in mermaid
-    assert "topic_arm__command_msg(data#58; 1)" not in mermaid
+    assert "/arm/command (data#58; 2)" in mermaid
+    assert "/arm/command (data#58; 1)" not in mermaid
     svg = ET.fromstring(client.ask("exportTimeline", format="svg", theme="dark", **stretch)["text"])
     assert {"Arm", "moving"} <= {text.text for text in svg.iter("{http://www.w3.org/2000/svg}text")}
     assert client.refusal("exportTimeline", format="pdf")

@@ -61,7 +61,7 @@ def told(folder: Path, name: str, *, holds: bool) -> list[str]:
 
 
 PRESSED = [
-    "Button receives the tick of its timer `second` in up → down; sends topic_stop_msg",
+    "Button receives the tick of its timer `second` in up → down; sends /stop",
     "stops observes a message on the topic `/stop`; the property requires an event from now on",
 ]
 

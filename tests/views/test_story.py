@@ -69,7 +69,7 @@ def test_forwarding_steps_are_omitted() -> None:
         "Building",
     }
     event_phrase = [text for line in story_lines for text in (line.what, *line.details)]
-    assert "sends srv_hand_over_response(success: true, message: 'taken')" in event_phrase
+    assert "sends the response of /hand_over (success: true, message: 'taken')" in event_phrase
     assert not [text for text in event_phrase if "_client_" in text or "_len" in text]
 
 

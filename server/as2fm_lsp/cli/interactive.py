@@ -12,8 +12,11 @@ from as2fm_lsp.cli.output import flush, print_text
 from roaml.model.parameters import duration
 from roaml.simulation import Choice, Session
 from roaml.smc.fault import FaultError
+from roaml.smc.record import RecordedVariable
 from roaml.verification.target import VerificationTarget
-from roaml.views.values import shown_value
+from roaml.views.event_words import event_phrase
+from roaml.views.observed import observer_phrase
+from roaml.views.values import shown_parameters, shown_value
 
 HELP = """\
   Enter        take the step that the seed decides
@@ -133,12 +136,17 @@ class Terminal:
             return
         for step in session.steps[before : session.position][-MAX_STEPS_SHOWN:]:
             changes = ", ".join(
-                f"{change.variable.name}: {shown_value(change.before)} → {shown_value(change.after)}"
+                f"{self._name(change.variable)}: {shown_value(change.before)} → {shown_value(change.after)}"
                 for change in step.changes
                 if change.variable.instance >= 0 and session.is_machine(change.variable.instance)
             )
             if changes:
                 print_text(f"  {step.number:>6}  {changes}\n")
+
+    def _name(self, variable: RecordedVariable) -> str:
+        """The name of a variable of a machine."""
+        name = variable.name
+        return self._session.phrases(self._session.automata[variable.instance]).get(name, name)
 
     def _show_choices(self) -> None:
         session = self._session
@@ -160,19 +168,22 @@ class Terminal:
                 yield f"      {letter}  by chance, {outcome.probability:g}: {outcome.text}"
 
     def _state(self) -> Iterator[str]:
-        state = self._session.state()
+        session = self._session
+        state = session.state()
         for machine in state.machines:
-            values = ", ".join(f"{name}: {shown_value(value)}" for name, value in machine.variables.items())
-            handles = f", handles {machine.handles}" if machine.handles else ""
+            phrases = session.phrases(machine.automaton)
+            values = shown_parameters({phrases.get(name, name): value for name, value in machine.variables.items()})
+            handled = event_phrase(machine.event, session.automata, taken=True) if machine.event else ""
+            handles = f", handles {handled}" if handled else ""
             yield f"{machine.name}: {machine.state}{handles}{f' ({values})' if values else ''}"
         for node in state.nodes:
             yield f"{node.type} (bt_{node.number}): {node.status.value}"
         for event in state.events:
-            values = ", ".join(f"{name}: {shown_value(value)}" for name, value in event.parameters.items())
+            values = shown_parameters(event.parameters)
             waiting = ", not received yet" if event.is_waiting else ""
             yield f"{event.text}{f' ({values})' if values else ''}, step {event.step}{waiting}"
         for name, value in {**state.blackboard, **state.shared}.items():
-            yield f"{name}: {shown_value(value)}"
+            yield f"{observer_phrase(name, session.automata) or name}: {shown_value(value)}"
 
 
 MAX_STEPS_SHOWN = 40

@@ -356,7 +356,7 @@ class Debugger:
         return self.go_to(0)
 
     def _enters(self, source: str, destination: str, instance: int) -> bool:
-        return destination != source and self.session.is_resting(instance, destination)
+        return destination != source and self.session.is_state(instance, destination)
 
     # ------------------------------------------------------------ parts
 

@@ -123,7 +123,7 @@ class Stacks:
             )
         if not self._session.is_resting(instance, location):
             edge = part.edge if part is not None else next(e for e in automaton.edges if e.source == location)
-            name = self._sources.tag(edge.origin) or f"{edge.action or location}"
+            name = self._sources.tag(edge.origin) or machine.state
             yield Frame(thread, f"{machine.name}: {name}", edge.origin, instance, node, FrameRole.STATEMENT)
         elif received and part is not None:
             handler, event = part.edge.origin, received

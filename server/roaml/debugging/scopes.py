@@ -27,6 +27,7 @@ from roaml.simulation.session import Session
 from roaml.simulation.state import MachineState, SystemState
 from roaml.simulation.words import STATUS_NAMES
 from roaml.smc.record import Plain, TraceStep, TraceVerdict
+from roaml.views.observed import observer_phrase
 
 
 class ScopeEntry(Record, frozen=True):
@@ -118,7 +119,7 @@ class Values:
     def _own(self, instance: int) -> Iterator[ScopeEntry]:
         stored = self._stored.get(instance, {})
         automaton = self._session.automata_of_model[instance]
-        types = self._sources.variable_types(automaton)
+        types, phrases = self._sources.variable_types(automaton), self._session.phrases(automaton.name)
         shown: set[str] = set()
         for name, type_ in types.items():
             value = typed_value(name, type_, stored)
@@ -128,7 +129,7 @@ class Values:
                 }
                 yield ScopeEntry(name, value, str(type_), name, WatchedVariable(instance, name))
         for name, value in untyped_values({n: v for n, v in stored.items() if n not in shown}).items():
-            yield ScopeEntry(name, value, type_of(value), name, WatchedVariable(instance, name))
+            yield ScopeEntry(phrases.get(name, name), value, type_of(value), name, WatchedVariable(instance, name))
 
     def _ports(self, node: int) -> Iterator[ScopeEntry]:
         for key, port in self._sources.nodes[node].ports:
@@ -162,7 +163,7 @@ class Values:
         stored = self._stored.get(-1, {})
         own = {name: v for name, v in stored.items() if name in self._state.shared or is_length(name)}
         for name, value in untyped_values(own).items():
-            if name in self._state.shared:
+            if name in self._state.shared and not observer_phrase(name, self._clients):
                 yield ScopeEntry(name, value, type_of(value), name, WatchedVariable(-1, name))
 
     def _time(self) -> Iterator[ScopeEntry]:
@@ -173,6 +174,9 @@ class Values:
     def _properties(self) -> Iterator[ScopeEntry]:
         for name, verdict in self._verdicts.items():
             yield ScopeEntry(name, verdict.value, "verdict")
+        for name, value in self._state.shared.items():
+            if (phrase := observer_phrase(name, self._clients)) and not isinstance(value, list):
+                yield ScopeEntry(phrase, value, "observer", name, WatchedVariable(-1, name))
 
     # ------------------------------------------------------------ messages
 
@@ -210,7 +214,7 @@ class Values:
         if there is none. Variables of the frame take precedence over those of the system."""
         own = () if frame is None or frame.instance < 0 else self._own(frame.instance)
         owned = (
-            ScopeEntry(f"{machine.name}.{entry.name}", entry.value, entry.type, entry.expression, entry.variable)
+            replace(entry, expression=f"{machine.name}.{entry.expression}")
             for machine, entries in self.machines()
             for entry in entries
         )
@@ -226,13 +230,13 @@ class Values:
             known[entry.name] = entry.value
         for machine in self._state.machines:
             instance = self._instances[machine.automaton]
-            known[machine.name] = {**{e.name: e.value for e in self._own(instance)}, "state": machine.state}
+            known[machine.name] = {**{e.expression: e.value for e in self._own(instance)}, "state": machine.state}
         known |= {entry.name: entry.value for entry in self._shared()}
         known |= {f"bt_{node.number}": node.status.value for node in self._state.nodes}
         known |= self._blackboard_values()
         if frame is not None and frame.instance >= 0:
             known |= self.message(frame.instance)
-            known |= {entry.name: entry.value for entry in self._own(frame.instance)}
+            known |= {entry.expression: entry.value for entry in self._own(frame.instance)}
         shared = self._stored.get(-1, {})
         own = known.get
 
@@ -254,12 +258,12 @@ def _without_expressions(scope: ScopeEntries, names: Collection[str]) -> ScopeEn
 
 def _member(entry: ScopeEntry, path: str) -> ScopeEntry | None:
     """The entry itself or the member of its struct that has a path."""
-    if path == entry.name:
+    if path == entry.expression:
         return entry
-    if not path.startswith(f"{entry.name}.") or entry.variable is None:
+    if not path.startswith(f"{entry.expression}.") or entry.variable is None:
         return None
     value, variable = entry.value, entry.variable
-    for member in path.removeprefix(f"{entry.name}.").split("."):
+    for member in path.removeprefix(f"{entry.expression}.").split("."):
         if not isinstance(value, dict) or member not in value:
             return None
         value, variable = value[member], WatchedVariable(variable.instance, f"{variable.name}{SEPARATOR}{member}")

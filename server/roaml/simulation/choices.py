@@ -17,14 +17,24 @@ from roaml.jani.model import Automaton, Destination, Edge
 from roaml.jani.node import Origin
 from roaml.record import Record
 from roaml.scxml.events import Role
-from roaml.scxml.names import CLOCK_ACTION, automaton_role, is_timer, received_by, sent_by
+from roaml.scxml.names import (
+    CLOCK,
+    CLOCK_ACTION,
+    automaton_role,
+    is_length,
+    is_observer,
+    is_timer,
+    received_by,
+    sent_by,
+)
 from roaml.simulation.run import Decision, Enabled, EnabledEdges
 from roaml.simulation.words import resting, tree_text, who
 from roaml.smc.compile import Legend
 from roaml.smc.record import Plain
 from roaml.views.event_words import event_phrase
 from roaml.views.events import EventReader
-from roaml.views.values import shown_value
+from roaml.views.locations import states_of
+from roaml.views.values import shown_parameters, shown_value
 
 MAX_OUTCOMES = 64
 """The maximum number of listed outcomes of a choice; all outcomes can be drawn."""
@@ -93,13 +103,14 @@ def choices(enabled: Sequence[Enabled], legend: Legend, events: EventReader) -> 
             number += 1
             parts = [_part(legend, slot, pick) for slot, pick in zip(vector.slots, picks, strict=True)]
             actors = [part for part in parts if not events.is_event(part.automaton.name)]
+            actors = [part for part in actors if not is_observer(part.automaton.name)] or actors
             action = legend.vectors[vector.vector][1] or ""
             yield Choice(
                 number,
                 _text(action, actors, parts, events, legend),
                 tuple(part.automaton.name for part in (*actors, *(p for p in parts if p not in actors))),
                 vector.ties / total,
-                tuple(_outcomes(vector.vector, picks, parts, legend)),
+                tuple(_outcomes(vector.vector, picks, parts, legend, events)),
                 (actors or parts)[0].edge.origin if parts else None,
                 len(actors) <= 1 and not sent_by(action) and not received_by(action) and action != CLOCK_ACTION,
             )
@@ -111,37 +122,43 @@ def _part(legend: Legend, slot: EnabledEdges, pick: int) -> _Part:
     return _Part(legend.layout.instances[slot.instance].automaton, edge, first_way, probabilities)
 
 
-def _outcomes(vector: int, picks: tuple[int, ...], parts: Sequence[_Part], legend: Legend) -> Iterator[Outcome]:
+def _outcomes(
+    vector: int, picks: tuple[int, ...], parts: Sequence[_Part], legend: Legend, events: EventReader
+) -> Iterator[Outcome]:
     ways = [[way for way, chance in enumerate(part.probabilities) if chance > 0] for part in parts]
     is_certain = all(len(possible) == 1 for possible in ways)
     for taken in itertools.islice(itertools.product(*ways), MAX_OUTCOMES):
         probability = math.prod(part.probabilities[way] for part, way in zip(parts, taken, strict=True))
-        text = "" if is_certain else ", ".join(_effects(parts, taken, legend)) or "nothing changes"
+        text = "" if is_certain else ", ".join(_effects(parts, taken, legend, events)) or "nothing changes"
         yield Outcome(probability, text, Decision(vector, picks, taken))
 
 
-def _effects(parts: Sequence[_Part], taken: Sequence[int], legend: Legend) -> Iterator[str]:
+def _effects(parts: Sequence[_Part], taken: Sequence[int], legend: Legend, events: EventReader) -> Iterator[str]:
     """The consequences of each destination that was drawn from several ones."""
     clients = [instance.automaton.name for instance in legend.layout.instances]
     for part, way in zip(parts, taken, strict=True):
         if sum(chance > 0 for chance in part.probabilities) > 1:
-            yield from _consequences(part.automaton, legend.ways[part.first_way + way][1], clients)
+            yield from _consequences(part.automaton, legend.ways[part.first_way + way][1], clients, events)
 
 
-def _consequences(automaton: Automaton, destination: Destination, clients: Sequence[str]) -> Iterator[str]:
+def _consequences(
+    automaton: Automaton, destination: Destination, clients: Sequence[str], events: EventReader
+) -> Iterator[str]:
     """Descriptions of what an automaton does after a destination, up to a state in which it waits or to the next
     branch."""
-    rest = resting(automaton)
+    rest, states = resting(automaton), states_of(automaton)
     name = who(automaton.name)
     visited: set[str] = set()
     while True:
         for assignment in destination.assignments:
             if isinstance(assignment.target, Name) and isinstance(assignment.value, (Boolean, Integer, Real)):
-                yield f"{assignment.target.identifier} := {shown_value(assignment.value.value)}"
+                variable = assignment.target.identifier
+                if not events.carries_event(variable) and not is_length(variable):
+                    yield f"{variable} := {shown_value(assignment.value.value)}"
         location = destination.location
         following = [edge for edge in automaton.edges if edge.source == location]
         if location in rest:
-            yield f"{name} enters `{location}`"
+            yield f"{name} enters `{states[location]}`"
             return
         if location in visited or len(following) != 1 or len(following[0].destinations) != 1:
             return
@@ -179,13 +196,22 @@ def _text(action: str, actors: Sequence[_Part], parts: Sequence[_Part], events: 
         if not names:
             return f"no automaton receives {event_phrase(event, clients)}{parameters}"
         return f"{_listed(names)} {_verb(names, 'receives', 'receive')} {event_phrase(event, clients)}{parameters}"
+    if all(part.automaton.name == CLOCK for part in actors) and actors:
+        return "the clock triggers the timers that are due"
     if not names:
         names = [who(part.automaton.name) for part in parts]
+    if all(_is_start(part) for part in actors or parts):
+        return f"{_listed(names)} {_verb(names, 'starts', 'start')}"
     return f"{_listed(names)} {_verb(names, 'goes', 'go')} on"
 
 
+def _is_start(part: _Part) -> bool:
+    """Whether a part is the first step of its automaton, before its initial state (docs/spec/jani.md#locations)."""
+    return part.edge.source in part.automaton.initial_locations and part.edge.action == part.edge.source
+
+
 def _parameters(values: Mapping[str, Plain]) -> str:
-    return f" ({', '.join(f'{name}: {shown_value(value)}' for name, value in values.items())})" if values else ""
+    return f" ({shown_parameters(values)})" if values else ""
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -17,6 +17,7 @@ from roaml.scxml.names import (
     TreeEventKind,
     is_generated,
     is_length,
+    is_observer,
     is_timer,
     read_tree_event,
     received_by,
@@ -33,6 +34,7 @@ from roaml.simulation.words import STATUS_NAMES, who
 from roaml.smc.record import Plain, RecordedVariable, TraceStep
 from roaml.views.event_words import event_phrase, interface_name
 from roaml.views.events import EventReader
+from roaml.views.locations import states_of
 from roaml.views.turns import is_inner
 
 
@@ -56,7 +58,8 @@ class Follower:
         self._automata = automata
         self._names = [automaton.name for automaton in automata]
         self._holders = {automaton.name: number for number, automaton in enumerate(automata)}
-        self._is_machine = [not (is_generated(a.name) or self.events.is_event(a.name) or is_inner(a)) for a in automata]
+        self._is_machine = [self._executes_machine(automaton) for automaton in automata]
+        self._states = [states_of(automaton) for automaton in automata]
         self._sent: dict[str, tuple[int, str, dict[str, Plain]]] = {}
         self._status: dict[int, NodeStatus] = {}
         self._origin: dict[int, Origin | None] = {}
@@ -73,8 +76,17 @@ class Follower:
         return other
 
     def is_machine(self, instance: int) -> bool:
-        """Whether an instance is a state machine or a plugin, not an automaton added by the translation."""
+        """Whether an instance is a state machine or a plugin, not an automaton added by the translation or an
+        observer."""
         return self._is_machine[instance]
+
+    def _executes_machine(self, automaton: Automaton) -> bool:
+        is_added = is_generated(automaton.name) or is_observer(automaton.name) or self.events.is_event(automaton.name)
+        return not is_added and not is_inner(automaton)
+
+    def state_of(self, instance: int, location: str) -> str:
+        """The state of a machine to which a location of an instance belongs."""
+        return self._states[instance].get(location, location)
 
     def is_named(self, event: str, name: str) -> bool:
         """Whether `name` denotes an event: it is the name of the event, or of its topic, service or action, with or
@@ -166,11 +178,10 @@ class Follower:
             location = locations[number]
             is_resting = location in resting[number]
             handled = "" if is_resting else self._handles.get(number, "")
-            state = location if is_resting else _state_before(location, resting[number])
             yield MachineState(
                 who(automaton.name),
                 automaton.name,
-                state,
+                self.state_of(number, location),
                 own.get(number, {}),
                 self.events.name(handled) if handled else "",
                 self._origin.get(number, automaton.origin),
@@ -197,10 +208,3 @@ class Follower:
                 step,
                 holder is not None and locations[holder] == RECEIVED,
             )
-
-
-def _state_before(location: str, resting: frozenset[str]) -> str:
-    """The state whose name, followed by a handler, is the name of a location. If there are several, the one with the
-    longest name."""
-    states = [state for state in resting if location.startswith(f"{state}-")]
-    return max(states, key=len, default=location)

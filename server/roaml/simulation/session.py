@@ -23,6 +23,7 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.program import UNKNOWN
 from roaml.smc.record import VERDICTS, AutomatonStep, Plain, RecordedVariable, Recording, TraceStep, TraceVerdict
 from roaml.smc.story import Story, clock_times
+from roaml.views.event_words import goal_phrases
 
 FORMAT_VERSION = 1
 ENGINE_VERSION = 1
@@ -131,6 +132,7 @@ class Session:
             seed, trace = saved.seed, saved.trace
         self._run = Run(checker, property_, seed, trace, saved.decisions if saved is not None else ())
         self._clock = clock
+        self._phrases: dict[str, Mapping[str, str]] = {}
         self._automata = tuple(instance.automaton for instance in self._run.legend.layout.instances)
         self._resting = [resting(automaton) for automaton in self._automata]
         self._follower = Follower(self._automata, self._run.start, clock)
@@ -226,6 +228,13 @@ class Session:
         """The variables of the model that contain the parameters of an event and their lengths."""
         return self._follower.events.variables(event)
 
+    def phrases(self, automaton: str) -> Mapping[str, str]:
+        """Phrases for those variables of an automaton that the translation has added, by their names."""
+        if automaton not in self._phrases:
+            variables = [v.name for known in self._automata if known.name == automaton for v in known.variables]
+            self._phrases[automaton] = goal_phrases(variables, self._follower.events.is_event)
+        return self._phrases[automaton]
+
     def actors(self, step: TraceStep) -> list[AutomatonStep]:
         """The parts of a step, except those of automata that only buffer an event."""
         return self._follower.events.actors(step)
@@ -240,10 +249,14 @@ class Session:
         """The automaton of each instance."""
         return self._automata
 
-    @property
-    def resting(self) -> Sequence[frozenset[str]]:
-        """For each instance, the locations in which it waits for an event, or that it never leaves."""
-        return self._resting
+    def state_of(self, instance: int, location: str) -> str:
+        """The state of a machine to which a location of an instance belongs: while the instance executes a handler, the
+        state in which it has received the event."""
+        return self._follower.state_of(instance, location)
+
+    def is_state(self, instance: int, location: str) -> bool:
+        """Whether a location of an instance is a state of its machine, not a place between two statements."""
+        return self._follower.state_of(instance, location) == location
 
     def is_resting(self, instance: int, location: str) -> bool:
         """Whether an instance waits for an event in a location, or never leaves it."""
@@ -384,7 +397,8 @@ class Session:
         return frozenset(event for event in events if self._follower.is_named(event, name))
 
     def is_machine(self, instance: int) -> bool:
-        """Whether an instance is a state machine or a plugin, not an automaton added by the translation."""
+        """Whether an instance is a state machine or a plugin, not an automaton added by the translation or an
+        observer."""
         return self._follower.is_machine(instance)
 
     @property

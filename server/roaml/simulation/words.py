@@ -18,7 +18,7 @@ from roaml.scxml.names import (
     received_by,
 )
 from roaml.smc.record import Plain
-from roaml.views.actors import name_of
+from roaml.views.actors import actor, name_of
 
 STATUS_NAMES = {number: name for name, number in STATUSES.items()}
 """The number of a status that a node returns -> the name of the status."""
@@ -34,8 +34,10 @@ def who(automaton: str) -> str:
             return "blackboard"
         case Role.TREE_ROOT:
             return "tree"
-        case Role.MACHINE | Role.HANDLER:
+        case Role.MACHINE:
             return name_of(automaton)
+        case Role.HANDLER:
+            return actor(automaton)
         case _:
             return assert_never(role)
 

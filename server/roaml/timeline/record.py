@@ -18,7 +18,6 @@ from roaml.scxml.names import (
     SERVICE_HANDLER_PREFIX,
     TreeEventKind,
     is_length,
-    is_observer,
     is_timer,
     read_tree_event,
     received_by,
@@ -108,7 +107,7 @@ class Timeline:
         self._clock = session.clock
         self._clock_values = dict.fromkeys(self._clock, 0.0)
         self.times: list[float] = [0.0] if self._clock else []
-        self._resting = session.resting
+        self._is_state = session.is_state
         self.lanes: list[Lane] = []
         self._lane_of: dict[int, int] = {}
         self._nodes: dict[int, int] = {}
@@ -120,17 +119,13 @@ class Timeline:
 
     def _begin_lanes(self, session: Session) -> None:
         """The lanes before the first step: first the machines, then the nodes of the tree by their numbers."""
-        machines = [
-            instance
-            for instance, name in enumerate(self._automata)
-            if session.is_machine(instance) and not is_observer(name)
-        ]
+        machines = [instance for instance in range(len(self._automata)) if session.is_machine(instance)]
         nodes = {i: match for i, name in enumerate(self._automata) if (match := NODE_AUTOMATON.fullmatch(name))}
         self._machines = frozenset(machines) - nodes.keys()
         for instance in machines:
             if instance in self._machines:
                 self._add(instance, Lane(who(self._automata[instance]), LaneKind.MACHINE))
-                self.lanes[-1].enter(0, session.first_locations[instance])
+                self.lanes[-1].enter(0, session.state_of(instance, session.first_locations[instance]))
         for instance, match in sorted(nodes.items(), key=lambda node: int(node[1][1])):
             self._nodes[int(match[1])] = len(self.lanes)
             self._add(instance, Lane(who(self._automata[instance]), LaneKind.NODE))
@@ -140,6 +135,7 @@ class Timeline:
             for instance, name in enumerate(self._automata)
             if name == BLACKBOARD or instance in machines
         }
+        self._phrases = {instance: session.phrases(self._automata[instance]) for instance in self._plotted}
 
     def _add(self, instance: int, lane: Lane) -> None:
         self._lane_of[instance] = len(self.lanes)
@@ -175,7 +171,7 @@ class Timeline:
         for part in step.parts:
             if part.instance in self._machines:
                 location = part.destination.location
-                if location in self._resting[part.instance]:
+                if self._is_state(part.instance, location):
                     self.lanes[self._lane_of[part.instance]].enter(number, location)
         action = step.action or ""
         if event := sent_by(action):
@@ -188,7 +184,8 @@ class Timeline:
             return
         plot = self._plots.get((instance, name))
         if plot is None:
-            plot = Plot(self._plotted[instance] + name, isinstance(after, bool), [0], [float(before)])
+            shown = self._phrases[instance].get(name, name)
+            plot = Plot(self._plotted[instance] + shown, isinstance(after, bool), [0], [float(before)])
             self._plots[instance, name] = plot
         plot.steps.append(number)
         plot.values.append(float(after))

@@ -26,7 +26,7 @@ from roaml.scxml.names import (
     safe_name,
 )
 from roaml.views.ends import is_event, is_translation
-from roaml.views.event_words import event_phrase
+from roaml.views.event_words import blackboard_phrase, event_phrase, interface_phrase
 
 _CONDITIONS = re.compile(CONDITIONS_PREFIX + r"(\d+)(?:_inner\d*)?_(.+)")
 _TREE_EVENTS = {
@@ -39,6 +39,8 @@ _TREE_EVENTS = {
 
 def name_of(automaton: str) -> str:
     """The name of an automaton for users; for a node of the tree, its name and number, such as `Wait (bt_1003)`."""
+    if conditions := _CONDITIONS.fullmatch(automaton):
+        return f"the conditions of {conditions[2]} (bt_{conditions[1]})"
     node = NODE_AUTOMATON.fullmatch(automaton)
     return f"{node[2]} (bt_{node[1]})" if node else automaton
 
@@ -90,12 +92,26 @@ def _parts(model: Model) -> Iterator[tuple[str, str]]:
             continue
         if is_event(automaton):
             yield name, event_subject(name, names)
-        elif conditions := _CONDITIONS.fullmatch(name):
-            yield name, f"the conditions of {conditions[2]} (bt_{conditions[1]})"
+        elif _CONDITIONS.fullmatch(name):
+            yield name, name_of(name)
         elif automaton_role(name) is Role.MACHINE and not NODE_AUTOMATON.fullmatch(name):
             yield name, f"`{name}`"
         else:
             yield name, actor(name)
+
+
+def message_phrase(event: str, automata: Collection[str]) -> str:
+    """A short phrase for an event that an automaton sends or receives, such as `/battery` for a message on this topic,
+    `a request to /adder`, or the name of a plain event.
+
+    Args:
+        automata: the names of all automata.
+    """
+    if is_timer(event):
+        return event_phrase(event, automata, taken=True)
+    if read_tree_event(event) is not None:
+        return event_subject(event, automata)
+    return interface_phrase(event, automata) or blackboard_phrase(event) or event
 
 
 def event_subject(event: str, automata: Collection[str]) -> str:

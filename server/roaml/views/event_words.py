@@ -16,11 +16,13 @@ from roaml.scxml.names import (
     InterfaceEventKind,
     TreeEventKind,
     cancel_request,
+    client_of,
     is_timer,
     read_executes_goal,
     read_interface_event,
     read_tree_event,
     safe_name,
+    without_client,
 )
 
 _TREE_PHRASES = {
@@ -40,6 +42,19 @@ _PHRASES = {
     InterfaceEventKind.RESULT: "the result of the action",
     InterfaceEventKind.THREAD_START: "the start of a thread of the action",
     InterfaceEventKind.THREAD_FREE: "the end of a thread of the action",
+}
+
+
+_SHORT_PHRASES = {
+    InterfaceEventKind.MESSAGE: "",
+    InterfaceEventKind.REQUEST: "a request to ",
+    InterfaceEventKind.RESPONSE: "the response of ",
+    InterfaceEventKind.CANCEL: "a request to cancel a goal of ",
+    InterfaceEventKind.GOAL: "a goal of ",
+    InterfaceEventKind.FEEDBACK: "feedback of ",
+    InterfaceEventKind.RESULT: "the result of ",
+    InterfaceEventKind.THREAD_START: "the start of a thread of ",
+    InterfaceEventKind.THREAD_FREE: "the end of a thread of ",
 }
 
 
@@ -65,6 +80,30 @@ def event_phrase(event: str, clients: Collection[str], role: Role = Role.MACHINE
         return _TREE_PHRASES[tree.kind]
     interface = read_interface_event(event, clients)
     return f"the event `{event}`" if interface is None else f"{_PHRASES[interface.kind]} `{_ros_name(interface)}`"
+
+
+def interface_phrase(event: str, clients: Collection[str]) -> str:
+    """A short phrase for an event of a topic, service or action, such as `/level` or `a request to /adder`; "" for
+    other events.
+
+    Args:
+        clients: the names of the automata of the system.
+    """
+    interface = read_interface_event(event, clients)
+    if interface is None:
+        return ""
+    name = _ros_name(interface)
+    if interface.kind is InterfaceEventKind.GOAL_ANSWER:
+        answer = without_client(event, client_of(event, clients)).rpartition("_")[2]
+        return f"the {'acceptance' if answer.startswith('accept') else 'rejection'} of a goal of {name}"
+    return f"{_SHORT_PHRASES[interface.kind]}{name}"
+
+
+def blackboard_phrase(event: str) -> str:
+    """A short phrase for an event of the blackboard; "" for other events."""
+    if event.startswith(BLACKBOARD_WRITE_PREFIX):
+        return f"the blackboard entry {event.removeprefix(BLACKBOARD_WRITE_PREFIX)}"
+    return {BLACKBOARD_REQUEST: "a request to the blackboard", BLACKBOARD_ANSWER: "the blackboard"}.get(event, "")
 
 
 def interface_name(event: str, clients: Collection[str]) -> str:

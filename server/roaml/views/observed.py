@@ -67,6 +67,13 @@ def _ending(change: VariableChange) -> str:
     return change.variable.name.rpartition("__")[2]
 
 
+def observer_phrase(variable: str, automata: Collection[str]) -> str:
+    """A phrase for a variable of the model that belongs to an observer, with the name of the property and of the
+    variable; "" for another variable."""
+    prefix, separator, ending = variable.rpartition("__")
+    return f"{prefix}: {ending}" if separator and observer_automaton(prefix) in automata else ""
+
+
 def reads_observer(variable: str, automata: Collection[str]) -> bool:
     """Whether a variable of the model belongs to an observer."""
     prefix = observer_prefix(variable, VIOLATED, SATISFIED, PENDING, OPEN)

@@ -17,7 +17,7 @@ from roaml.smc.record import SELECTED, SHORTEST, VERDICTS, Plain, TraceVerdict, 
 from roaml.smc.story import Story
 from roaml.views.observed import reads_observer
 from roaml.views.turns import Message, Turn, turns
-from roaml.views.values import shown_value
+from roaml.views.values import shown_parameters, shown_value
 from roaml.views.waiting import Wait, help_line, waits
 
 MAX_CHARACTERS = 60
@@ -249,9 +249,9 @@ def _what(turn: Turn) -> str:
     if turn.automaton.startswith(TREE_ROOT_PREFIX) and turn.result:
         return f"ends with {turn.result}"
     source, destination = turn.source, turn.destination
-    # At the end, the automaton may be between two states, in a location without a name for users.
-    stays = source == destination or (turn.ends and turn.heard is not None)
-    move = _short(source if stays else f"{source} → {destination}")
+    if turn.starts:
+        return f"starts in {_short(destination)}"
+    move = _short(source if source == destination else f"{source} → {destination}")
     answer = f": {turn.status}" if turn.status else ""
     if turn.is_answered and turn.status:
         return f"returns {turn.status}"
@@ -283,8 +283,8 @@ def _chance(probability: Clause | None) -> str:
 
 
 def _message(message: Message) -> str:
-    values = ", ".join(f"{name}: {shown_value(value)}" for name, value in message.values.items())
-    return f"{message.name}({_short(values)})" if values else message.name
+    values = shown_parameters(message.values)
+    return f"{message.name} ({_short(values)})" if values else message.name
 
 
 def _change(change: VariableChange, turn: Turn) -> str:

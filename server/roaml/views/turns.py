@@ -25,7 +25,6 @@ from roaml.scxml.names import (
     is_generated,
     is_length,
     is_observer,
-    is_timer,
     observer_automaton,
     observer_prefix,
     prefix_of_observer,
@@ -35,9 +34,10 @@ from roaml.scxml.names import (
 )
 from roaml.smc.record import AutomatonStep, Plain, TraceStep, VariableChange
 from roaml.smc.story import Story
-from roaml.views.actors import actor
-from roaml.views.event_words import event_phrase, goal_phrases
+from roaml.views.actors import actor, message_phrase
+from roaml.views.event_words import goal_phrases
 from roaml.views.events import EventReader
+from roaml.views.locations import states_of
 from roaml.views.observed import effects, observation, observed_property
 
 _ENDS = ("SUCCESS", "FAILURE")
@@ -62,6 +62,7 @@ class Turn(Record):
         observed: the name of the observed property if the automaton is an observer; otherwise "".
         observation: what an observer observes.
         phrases: phrases for those variables of the automaton that the translation has added, by their names.
+        states: location of the automaton -> the state to which it belongs.
     """
 
     instance: int
@@ -78,6 +79,7 @@ class Turn(Record):
     observed: str = ""
     observation: str = ""
     phrases: Mapping[str, str] = field(default_factory=dict)
+    states: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def automaton(self) -> str:
@@ -89,11 +91,22 @@ class Turn(Record):
 
     @property
     def source(self) -> str:
-        return self.parts[0].source
+        """The state in which the turn begins."""
+        return self._state(self.parts[0].source)
 
     @property
     def destination(self) -> str:
-        return self.parts[-1].destination.location
+        """The state in which the turn ends; if it ends between two states, the state before it."""
+        return self._state(self.parts[-1].destination.location)
+
+    def _state(self, location: str) -> str:
+        return self.states.get(location, location)
+
+    @property
+    def starts(self) -> bool:
+        """Whether the automaton enters its initial state in the turn."""
+        first = self.parts[0].source
+        return self.heard is None and self._state(first) != first and not self.observed
 
     @property
     def who(self) -> str:
@@ -139,7 +152,7 @@ class Turn(Record):
     @property
     def is_calm(self) -> bool:
         """Whether the received event has no effect."""
-        has_moved = self.source != self.destination or bool(self.changes)
+        has_moved = self.parts[0].source != self.parts[-1].destination.location or bool(self.changes)
         return self.heard is not None and not has_moved and not any(self.sent) and not self.status
 
     def _answers(self, message: Message) -> bool:
@@ -159,8 +172,7 @@ class Message(Record, frozen=True):
     """An event with the parameters with which it was sent, by their names.
 
     Attributes:
-        name: the name of the event, without the name of the client of a service or action; a phrase for the tick of a
-            timer.
+        name: a short phrase for the event, such as `/level`, `a request to /adder`, or the name of a plain event.
         sender: the turn that sent the event; `None` if no automaton has sent it.
     """
 
@@ -218,7 +230,9 @@ class _Reader:
         self._events = EventReader(story.automata, story.start)
         self.inner = frozenset(n for n, automaton in enumerate(story.automata) if is_inner(automaton))
         self._known_phrases: dict[int, Mapping[str, str]] = {}
+        self._known_states: dict[int, Mapping[str, str]] = {}
         self._messages: dict[str, Message] = {}
+        self._names: dict[str, str] = {}
         self._current: dict[int, Turn] = {}
         self.turns: list[Turn] = []
 
@@ -233,7 +247,7 @@ class _Reader:
             if turn is None or heard is not None or not self._events.hearing[part.instance]:
                 together = step.action if len(actors) > 1 and heard is None else None
                 turn = Turn(part.instance, step.number, self._story.clock[index], heard, together)
-                turn.phrases = self._phrases(part.instance)
+                turn.phrases, turn.states = self._phrases(part.instance), self._states(part.instance)
                 if is_observer(part.automaton):
                     turn.observed = observed_property(part.automaton, self._story.property)
                     turn.observation = observation(step.action, self._automata)
@@ -255,6 +269,11 @@ class _Reader:
             self._known_phrases[instance] = goal_phrases(variables, self._events.is_event)
         return self._known_phrases[instance]
 
+    def _states(self, instance: int) -> Mapping[str, str]:
+        if instance not in self._known_states:
+            self._known_states[instance] = states_of(self._story.automata[instance])
+        return self._known_states[instance]
+
     def _send(self, event: str, sender: Turn | None) -> None:
         self._messages[event] = Message(event, self._name(event), self._events.parameters(event), sender)
         if sender is not None:
@@ -265,7 +284,9 @@ class _Reader:
         return self._messages.get(event, Message(event, self._name(event), {})) if event else None
 
     def _name(self, event: str) -> str:
-        return event_phrase(event, self._automata, taken=True) if is_timer(event) else self._events.name(event)
+        if event not in self._names:
+            self._names[event] = message_phrase(event, self._automata)
+        return self._names[event]
 
     def _changes(self, step: TraceStep, part: AutomatonStep, *, is_last: bool) -> Iterator[VariableChange]:
         """The changes of the variables of an automaton, and of variables of the model that do not belong to an event.

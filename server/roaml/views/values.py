@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from roaml.smc.record import Plain
 
 
@@ -17,6 +19,11 @@ def shown_value(value: Plain) -> str:
             return f"{value:g}"
         case _:
             return str(value)
+
+
+def shown_parameters(values: Mapping[str, Plain]) -> str:
+    """The parameters of an event in a readable form, such as `pose.x: 1, pose.y: 2`."""
+    return ", ".join(f"{name.replace('__', '.')}: {shown_value(value)}" for name, value in values.items())
 
 
 def _text(value: list[Plain]) -> str:
