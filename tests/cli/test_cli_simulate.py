@@ -135,3 +135,26 @@ def test_usage_errors(command: Command, arguments: tuple[str, ...], message: str
     done = command("simulate", str(ROBOT), *arguments)
     assert done.status == 2
     assert message in done.err
+
+
+SKIPPING = """<root BTCPP_format="4" main_tree_to_execute="Main">
+    <BehaviorTree ID="Main">
+        <Sequence>
+            <Script code="x := 1" />
+            <ForceSuccess><Skipped _skipIf="x == 1" /></ForceSuccess>
+            <Last />
+        </Sequence>
+    </BehaviorTree>
+</root>"""
+
+
+def test_a_skipped_node(command: Command, tmp_path: Path) -> None:
+    tree = tmp_path / "tree.xml"
+    tree.write_text(SKIPPING, encoding="utf-8")
+    run = ("simulate", str(tree), "--mock", "*: 1 in 1 s")
+    assert any("  Skipped (bt_1003) " in line and ": SKIPPED " in line for line in command(*run).out.splitlines())
+    table = tmp_path / "run.csv"
+    assert command(*run, "--csv", str(table)).status == 0
+    rows = list(csv.DictReader(table.open(encoding="utf-8")))
+    assert {row["bt_1003"] for row in rows} == {"IDLE", "TICKED", "SKIPPED"}
+    assert {row["bt_1004"] for row in rows} == {"IDLE", "TICKED", "RUNNING", "SUCCESS"}

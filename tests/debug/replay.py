@@ -28,7 +28,6 @@ from roaml.smc.record import VERDICTS, Recorder, Recording
 
 SEED = 5
 MAX_SINGLE_STEPS = 600
-"""The maximum number of steps that are taken one by one; a longer trace is continued to its verdict."""
 MAX_STEPS = 100_000
 
 
@@ -37,15 +36,27 @@ def sources_of(main: Path) -> Sources:
     return Sources(api.as_target(system), system.analysis)
 
 
-def replay(sources: Sources, checker: ModelChecker, property_: CompiledProperty, trace: int) -> Iterator[str]:
-    """The differences between a trace and its replay."""
+def replay(
+    sources: Sources,
+    checker: ModelChecker,
+    property_: CompiledProperty,
+    trace: int,
+    max_single: int = MAX_SINGLE_STEPS,
+    max_steps: int = MAX_STEPS,
+) -> Iterator[str]:
+    """The differences between a trace and its replay.
+
+    Args:
+        max_single: the maximum number of steps that are taken one by one; a longer trace is continued to its verdict.
+        max_steps: the maximum number of steps of the trace.
+    """
     name = property_.question.name
     recording = Recording(trace)
-    Recorder(checker, property_, SEED, MAX_STEPS).rush(recording)
+    Recorder(checker, property_, SEED, max_steps).rush(recording)
     debugger = start(sources, Start(name, SEED, trace), lambda *_: None)
     session = debugger.session
     states = [session.state()]
-    while not session.is_decided and len(states) <= MAX_SINGLE_STEPS:
+    while not session.is_decided and len(states) <= max_single:
         _move(debugger, Unit.STEP)
         if session.position < len(states):
             break

@@ -94,7 +94,7 @@ export function verification(stage: Stage): void {
         // The list has only rows that are visible, so it is scrolled to its start.
         await selected(window).first().click();
         await window.press("Home");
-        await step(window, "BatteryAbove (bt_1002): receives topic_battery_msg").first().click();
+        await step(window, "BatteryAbove (bt_1002): receives /battery").first().click();
         await state(window, "battery").filter({ hasText: "40  ← was 100" }).first().waitFor();
         await window.page.locator('.tab.active[data-resource-name="battery_above.ascxml"]').waitFor();
         await window.statusItem("Ln 18, Col 9").waitFor();

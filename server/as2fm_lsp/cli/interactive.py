@@ -3,7 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import TextIO
 
 from as2fm_lsp.atomic_write import write_file
@@ -26,7 +29,21 @@ HELP = """\
   e            go on until the property is decided             u NAME   go on to the next event or message NAME
   s            show the state                                  w FILE   write the run, for --script
   ?            this help                                       q   quit
+  Ctrl-C       end a long movement at the step that it has reached
 """
+
+
+@contextmanager
+def interrupts() -> Iterator[Callable[[], bool]]:
+    """Catches interrupts (Ctrl-C); yields a function that returns whether there was one."""
+    received: list[int] = []
+    is_main = threading.current_thread() is threading.main_thread()  # only the main thread can catch signals
+    previous = signal.signal(signal.SIGINT, lambda number, _: received.append(number)) if is_main else None
+    try:
+        yield lambda: bool(received)
+    finally:
+        if is_main:
+            signal.signal(signal.SIGINT, previous)
 
 
 class Terminal:
@@ -58,10 +75,14 @@ class Terminal:
             print_text("".join(f"  {text}\n" for text in self._state()))
             return
         before = self._session.position
-        try:
-            message = self._move(command, rest.strip(), line)
-        except FaultError as fault:
-            message = f"the next step fails: {fault_text(self._target, fault)}"
+        with interrupts() as has_interrupt:
+            self._session.is_interrupted = has_interrupt
+            try:
+                message = self._move(command, rest.strip(), line)
+            except FaultError as fault:
+                message = f"the next step fails: {fault_text(self._target, fault)}"
+            if has_interrupt():
+                message = "interrupted"
         self._show_steps(before)
         if message:
             print_text(f"  {message}\n")

@@ -16,6 +16,7 @@ from roaml.record import Record, replace
 from roaml.scxml.names import (
     BLACKBOARD,
     FIELD_PREFIX,
+    STATUS_NAMES,
     InterfaceEventKind,
     is_length,
     is_timer,
@@ -25,7 +26,6 @@ from roaml.scxml.names import (
 )
 from roaml.simulation.session import Session
 from roaml.simulation.state import MachineState, SystemState
-from roaml.simulation.words import STATUS_NAMES
 from roaml.smc.record import Plain, TraceStep, TraceVerdict
 from roaml.views.observed import observer_phrase
 

@@ -196,12 +196,12 @@ def _text(action: str, actors: Sequence[_Part], parts: Sequence[_Part], events: 
         if not names:
             return f"no automaton receives {event_phrase(event, clients)}{parameters}"
         return f"{_listed(names)} {_verb(names, 'receives', 'receive')} {event_phrase(event, clients)}{parameters}"
-    if all(part.automaton.name == CLOCK for part in actors) and actors:
-        return "the clock triggers the timers that are due"
     if not names:
         names = [who(part.automaton.name) for part in parts]
     if all(_is_start(part) for part in actors or parts):
         return f"{_listed(names)} {_verb(names, 'starts', 'start')}"
+    if all(part.automaton.name == CLOCK for part in actors or parts):
+        return "the clock triggers the timers that are due"
     return f"{_listed(names)} {_verb(names, 'goes', 'go')} on"
 
 

@@ -14,6 +14,7 @@ from roaml.scxml.names import (
     CLOCK,
     NODE_AUTOMATON,
     RECEIVED,
+    STATUS_NAMES,
     TreeEventKind,
     is_generated,
     is_length,
@@ -30,7 +31,7 @@ from roaml.simulation.state import (
     NodeStatus,
     SystemState,
 )
-from roaml.simulation.words import STATUS_NAMES, who
+from roaml.simulation.words import who
 from roaml.smc.record import Plain, RecordedVariable, TraceStep
 from roaml.views.event_words import event_phrase, interface_name
 from roaml.views.events import EventReader

@@ -114,6 +114,9 @@ class Session:
         clock: the names of the variables that contain the time of the model in s and the rest in ns.
         saved: the session to continue; it overrides `seed` and `trace`.
 
+    Attributes:
+        is_interrupted: a function that a caller may set; movements of several steps end when it returns true.
+
     Raises:
         RunError: the saved decisions are not possible in this model.
         FaultError: the model executes an undefined operation in one of the saved steps.
@@ -132,6 +135,7 @@ class Session:
             seed, trace = saved.seed, saved.trace
         self._run = Run(checker, property_, seed, trace, saved.decisions if saved is not None else ())
         self._clock = clock
+        self.is_interrupted: Callable[[], bool] = lambda: False
         self._phrases: dict[str, Mapping[str, str]] = {}
         self._automata = tuple(instance.automaton for instance in self._run.legend.layout.instances)
         self._resting = [resting(automaton) for automaton in self._automata]
@@ -377,10 +381,11 @@ class Session:
         """Take steps up to the first one for which `is_reached` is true.
 
         Returns:
-            Whether such a step was taken. False if no further step changes the state, or after `limit` other steps.
+            Whether such a step was taken. False if no further step changes the state, after `limit` other steps, or
+            after an interruption.
         """
         for _ in range(limit):
-            step = self.step()
+            step = None if self.is_interrupted() else self.step()
             if step is None:
                 return False
             if is_reached(step):
@@ -457,7 +462,7 @@ class Session:
             self._read(step)
             if step.number % RECENT_INTERVAL == 0 and self.position - step.number < SNAPSHOT_INTERVAL:
                 self._recent[step.number] = self._follower.copied()
-        while self.position < position and self.step() is not None:
+        while self.position < position and not self.is_interrupted() and self.step() is not None:
             pass
 
 

@@ -19,6 +19,7 @@ class NodeStatus(enum.Enum):
     RUNNING = "RUNNING"
     SUCCESS = "SUCCESS"
     FAILURE = "FAILURE"
+    SKIPPED = "SKIPPED"
 
 
 class MachineState(Record, frozen=True):

@@ -11,7 +11,7 @@ from roaml.scxml.events import Role
 from roaml.scxml.names import (
     CLOCK_ACTION,
     NODE_PREFIX,
-    STATUSES,
+    STATUS_NAMES,
     TreeEventKind,
     automaton_role,
     read_tree_event,
@@ -19,9 +19,6 @@ from roaml.scxml.names import (
 )
 from roaml.smc.record import Plain
 from roaml.views.actors import actor, name_of
-
-STATUS_NAMES = {number: name for name, number in STATUSES.items()}
-"""The number of a status that a node returns -> the name of the status."""
 
 
 def who(automaton: str) -> str:

@@ -16,6 +16,7 @@ from roaml.scxml.names import (
     CLOCK,
     NODE_AUTOMATON,
     SERVICE_HANDLER_PREFIX,
+    STATUS_NAMES,
     TreeEventKind,
     is_length,
     is_timer,
@@ -24,7 +25,7 @@ from roaml.scxml.names import (
     sent_by,
 )
 from roaml.simulation.session import Session
-from roaml.simulation.words import STATUS_NAMES, who
+from roaml.simulation.words import who
 from roaml.smc.record import TraceStep
 from roaml.views.event_words import interface_name
 from roaml.views.events import EventReader

@@ -19,7 +19,7 @@ from roaml.scxml.names import (
     OPEN,
     PENDING,
     SATISFIED,
-    STATUSES,
+    STATUS_NAMES,
     VIOLATED,
     TreeEventKind,
     is_generated,
@@ -140,14 +140,17 @@ class Turn(Record):
     def status(self) -> str:
         """The status that the node returns to the tree; "" if it returns none."""
         given = [message.values.get("status") for message in self.messages if self._answers(message)]
-        return next((name for name, number in STATUSES.items() if number in given), "")
+        return next(
+            (STATUS_NAMES[number] for number in given if isinstance(number, int) and number in STATUS_NAMES), ""
+        )
 
     @property
     def result(self) -> str:
         """The status that the automaton receives from a node of the tree; "" if it receives none."""
         if self.heard is None or _kind(self.heard.event) is not TreeEventKind.RESPONSE:
             return ""
-        return next((name for name, number in STATUSES.items() if number == self.heard.values.get("status")), "")
+        status = self.heard.values.get("status")
+        return STATUS_NAMES.get(status, "") if isinstance(status, int) else ""
 
     @property
     def is_calm(self) -> bool:
