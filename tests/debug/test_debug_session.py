@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -381,6 +382,36 @@ def test_the_search_for_a_trace_shows_its_progress_and_is_cancelled(client: Clie
     assert client.event("progressEnd")["progressId"] == begin["progressId"]
     assert client.response(cancel)["success"]
     client.ask("launch", program=str(BUG))
+
+
+def test_a_file_that_changes_while_the_run_is_stopped(client: Client, tmp_path: Path) -> None:
+    folder = tmp_path / "robot"
+    shutil.copytree(ROBOT, folder)
+    client.begin(folder / BUG.name, seed=3)
+    arm = folder / ARM.name
+    client.ask("setFunctionBreakpoints", breakpoints=[{"name": "/arm/command"}])
+    arm.write_text(f"{arm.read_text(encoding='utf-8')}<!-- a new line -->\n", encoding="utf-8")
+    client.move()
+    (text,) = _output(client, "has changed since it was read")
+    assert text.startswith(str(arm))
+    client.move()
+    assert _output(client, "has changed since it was read") == []
+    client.ask("restart")
+    client.event("stopped")
+    client.move()
+    assert _output(client, "has changed since it was read") == []
+    arm.write_text("<ascxml", encoding="utf-8")
+    assert "arm.ascxml:" in client.refusal("restart")
+    assert client.move()["reason"] == "function breakpoint"  # the run of the last version continues
+    (folder / TREE.name).unlink()
+    client.refusal("restart")
+
+
+def _output(client: Client, part: str) -> list[str]:
+    """The lines of the console that contain a text, since the last call."""
+    events = [event for event in client.events if event["event"] == "output"]
+    client.events = [event for event in client.events if event["event"] != "output"]
+    return [event["body"]["output"] for event in events if part in event["body"]["output"]]
 
 
 def test_the_session_ends(client: Client) -> None:

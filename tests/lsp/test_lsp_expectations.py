@@ -265,7 +265,7 @@ async def test_both_sides_are_explained(tmp_path: Path) -> None:
         params = {"textDocument": {"uri": main.as_uri()}, "property": HEADS, "witness": True}
         witness = await ask(client, COUNTEREXAMPLE, params)
         assert (witness["verdict"], witness["property"]) == ("passed", HEADS)
-        assert any("topic_heads_msg" in detail for step in witness["steps"] for detail in step["details"])
+        assert any("/heads" in detail for step in witness["steps"] for detail in step["details"])
         assert await why(client, main, THROWN) is None
         assert (await ask(client, COUNTEREXAMPLE, {**params, "property": THROWN}))["verdict"] == "passed"
 

@@ -17,6 +17,7 @@ from as2fm_lsp.debug.arguments import Arguments, RequestError
 from as2fm_lsp.debug.breakpoints import BreakpointRequests
 from as2fm_lsp.debug.by_hand import ByHandRequests
 from as2fm_lsp.debug.capabilities import CAPABILITIES
+from as2fm_lsp.debug.changed_files import ChangedFiles
 from as2fm_lsp.debug.choices import ChoiceRequests
 from as2fm_lsp.debug.framing import Message, PendingMessages
 from as2fm_lsp.debug.launch import Launch, launch_of, load, warm_up
@@ -148,6 +149,7 @@ class Adapter:
             session.debugger = load(launch, session.log, progress)
         finally:
             progress.end()
+        session.changed_files = ChangedFiles(session.debugger.sources.target.files)
         session.launch = launch
         session.has_begun = False
         session.stop = None

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from as2fm_lsp.debug.arguments import Arguments, RequestError
+from as2fm_lsp.debug.changed_files import ChangedFiles
 from as2fm_lsp.debug.framing import write_message
 from as2fm_lsp.debug.launch import Launch
 from as2fm_lsp.debug.variables import References, Shown
@@ -88,6 +89,7 @@ class DebugSession:
         stop: the last stop of the run.
         frames: the frames that the client knows, by their numbers.
         references: the variables that the client may open.
+        changed_files: the files of the system that have changed since the launch.
         after: the actions to take after the response to the current request.
     """
 
@@ -100,6 +102,7 @@ class DebugSession:
         self.stop: Stop | None = None
         self.frames: dict[int, Frame] = {}
         self.references = References()
+        self.changed_files = ChangedFiles(())
         self.after: list[Callable[[], None]] = []
 
     @property
@@ -128,9 +131,11 @@ class DebugSession:
         return debugger
 
     def report(self, stop: Stop) -> None:
-        """Report to the client that the run has stopped."""
+        """Report to the client that the run has stopped, and which files have changed since the launch."""
         self.stop = stop
         self.forget()
+        for path in self.changed_files.take():
+            self.log(f"{path} has changed since it was read; restart to debug the new version")
         body: dict[str, Any] = {"reason": stop.reason.value, "threadId": stop.thread, "allThreadsStopped": True}
         if stop.text:
             body["text"] = stop.text
