@@ -4,26 +4,37 @@ through all states, on random networks."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from loose_networks import STUCK_AUTOMATON, STUCK_LOCATION, networks
-from smc_models import Json, model
+from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 from smc_random import networks as entangled_networks
 
+import conformance
+from as2fm_lsp.verification import exact_report
 from examples import examples
+from roaml import api
 from roaml.explicit.independence import can_be_reduced
 from roaml.explicit.path import PathRecorder, shortest
 from roaml.explicit.plain import plain_kernel, plain_search
-from roaml.explicit.space import Space, StateLimits, explore
+from roaml.explicit.space import LimitError, Space, StateLimits, explore
 from roaml.explicit.values import values_of
+from roaml.jani.reader import read_model
+from roaml.json_syntax import parse
 from roaml.smc.end import End
+from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.kernel import Kernel
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
 from roaml.smc.record import SELECTED, Recording
+from roaml.verification.exhaustive import UndecidedError, exact_values
+from roaml.verification.results import Exact
+from roaml.verification.verifier import checker_of
 
 TOLERANCE = 2e-8
 MARKS = {(STUCK_AUTOMATON, STUCK_LOCATION): End.STUCK}
@@ -34,13 +45,19 @@ def question_of(written: Json, *, is_stuck: bool = False) -> tuple[ModelChecker,
     return checker, checker.compiled_properties[-1 if is_stuck else 0]
 
 
-def both(checker: ModelChecker, property_: CompiledProperty, modules: Any = None) -> tuple[Space, Space] | None:
+ALL = StateLimits()
+INTERFACES = str(conformance.ROOT / "interfaces")
+
+
+def both(
+    checker: ModelChecker, property_: CompiledProperty, modules: Any = None, limits: StateLimits = ALL
+) -> tuple[Space, Space] | None:
     """The whole space and the reduced one; `None` if the property cannot be reduced."""
     compiled = checker.compiled(property_)
     if not can_be_reduced(compiled.program, compiled.goal):
         return None
-    whole = explore(checker, property_, StateLimits(), modules=modules)
-    return whole, explore(checker, property_, StateLimits(), modules=modules, is_reduced=True)
+    whole = explore(checker, property_, limits, modules=modules)
+    return whole, explore(checker, property_, limits, modules=modules, is_reduced=True)
 
 
 def is_smaller(whole: Space, reduced: Space) -> bool:
@@ -59,8 +76,8 @@ def replay(space: Space, verdict: int) -> None:
         assert status == UNKNOWN
         possible = {vector: edges for vector, _, edges in kernel.choices()}
         assert step.vector in possible
-        for pick, way, edges in zip(step.edges, step.ways, possible[step.vector], strict=True):
-            assert edges[pick][way] > 0
+        for pick, target, edges in zip(step.edges, step.ways, possible[step.vector], strict=True):
+            assert edges[pick][target] > 0
         assert kernel.go(*step) == UNKNOWN
         status = kernel.look()
         if compiled.goal.is_bounded == 2:  # the kernel looks again only if a variable has changed
@@ -145,3 +162,131 @@ def test_both_searches_leave_out_the_same(written: Json) -> None:
         for state in range(one.states):
             assert one.search.key(state) == other.search.key(state)
             assert one.search.choices_of(state) == other.search.choices_of(state)
+
+
+def counters(number: int, choice: list[Json]) -> Json:
+    """A model with 10ⁿ states for each state of an automaton with the edges `choice`, from which it goes to `m` or `n`.
+    The property asks whether x becomes 1."""
+    count = edge("l", way("l", own=op("+", "own", 1)), guard=op("<", "own", 9))
+    parts = [automaton(f"c{i}", "l", [count], [variable("own")]) for i in range(number)]
+    parts.append(automaton("d", "l m n", choice))
+    return document(*parts, variables=[variable("x")], properties={"p": probability(op("F", op("=", "x", 1)))})
+
+
+TOSS = [edge("l", way("m", 0.5, x=1), way("n", 0.5))]
+CHOICE = [edge("l", way("m", x=1)), edge("l", "n")]
+
+
+def exact_of(written: Json, **limits: Any) -> Exact:
+    checker = ModelChecker(model(written))
+    return exact_values(checker, checker.compiled_properties[0], StateLimits(**limits))
+
+
+def test_few_states_are_all_explored() -> None:
+    exact = exact_of(counters(3, TOSS))
+    assert not exact.is_reduced
+    assert exact.states == 3000
+    assert exact.average == 0.5
+
+
+def test_the_uniform_value_follows_from_an_equal_minimum_and_maximum() -> None:
+    exact = exact_of(counters(7, TOSS))
+    assert exact.is_reduced
+    assert exact.states < 10
+    assert (exact.least, exact.greatest, exact.average) == (0.5, 0.5, 0.5)
+    text = exact_report.lines("p", exact, 0.0)
+    assert text[0] == f"p: = 0.5 for all schedulers, exact, {exact.states} states after reductions, 0.0 s"
+    assert "  traces: it fails after 64 steps, it holds after 1 step" in text or text[1].startswith("  traces: ")
+
+
+def test_the_uniform_value_is_computed_from_all_states_if_possible() -> None:
+    exact = exact_of(counters(5, CHOICE))
+    assert not exact.is_reduced
+    assert exact.states > 100_000
+    assert (exact.least, exact.greatest, exact.average) == (0.0, 1.0, 0.5)
+
+
+def test_the_uniform_value_of_many_states_is_not_computed() -> None:
+    exact = exact_of(counters(7, CHOICE))
+    assert exact.is_reduced
+    assert (exact.least, exact.greatest, exact.uniform) == (0.0, 1.0, None)
+    text = exact_report.lines("p", exact, 0.0)
+    assert text[0] == f"p: minimum 0, maximum 1, exact, {exact.states} states after reductions, 0.0 s"
+    assert text[1] == "  not computed: the value under uniform choices; use --no-reductions"
+    row = exact_report.row(exact)
+    assert row["reduced"] is True
+    assert row["uniform"] is None
+    assert row["bounds"]["uniform"] is None
+    assert row["shortest"] == {"failed": None, "passed": None}
+
+
+def test_without_reductions_all_states_are_explored() -> None:
+    with pytest.raises(UndecidedError, match="stopped at 30,000 states"):
+        exact_of(counters(7, TOSS), states=30_000, reduces=False)
+    assert exact_of(counters(7, TOSS), states=30_000).states < 10
+
+
+def test_limits_apply_to_reduced_searches() -> None:
+    """The shared variable is visible, so neither choice is left out."""
+    ring = [edge("l", way("l", x=op("%", op("+", "x", step), 80_000))) for step in (2, 4)]
+    with pytest.raises(UndecidedError, match="stopped at 30,000 states"):
+        exact_of(counters(1, ring), states=30_000)
+
+
+@pytest.mark.parametrize("path", ["Pmin", "Pmax"])
+def test_two_machines_that_only_work_form_no_trace_without_an_end(path: str) -> None:
+    """A cycle of invisible steps must not keep the search from the step that reaches the goal."""
+    toggle = automaton("t", "l m", [edge("l", "m"), edge("m", "l")])
+    goal = automaton("g", "l m", [edge("l", way("m", x=1))])
+    reached = {"p": probability(op("F", op("=", "x", 1)), path)}
+    spaces = both(*question_of(document(toggle, goal, variables=[variable("x")], properties=reached)))
+    assert spaces is not None
+    check(*spaces)
+    assert values_of(spaces[1]).minimum.upper == 0.0
+    assert values_of(spaces[1]).maximum.lower == 1.0
+
+
+@pytest.mark.parametrize("path", conformance.systems(), ids=conformance.label)
+def test_systems(path: Path) -> None:
+    """Systems have the same answers, and most of them far fewer states."""
+    checker = checker_of(api.target(str(path), [INTERFACES]))
+    for property_ in checker.compiled_properties:
+        own = checker.reduced(property_)
+        question = property_ if own is checker else own.compiled_properties[0]
+        try:
+            spaces = both(own, question, limits=StateLimits(states=20_000))
+        except LimitError:
+            continue
+        if spaces is not None:
+            check(*spaces)
+
+
+@pytest.mark.parametrize("path", sorted((conformance.ROOT.parent / "qvbs").glob("*.jani")), ids=lambda path: path.stem)
+def test_benchmarks(path: Path) -> None:
+    """Models of the Quantitative Verification Benchmark Set have the same answers."""
+    value, _ = parse(path.read_text(encoding="utf-8"))
+    read, _ = read_model(value, str(path))
+    assert read is not None
+    try:
+        checker = ModelChecker(read)
+    except FaultError:
+        return
+    for property_ in checker.compiled_properties:
+        try:
+            spaces = both(checker, property_, limits=StateLimits(states=3_000))
+        except LimitError:
+            continue
+        if spaces is not None:
+            check(*spaces)
+
+
+def test_steps_that_change_nothing_can_avoid_an_end() -> None:
+    """They can be taken for ever, but not at the end. So `stuck` has a smaller minimum than after reductions."""
+    idle = automaton("i", "l", [edge("l", way("l", 0.5), way("l", 0.5))])
+    ends = automaton(STUCK_AUTOMATON, "l m", [edge("l", STUCK_LOCATION)])
+    written = document(idle, ends, variables=[variable("x")], properties={"p": probability(op("F", op("=", "x", 1)))})
+    checker, property_ = question_of(written, is_stuck=True)
+    assert both(checker, property_) is None
+    assert values_of(explore(checker, property_, ALL)).minimum.upper == 0.0
+    assert values_of(explore(checker, property_, ALL)).maximum.lower == 1.0
+    assert both(*question_of(written)) is not None

@@ -15,7 +15,7 @@ from roaml.jani.expressions import Binary, Boolean, Expression, Integer, Name, R
 from roaml.jani.operators import BinaryOperator, UnaryOperator
 from roaml.record import Record
 from roaml.smc.compile import Legend
-from roaml.smc.goal import DEADLOCK, NO_DEADLOCK
+from roaml.smc.goal import DEADLOCK, NO_DEADLOCK, STUCK
 from roaml.smc.names import Storage, StorageNames, read_by, variables_in
 from roaml.smc.network import EdgeStep, root
 from roaml.smc.program import AT_END, Goal, Ints, Program
@@ -63,14 +63,30 @@ class Independence(Record, frozen=True, eq=False):
 
 
 def can_be_reduced(program: Program, goal: Goal) -> bool:
-    """Whether the minimum and the maximum of a goal stay the same if independent choices are left out: the goal does
-    not depend on steps or rewards, nor on both variables and deadlocks (docs/spec/reductions.md#goals)."""
+    """Whether the minimum and the maximum of a goal stay the same if independent choices are left out
+    (docs/spec/reductions.md#goals)."""
     has_rewards = goal.step_reward >= 0 or goal.exit_reward >= 0 or len(goal.sum_register) > 0
     has_bounds = any(bound >= 0 for bound in goal.upper) or any(bound not in (0, AT_END) for bound in goal.lower)
     sides = [*goal.left, *goal.right]
     mixes_deadlocks = any(side in (DEADLOCK, NO_DEADLOCK) for side in sides) and any(side >= 0 for side in sides)
     is_transient = program.settle >= 0 or any(code >= 0 for code in program.location_code)
-    return not (has_rewards or has_bounds or mixes_deadlocks or is_transient)
+    is_idle = STUCK in goal.right and _can_idle(program)
+    return not (has_rewards or has_bounds or mixes_deadlocks or is_transient or is_idle)
+
+
+def _can_idle(program: Program) -> bool:
+    """Whether a vector may leave the state unchanged: each of its participants has an edge that leads back to its own
+    location."""
+    staying = set()
+    for group, slot in enumerate(program.group_slot):
+        first, last = program.edge_start[group], program.edge_start[group + 1]
+        ways = range(program.way_start[first], program.way_start[last])
+        if any(program.way_move[way] < 0 for way in ways):
+            staying.add(slot)
+    return any(
+        staying.issuperset(program.active_slot[program.active_start[vector] : program.active_start[vector + 1]])
+        for vector in range(len(program.active_start) - 1)
+    )
 
 
 def independence_of(program: Program, goal: Goal, legend: Legend) -> Independence:
