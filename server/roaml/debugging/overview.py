@@ -9,6 +9,7 @@ from roaml.debugging.scopes import ScopeEntry, Values
 from roaml.debugging.sources import Sources
 from roaml.debugging.values import shown
 from roaml.record import Record
+from roaml.scxml.names import is_observer
 from roaml.simulation.session import Session
 
 
@@ -29,8 +30,8 @@ class StateRow(Record, frozen=True):
 
 
 def overview(session: Session, sources: Sources, step: int, earlier: int) -> tuple[StateRow, ...]:
-    """The state after `step` steps. Values that differ from the state after `earlier` steps are marked. Both steps have
-    been taken in this run. The session is at position `step` afterwards.
+    """The state after `step` steps, without the observers of properties. Values that differ from the state after
+    `earlier` steps are marked. Both steps have been taken in this run. The session is at position `step` afterwards.
     """
     before = _texts(_values(session, sources, earlier))
     after = _texts(_values(session, sources, step))
@@ -55,7 +56,11 @@ def _values(session: Session, sources: Sources, step: int) -> Values:
 def _texts(values: Values) -> dict[tuple[str, ...], str]:
     """Path of each row -> its text: `(group,)` for the row of a group, `(group, name)` for those below it."""
     groups: Mapping[str, tuple[str, tuple[ScopeEntry, ...]]] = {
-        **{machine.name: (machine.state, entries) for machine, entries in values.machines()},
+        **{
+            machine.name: (machine.state, entries)
+            for machine, entries in values.machines()
+            if not is_observer(machine.name)
+        },
         **{scope.name: ("", scope.entries) for scope in values.shared_scopes() if scope.entries},
     }
     texts: dict[tuple[str, ...], str] = {}

@@ -46,7 +46,8 @@ _KINDS: Mapping[str, DiagramNodeKind] = {
 
 
 def tree_picture(analysis: Analysis, path: str, mocks: Sequence[Mock] | None = None) -> Picture | None:
-    """The diagram of the tree of a system, or of a tree file that belongs to no system; `None` if there is no tree.
+    """The diagram of the tree of a system, or of a tree file that belongs to no system; `None` if there is no tree, or
+    if the tree is empty.
 
     Args:
         path: any file of the system, or the tree file.
@@ -60,7 +61,7 @@ def tree_picture(analysis: Analysis, path: str, mocks: Sequence[Mock] | None = N
         paths = analysis.trees_from(path)
         expansion = expand(analysis.outlines_from(path))
         instances, uses = expansion.instances, expansion.uses
-    if not paths:
+    if not paths or not instances:
         return None
     if mocks is None:
         mocks = mocks_beside(analysis, paths[0]) if system is None else ()

@@ -12,6 +12,7 @@ from roaml.record import Record
 
 PADDING = 10.0
 """The default distance of the rows of a card from its edge, in pixels."""
+NO_NAME = "(no name)"
 _ROW_DISTANCE = 5.0
 _BAR_WIDTH, _BAR_DISTANCE = 3.0, 7.0
 _INDENT = 10.0
@@ -124,8 +125,10 @@ def _row(row: Row, x: float, y: float) -> tuple[Item, ...]:
 
 
 def title(text: str, width: float) -> tuple[TextLine, ...]:
-    """The lines of a title in bold letters, wrapped to a width in pixels; at most 3 lines."""
-    return tuple(TextLine(line, MEDIUM, "title", bold=True) for line in wrap(text, MEDIUM, width, bold=True, limit=3))
+    """The lines of a title in bold letters, wrapped to a width in pixels; at most 3 lines. The name may be missing in a
+    model with errors."""
+    lines = wrap(text.strip() or NO_NAME, MEDIUM, width, bold=True, limit=3)
+    return tuple(TextLine(line, MEDIUM, "title", bold=True) for line in lines)
 
 
 def paragraph(
