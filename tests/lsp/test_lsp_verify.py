@@ -244,13 +244,19 @@ async def test_tree_nodes_are_lit(tmp_path: Path) -> None:
     async with connect(robot) as client:
         await verify(client, main, [name], {**QUICK, "expectations": {name: "<= 0.5"}})
         explanation = await why(client, main, name)
-        params = {"textDocument": {"uri": main.as_uri()}, "kind": "tree"}
-        tree = await ask(client, "as2fm/picture", params)
+        document = {"textDocument": {"uri": main.as_uri()}}
+        tree = await ask(client, "as2fm/picture", {**document, "kind": "tree"})
+        at = {"trace": explanation["trace"], "step": 1, "earlier": 0}
+        groups = await ask(client, TRACE_STATE, {**document, "property": name, **at})
     # The property holds, which is not expected, so the story is that of a trace in which it holds.
     assert (explanation["verdict"], explanation["expected"]) == ("passed", "≤ 0.5")
     nodes = {mark["node"] for step in explanation["steps"] for mark in step["highlights"] if mark["kind"] == "tree"}
     assert nodes
     assert nodes <= {node["id"] for node in tree["nodes"]}
+    # The observers of other properties are not a part of the user's model.
+    machines = {group["name"] for group in groups}
+    assert "Battery" in machines
+    assert not any(name.endswith("__observer") for name in machines)
 
 
 async def test_progress_contains_the_estimate(robot: Path) -> None:

@@ -6,6 +6,7 @@ import type { Frame, Locator, Page } from "playwright-core";
 import { MEND, sample, type Stage } from "./support/stage";
 import { OUTPUT } from "./support/paths";
 import type { Window } from "./support/window";
+import { temporaryFolder, write } from "./support/workbench";
 
 export function pictures(stage: Stage): void {
     stage.use();
@@ -139,6 +140,105 @@ export function pictures(stage: Stage): void {
         },
     );
 
+    stage.test("a large tree without a system: map, search and collapsed nodes", largeTree, async (window) => {
+        await window.openFile("tour.xml");
+        await window.running();
+        await window.run("AS2FM: Show Behavior Tree");
+        const picture = await window.picture();
+        const map = picture.locator(".minimap:not(.hidden)");
+        await map.waitFor();
+        const all = await labels(picture);
+        assert.equal(all.filter((label) => label === "Spin").length, VISITS);
+
+        // The results are emphasised in the picture and in the map; the map does not cover the first one.
+        await picture.locator("svg.picture").focus();
+        await window.press("/");
+        await window.type("dock");
+        const results = picture.locator(".node.found");
+        await results.first().waitFor({ state: "attached" });
+        assert.deepEqual(await labels(picture, ".node.found"), Array<string>(VISITS / 3).fill("DockRobot"));
+        assert.equal(await map.locator(".minimap-node.found").count(), VISITS / 3);
+        const [result, corner] = [await results.first().boundingBox(), await map.boundingBox()];
+        assert.ok(result && corner);
+        assert.ok(result.x + result.width <= corner.x || result.y + result.height <= corner.y);
+        await window.screenshot("large-tree");
+        await window.press("Enter");
+        await window.until(async () => {
+            const second = await results.nth(1).getAttribute("class");
+            return second?.includes("selected");
+        });
+        await window.press("Escape");
+        await results.first().waitFor({ state: "detached" });
+
+        // The first visit is found, collapsed, and opened again.
+        await window.press("/");
+        await window.type("visit 0");
+        const visit = picture.locator('.node[data-label="visit 0 : RecoveryNode"]');
+        await visit.and(picture.locator(".selected")).waitFor();
+        await window.press("Escape", "Space");
+        await visit.filter({ hasText: "… 10 nodes" }).waitFor();
+        assert.equal((await labels(picture)).filter((label) => label === "Spin").length, VISITS - 1);
+        await window.screenshot("large-tree-collapsed");
+        await window.press("Space");
+        await visit.filter({ hasNotText: "…" }).waitFor();
+        assert.deepEqual(await labels(picture), all);
+    });
+
+    stage.test(
+        "actions on a tree change its text",
+        () => sample(MEND),
+        async (window) => {
+            const { page } = window;
+            await window.openFile("tree.xml");
+            await window.running();
+            await window.run("AS2FM: Show Behavior Tree");
+            const picture = await window.picture();
+            const nodeOf = (label: string) => picture.locator(`.node[data-label="${label}"]`);
+            const openMenu = (label: string) => nodeOf(label).click({ button: "right", position: { x: 20, y: 12 } });
+
+            await nodeOf("Charge").waitFor();
+            await openMenu("ReactiveFallback");
+            await menuItem(page, "Set Name…").waitFor();
+            await menuItem(page, "Add Child…").waitFor();
+            await window.screenshot("tree-menu");
+            await chooseItem(window, "Add Child…");
+            await page.locator(".quick-input-widget input").first().fill("RetryUntil");
+            await choose(window, "The node to add", "RetryUntilSuccessful");
+            await answer(window, "num_attempts", "3");
+            await nodeOf("RetryUntilSuccessful").filter({ hasText: "num_attempts = 3" }).waitFor();
+            await window.screenshot("tree-actions");
+
+            await openMenu("Charge");
+            await chooseItem(window, "Move Earlier");
+            await window.until(async () => {
+                const now = await labels(picture);
+                return now.indexOf("Charge") < now.indexOf("BatteryAbove");
+            });
+            await openMenu("Deliver");
+            await chooseItem(window, "Wrap in…");
+            await choose(window, "The node around it", "Inverter");
+            await nodeOf("Inverter").waitFor();
+            await openMenu("Deliver");
+            await chooseItem(window, "Set Name…");
+            await answer(window, "The name of the node", "last");
+            await nodeOf("last : Deliver").waitFor();
+            await openMenu("Inverter");
+            await chooseItem(window, "Remove, Keep Children");
+            await nodeOf("Inverter").waitFor({ state: "detached" });
+            await openMenu("RetryUntilSuccessful");
+            await chooseItem(window, "Delete");
+            await nodeOf("RetryUntilSuccessful").waitFor({ state: "detached" });
+
+            // Each action is undone in the text.
+            await page.locator('.tab[data-resource-name="tree.xml"]').click();
+            await page.locator('.tab.active[data-resource-name="tree.xml"]').waitFor();
+            await window.press("Control+Z");
+            await nodeOf("RetryUntilSuccessful").waitFor();
+            await window.press("Control+Z");
+            await nodeOf("Inverter").waitFor();
+        },
+    );
+
     stage.test(
         "a diagram is saved as SVG and as PNG",
         () => sample(MEND),
@@ -193,8 +293,34 @@ async function choose({ page }: Window, title: string, option: string): Promise<
     await page.locator(".quick-input-list .monaco-list-row", { hasText: option }).first().click();
 }
 
-function labels(picture: Frame): Promise<string[]> {
-    return picture.locator(".node").evaluateAll((nodes) => nodes.map((node) => node.getAttribute("data-label") ?? ""));
+const VISITS = 12;
+
+/** A tree of Nav2 that visits several places and belongs to no system. */
+function largeTree(): string {
+    const visit = (number: number) => `
+        <RecoveryNode number_of_retries="3" name="visit ${number}">
+            <PipelineSequence>
+                <RateController hz="1.0"><ComputePathToPose goal="{goal_${number}}" path="{path}" /></RateController>
+                <FollowPath path="{path}" />
+            </PipelineSequence>
+            <ReactiveFallback>
+                <GoalUpdated />
+                <RoundRobin>
+                    <Spin spin_dist="1.57" />
+                    <Wait wait_duration="5" />
+                    ${number % 3 === 0 ? '<DockRobot dock_id="dock" />' : '<BackUp backup_dist="0.3" backup_speed="0.05" />'}
+                </RoundRobin>
+            </ReactiveFallback>
+        </RecoveryNode>`;
+    const visits = Array.from({ length: VISITS }, (_, number) => visit(number)).join("");
+    const tree = `<BehaviorTree ID="Tour"><Sequence>${visits}</Sequence></BehaviorTree>`;
+    const folder = temporaryFolder("tour");
+    write(path.join(folder, "tour.xml"), `<root BTCPP_format="4" main_tree_to_execute="Tour">${tree}</root>\n`);
+    return folder;
+}
+
+function labels(picture: Frame, nodes = ".node"): Promise<string[]> {
+    return picture.locator(nodes).evaluateAll((nodes) => nodes.map((node) => node.getAttribute("data-label") ?? ""));
 }
 
 function keep(folder: string, ...names: string[]): void {

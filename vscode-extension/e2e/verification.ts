@@ -81,16 +81,25 @@ export function verification(stage: Stage): void {
         await window.page.locator(".panel .message", { hasText: /; \d+ turns matter/ }).waitFor();
         await selected(window).last().waitFor();
         await window.screenshot("counterexample-end");
+        // The list consists of the turns that the message counts, and the last one is selected.
+        const message = await window.page.locator(".panel .message", { hasText: "turns matter" }).textContent();
+        const count = Number(/; (\d+) turns matter/.exec(message ?? "")?.[1]);
+        assert.ok(count > 2, message ?? "no message");
+        const position = () => turnOf(window);
+        assert.deepEqual(await position(), { number: count, of: count });
         await state(window, "was").first().waitFor();
         const end = await selected(window).textContent();
         await window.page.locator(".panel").getByRole("button", { name: "Previous Step" }).click();
         await selected(window)
             .filter({ hasNotText: end ?? "" })
             .waitFor();
+        await window.until(async () => (await position()).number === count - 1);
         await window.page.locator(".panel").getByRole("button", { name: "Next Step" }).click();
         await selected(window)
             .filter({ hasText: end ?? "" })
             .waitFor();
+        assert.deepEqual(await position(), { number: count, of: count });
+        assert.equal(await state(window, "__observer").count(), 0);
         // The list has only rows that are visible, so it is scrolled to its start.
         await selected(window).first().click();
         await window.press("Home");
@@ -242,6 +251,13 @@ function step(window: Window, text: string | RegExp): Locator {
 
 function selected(window: Window): Locator {
     return pane(window, "Counterexample").locator(".monaco-list-row.selected");
+}
+
+/** The number of the selected turn among all turns of the counterexample. */
+async function turnOf(window: Window): Promise<{ number: number; of: number }> {
+    const turn = pane(window, "Counterexample").locator('.monaco-list-row.selected[aria-level="1"]').first();
+    const [number, of] = [await turn.getAttribute("aria-posinset"), await turn.getAttribute("aria-setsize")];
+    return { number: Number(number), of: Number(of) };
 }
 
 /** A row of the state beside the counterexample. */

@@ -170,7 +170,7 @@ class PicturePanel implements vscode.Disposable {
         if (asked !== this.asked || picture === undefined) return;
         this.picture = picture ?? undefined;
         this.panel.title = picture ? `${titleOf(this.kind)}: ${picture.title}` : titleOf(this.kind);
-        this.here = this.partAtCaret(vscode.window.activeTextEditor);
+        this.here = this.partAtAnyCaret();
         this.shownUri = this.asServerSays(this.uri);
         this.draw();
     }
@@ -222,9 +222,19 @@ class PicturePanel implements vscode.Disposable {
         this.panel.dispose();
     }
 
-    private partAtCaret(editor: vscode.TextEditor | undefined): Part | null {
-        if (!this.picture || !editor) return null;
+    private partAtCaret(editor: vscode.TextEditor): Part | null {
+        if (!this.picture) return null;
         return partAt(this.picture, this.asServerSays(editor.document.uri), editor.selection.active);
+    }
+
+    /** The part at the caret of the active editor, or of a visible editor if the picture has the focus. */
+    private partAtAnyCaret(): Part | null {
+        const { activeTextEditor, visibleTextEditors } = vscode.window;
+        for (const editor of activeTextEditor ? [activeTextEditor] : visibleTextEditors) {
+            const part = this.partAtCaret(editor);
+            if (part) return part;
+        }
+        return null;
     }
 
     /** A URI in the form in which the client sends it to the server, because the server returns URIs in this form. */

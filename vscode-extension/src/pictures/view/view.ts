@@ -129,9 +129,9 @@ class View {
         }
         this.draw();
         if (isNew) this.fitLegibly();
-        if (!isNew && label !== undefined) this.select(picture.nodes.findIndex((node) => node.label === label));
         this.mark(here);
         this.highlight(highlighted);
+        if (!isNew && label !== undefined) this.select(picture.nodes.findIndex((node) => node.label === label));
         editor.postMessage({ type: "drawn", nodes: picture.nodes.length, edges: picture.edges.length });
     }
 
@@ -339,6 +339,11 @@ class View {
             } else if (edges !== undefined) {
                 this.jump(this.picture.edges[Number(edges.split(" ")[0])], ctrlKey || metaKey);
             }
+        });
+        // The selected node is shown again after its action, even if the picture has grown.
+        this.svg.addEventListener("contextmenu", ({ target }) => {
+            const node = target instanceof Element && target.closest<SVGGElement>("[data-node]")?.dataset["node"];
+            if (node) this.select(Number(node));
         });
         this.svg.addEventListener("dblclick", ({ target }) => {
             const node = target instanceof Element && target.closest<SVGGElement>("[data-node]")?.dataset["node"];
