@@ -44,7 +44,7 @@ cdef class Kernel:
     cdef int sums, lasts
     cdef u64 tried
     cdef int[::1] ready, ready_0, gate_missing, gate_missing_0, vector_missing, vector_missing_0
-    cdef int[::1] enabled, enabled_0, position, position_0
+    cdef int[::1] enabled, enabled_0
     cdef int enabled_count, enabled_count_0, plural, plural_0, fault_0
     cdef int[::1] noted, notes, part_slot, part_way
     cdef public int parts, vector
@@ -70,8 +70,12 @@ cdef class Kernel:
     @cython.locals(z=u64)
     cdef u64 _mixed(self, u64 value) noexcept
     cdef u64 _draw(self) noexcept
-    @cython.locals(old=int, gate=int, i=int, vector=int, last=int, at=int)
+    @cython.locals(old=int, gate=int, i=int, vector=int)
     cdef void _set_ready(self, int slot, int count) noexcept
+    @cython.locals(at=int)
+    cdef void _enable(self, int vector) noexcept
+    @cython.locals(at=int, following=int, moved=int)
+    cdef void _disable(self, int vector) noexcept
     @cython.locals(count=int, edge=int)
     cdef int _count(self, int group) noexcept
     @cython.locals(total=u64, i=int)

@@ -7,7 +7,8 @@
   it is ready if an edge of the automaton for this action is enabled. Slots that take part in the same vectors share a
   *gate*, which counts the slots that are not ready; a gate is open if all its slots are ready, and a vector counts its
   gates that are not open. A step updates only the slots of the locations that it leaves and enters, and the guards that
-  read a variable that has changed.
+  read a variable that has changed. The enabled vectors are sorted by their numbers, so that what a random number
+  selects depends on the state only, not on the trace before it. Few of them are enabled at the same time.
 - A model with several initial states starts in one of them, which random number 0 of the trace selects.
 - A *way* is a destination of an edge. A *part* of a step is a slot with the way that it takes.
 - If a vector has too many combinations of edges to number them all, the edge of each automaton is drawn separately. The
@@ -155,8 +156,6 @@ class Kernel:
         self.vector_missing_0 = program.vector_missing[:]
         self.enabled = program.zero_vectors[:]
         self.enabled_0 = program.zero_vectors[:]
-        self.position = program.zero_vectors[:]
-        self.position_0 = program.zero_vectors[:]
         self.enabled_count = 0
         self.plural = 0
         self.noted = program.zero_variables[:]
@@ -356,7 +355,7 @@ class Kernel:
         """The arrays that steps change, except for those whose contents are used only within a step."""
         state: list[Any] = [self.ints, self.reals, self.place, self.verdict, self.holds_left, self.holds_right]
         goal: list[Any] = [self.stale, self.known, self.known_end, self.known_activity, self.known_steps]
-        return [*state, *goal, self.ready, self.gate_missing, self.vector_missing, self.enabled, self.position]
+        return [*state, *goal, self.ready, self.gate_missing, self.vector_missing, self.enabled]
 
     def choices(self) -> list[tuple[int, int, list[list[list[float]]]]]:
         """All enabled vectors. Each is described by its number, the number of choices that differ only in slots without
@@ -408,7 +407,6 @@ class Kernel:
         self.gate_missing_0[:] = self.gate_missing
         self.vector_missing_0[:] = self.vector_missing
         self.enabled_0[:] = self.enabled
-        self.position_0[:] = self.position
         self.enabled_count_0 = self.enabled_count
         self.plural_0 = self.plural
         self.fault_0 = self.fault
@@ -423,7 +421,6 @@ class Kernel:
         self.gate_missing[:] = self.gate_missing_0
         self.vector_missing[:] = self.vector_missing_0
         self.enabled[:] = self.enabled_0
-        self.position[:] = self.position_0
         self.enabled_count = self.enabled_count_0
         self.plural = self.plural_0
         for i in range(self.note_count):
@@ -512,9 +509,7 @@ class Kernel:
                     vector = self.gate_vector[i]
                     self.vector_missing[vector] -= 1
                     if self.vector_missing[vector] == 0:
-                        self.position[vector] = self.enabled_count
-                        self.enabled[self.enabled_count] = vector
-                        self.enabled_count += 1
+                        self._enable(vector)
         elif count == 0:
             self.gate_missing[gate] += 1
             if self.gate_missing[gate] == 1:
@@ -522,11 +517,27 @@ class Kernel:
                     vector = self.gate_vector[i]
                     self.vector_missing[vector] += 1
                     if self.vector_missing[vector] == 1:
-                        self.enabled_count -= 1
-                        last = self.enabled[self.enabled_count]
-                        at = self.position[vector]
-                        self.enabled[at] = last
-                        self.position[last] = at
+                        self._disable(vector)
+
+    def _enable(self, vector: int) -> None:
+        """Insert a vector into `enabled`."""
+        at = self.enabled_count
+        while at > 0 and self.enabled[at - 1] > vector:
+            self.enabled[at] = self.enabled[at - 1]
+            at -= 1
+        self.enabled[at] = vector
+        self.enabled_count += 1
+
+    def _disable(self, vector: int) -> None:
+        """Remove a vector from `enabled`."""
+        self.enabled_count -= 1
+        at = self.enabled_count
+        following = self.enabled[at]
+        while following != vector:
+            at -= 1
+            moved = self.enabled[at]
+            self.enabled[at] = following
+            following = moved
 
     def _count(self, group: int) -> int:
         """The number of enabled edges of a group."""
