@@ -17,9 +17,9 @@ def test_a_run_is_printed_as_a_story(command: Command) -> None:
     done = command("simulate", str(ROBOT), "--seed", "3")
     assert done.status == 0
     lines = done.out.splitlines()
-    assert lines[0] == "block_placed passed in trace 0 after 482 steps"
+    assert lines[0] == "block_placed passed in trace 0 after 481 steps"
     assert "is ticked in idle → picking: RUNNING" in lines[1]
-    assert lines[-1] == "  seed 3, trace 0, 482 steps, 10 s"
+    assert lines[-1] == "  seed 3, trace 0, 481 steps, 10 s"
 
 
 def test_the_run_is_the_trace_of_verify(command: Command) -> None:
@@ -87,11 +87,11 @@ def test_files(command: Command, tmp_path: Path) -> None:
     done = command("simulate", str(ROBOT), "--seed", "3", *options)
     assert (done.status, done.out) == (0, "")
     rows = list(csv.DictReader(Path(names["csv"]).read_text(encoding="utf-8").splitlines()))
-    assert len(rows) == 483
+    assert len(rows) == 482
     assert rows[0]["Arm.state"] == "still"
     assert rows[-1]["time"] == "10.0"
     value = json.loads(Path(names["json"]).read_text(encoding="utf-8"))
-    assert (value["verdict"], len(value["steps"])) == ("passed", 482)
+    assert (value["verdict"], len(value["steps"])) == ("passed", 481)
     assert value["steps"][-1]["changes"] == [
         {"variable": "topic_block__placed_msg.valid", "value": True},
         {"variable": "topic_block__placed_msg__ros_fields__data", "value": True},
@@ -111,7 +111,7 @@ def test_interactive_commands(command: Command, tmp_path: Path) -> None:
     saved = tmp_path / "run.json"
     lines = f"g 4 s\ns\nt\nb 10\n1\nnonsense\nu /nowhere\ne\nw {saved}\nq\n"
     out = command("simulate", str(ROBOT), "--seed", "3", "--interactive", stdin=lines.encode()).out
-    assert "> step 119, 4.000 s\n" in out
+    assert "> step 118, 4.000 s\n" in out
     assert "  Arm: moving (holding: true, way: 0)\n" in out
     assert "  MoveToGoal (bt_1006): RUNNING\n" in out
     assert "way: 0 → 1" in out

@@ -48,7 +48,7 @@ def test_the_timeline_follows_the_run(client: Client) -> None:
     steps = client.ask("timeline", axis="steps", **{"from": 40, "to": 60})
     assert (steps["step"], steps["steps"], steps["cursor"], steps["extent"]) == (50, 201, 50, 201)
     assert "names" not in steps
-    assert 'data-step="41"' in steps["scene"]
+    assert 'data-step="42"' in steps["scene"]
     for wrong in ({"width": 0}, {"width": 1e9}, {"from": 5, "to": 4}, {"from": "a"}):
         assert client.refusal("timeline", **wrong)
 
@@ -70,7 +70,7 @@ def test_a_stretch_is_exported(client: Client) -> None:
 
 def test_pictures_follow_the_run(client: Client) -> None:
     analysis = api.load(str(BUG)).analysis
-    _begin(client, BUG, 40)
+    _begin(client, BUG, 42)
     activity = client.ask("pictures")
     looks = {(node["kind"], node["source"]["name"], node["node"]): node["look"] for node in activity["nodes"]}
     # The command to the arm has been sent; the arm is the next to act, and the node of the tree is running.

@@ -17,9 +17,8 @@ from typing import Any
 import pytest
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
-from roaml.smc.batch import BatchOutcome, Task, kernel_of, run
+from roaml.smc.batch import BatchOutcome, Simulator, Task, run, simulator_of
 from roaml.smc.fault import FaultError
-from roaml.smc.kernel import Kernel
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import MAX_CONSECUTIVE_LOSSES, Pool, WorkersLostError
 from roaml.smc.program import FALSE, TRUE
@@ -95,18 +94,18 @@ def test_the_number_of_workers_has_no_influence(jobs: int) -> None:
         assert numbers(ask(options, pool=Pool(jobs, executor))) == numbers(alone)
 
 
-def test_threads_do_not_share_a_kernel() -> None:
-    """With a shared kernel, one thread would continue the trace of another."""
+def test_threads_do_not_share_a_simulator() -> None:
+    """With a shared simulator, one thread would continue the trace of another."""
     checker = ModelChecker(model(coin()))
     payload = checker.payload(checker.compiled_properties[0])
     together = Barrier(2)
 
-    def kernel(_: int) -> Kernel:
+    def simulator(_: int) -> Simulator:
         together.wait()
-        return kernel_of(payload)
+        return simulator_of(payload)
 
     with ThreadPoolExecutor(2) as executor:
-        first, second = executor.map(kernel, range(2))
+        first, second = executor.map(simulator, range(2))
     assert first is not second
 
 

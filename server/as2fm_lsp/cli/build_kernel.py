@@ -20,7 +20,14 @@ import roaml
 from as2fm_lsp.atomic_write import write_file
 
 PACKAGE = Path(roaml.__file__).parent
-MODULES = ("smc/kernel", "explicit/ample", "explicit/search", "explicit/elimination", "explicit/solver")
+MODULES = (
+    "smc/kernel",
+    "smc/states",
+    "explicit/ample",
+    "explicit/search",
+    "explicit/elimination",
+    "explicit/solver",
+)
 SOURCES = tuple(PACKAGE / f"{module}.c" for module in MODULES)
 FLAGS = ("-O3", "-g0", "-fwrapv", "-ffp-contract=off")
 

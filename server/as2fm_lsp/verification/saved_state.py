@@ -19,7 +19,7 @@ from roaml.smc.goal import Question
 from roaml.smc.run import Options, Tally
 from roaml.smc.stored import tally_from_json
 
-VERSION = 4
+VERSION = 5
 MAX_STATE_BYTES = 64 * MEGABYTE
 """The maximum size of the file, in bytes; the state of some hundred properties takes a few MB."""
 WRITE_INTERVAL_S = 1.0

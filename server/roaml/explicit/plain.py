@@ -19,6 +19,12 @@ def plain_kernel() -> ModuleType:
 
 
 @cache
+def plain_states() -> ModuleType:
+    """The module of the nodes as plain Python, even if it is compiled. It needs a plain kernel."""
+    return _loaded("plain_states", Path(roaml.smc.__file__).with_name("states.py"))
+
+
+@cache
 def plain_search() -> ModuleType:
     """The module of the search as plain Python, even if the search is compiled."""
     return _loaded("plain_search", Path(__file__).with_name("search.py"))

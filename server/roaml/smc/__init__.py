@@ -9,8 +9,10 @@ for.
   cached function and 305 MB (two cores of an AMD EPYC), while a whole verification takes 0.8 s.
 - A *question* is what a property asks about all traces (`goal.Question`); an *answer* is the estimate. A *goal* is what
   the kernel evaluates on each trace for one or more questions (`program.Goal`).
-- The kernel caches no states. A step evaluates again only what it changes: the actions of the locations that are left
-  and entered, and the guards that read a changed variable.
+- A step of the kernel evaluates again only what it changes: the actions of the locations that are left and entered, and
+  the guards that read a changed variable.
+- `states` remembers the states that traces have reached, and where their steps lead. A known step takes 0.005 to
+  0.02 µs. This is switched off for models whose states do not repeat.
 - A trace is a pure function of the compiled model, the seed and its number; neither the number of workers nor the order
   of work influences it.
 - An undefined operation of a model (an index outside of an array, a division by zero) is reported as a `FaultError`

@@ -15,7 +15,10 @@ from typing import TYPE_CHECKING, NamedTuple
 from roaml.record import Record
 from roaml.smc.end import End
 from roaml.smc.kernel import Kernel
+from roaml.smc.kernel import compiled as kernel_compiled
 from roaml.smc.program import FAULTY, UNKNOWN, Compiled, Ints, Reals
+from roaml.smc.states import MAX_BYTES, TraceBatch
+from roaml.smc.states import compiled as states_compiled
 
 if TYPE_CHECKING:
     from multiprocessing.synchronize import Event
@@ -90,25 +93,38 @@ def pack(compiled: Compiled) -> Payload:
     return Payload(digest.hexdigest(), pickle.dumps(compiled))
 
 
-class _Kernels(threading.local):
-    """The last kernel of each thread. A kernel simulates one trace at a time, and some executors run batches in
+class Simulator:
+    """The kernel of a compiled model and goal, and the states that its traces have reached so far.
+
+    Args:
+        bytes: the maximum memory for states, in bytes; 0 if the kernel generates all traces.
+    """
+
+    def __init__(self, compiled: Compiled, bytes: int = MAX_BYTES) -> None:  # noqa: A002
+        self.kernel = Kernel(compiled.program, compiled.goal)
+        # Python cannot read the data of a compiled kernel.
+        is_readable = states_compiled() or not kernel_compiled()
+        self.batch = TraceBatch(self.kernel, compiled.program, bytes) if is_readable else None
+
+
+class _Simulators(threading.local):
+    """The last simulator of each thread. A kernel simulates one trace at a time, and some executors run batches in
     threads."""
 
     digest = ""
-    kernel: Kernel | None = None
+    simulator: Simulator | None = None
 
 
-_kernels = _Kernels()
+_simulators = _Simulators()
 
 
-def kernel_of(payload: Payload) -> Kernel:
-    """The kernel of a payload for this thread. The last kernel is kept for the next call."""
-    kernel = _kernels.kernel
-    if kernel is None or payload.digest != _kernels.digest:
-        compiled: Compiled = pickle.loads(payload.data)
-        _kernels.kernel = kernel = Kernel(compiled.program, compiled.goal)
-        _kernels.digest = payload.digest
-    return kernel
+def simulator_of(payload: Payload) -> Simulator:
+    """The simulator of a payload for this thread. The last simulator is kept for the next call."""
+    simulator = _simulators.simulator
+    if simulator is None or payload.digest != _simulators.digest:
+        _simulators.simulator = simulator = Simulator(pickle.loads(payload.data))
+        _simulators.digest = payload.digest
+    return simulator
 
 
 def run(task: Task, pulse: Callable[[int, int], None] | None = None) -> BatchOutcome:
@@ -118,11 +134,26 @@ def run(task: Task, pulse: Callable[[int, int], None] | None = None) -> BatchOut
         pulse: called regularly with the number of the trace and the number of steps that the trace has at most; an
             exception that `pulse` raises ends the batch.
     """
-    return run_on(kernel_of(task.payload), task, pulse)
+    return run_on(simulator_of(task.payload), task, pulse)
 
 
-def run_on(kernel: Kernel, task: Task, pulse: Callable[[int, int], None] | None = None) -> BatchOutcome:
-    """Run the traces of a batch on a kernel that nothing else uses at the same time."""
+def run_on(simulator: Simulator, task: Task, pulse: Callable[[int, int], None] | None = None) -> BatchOutcome:
+    """Run the traces of a batch on a simulator that nothing else uses at the same time."""
+    batch = simulator.batch
+    if batch is None or task.scheduler != 0:
+        return _run_on_kernel(simulator.kernel, task, pulse)
+    count = batch.run(task.seed, task.first, task.size, task.max_steps, task.questions, pulse)
+    problem = None if count == task.size else TraceProblem(task.first + count, *simulator.kernel.problem())
+    rewards = batch.rewards[:count]
+    results = []
+    for i in range(len(task.questions)):
+        part = slice(i * task.size, i * task.size + count)
+        columns = bytes(batch.verdicts[part]), bytes(batch.ends[part]), batch.steps[part], bytes(batch.activities[part])
+        results.append(Rows(*columns, rewards))
+    return BatchOutcome(tuple(results), problem)
+
+
+def _run_on_kernel(kernel: Kernel, task: Task, pulse: Callable[[int, int], None] | None) -> BatchOutcome:
     kernel.choose(task.questions)
     rows = [(bytearray(), bytearray(), array("q"), bytearray()) for _ in task.questions]
     rewards = array("d")

@@ -22,7 +22,7 @@ from roaml.smc.layout import MemoryLayout, lay_out
 from roaml.smc.names import Storage, StorageNames
 from roaml.smc.network import CompiledNetwork, EdgeStep, Slot, root
 from roaml.smc.program import Ints, Program
-from roaml.smc.registers import REAL, Tape
+from roaml.smc.registers import REAL, Tape, product
 
 SUPPORTED = (ModelType.DTMC, ModelType.MDP, ModelType.LTS)
 
@@ -318,6 +318,7 @@ class Compilation:
             watch_table=watch_table,
             watched_start=watched_start,
             watched_group=watched_group,
+            cell_watch=self._cell_watch(),
             settle=settle,
             location_code=location_code,
             location_mark=_ints(
@@ -385,6 +386,14 @@ class Compilation:
     @property
     def legend(self) -> Legend:
         return Legend(self.layout, self.network.locations, self.ways, self.network.vectors, self.network.slots)
+
+    def _cell_watch(self) -> Ints:
+        numbers = [-1] * (self.int_count + self.real_count)
+        for storage in self.layout.storages:
+            first = storage.base + (self.int_count if storage.kind == REAL else 0)
+            size = product(storage.shape)
+            numbers[first : first + size] = [storage.watch] * size
+        return _ints(numbers)
 
     def _write_transient(self) -> tuple[int, Ints]:
         """Write code that resets transient variables, and code for each location that sets the values that they have

@@ -11,7 +11,7 @@ cdef u64 UINT64_MASK, GOLDEN, MIX_1, MIX_2
 cdef i64 MAX_INT64, MIN_INT64
 cdef double TO_UNIT, MASS_UNIT, MASS_UNIT_INVERSE
 cdef u64 MAX_DRAWN_COMBINATIONS
-cdef int FALSE, TRUE, UNKNOWN, FAULTY, ASKED
+cdef int FALSE, TRUE, UNKNOWN, FAULTY, GOES_ON, ASKED
 cdef int DECIDED, TIME, FINISHED, STUCK, QUIET, DEADLOCK, IDLE
 
 @cython.final
@@ -59,6 +59,7 @@ cdef class Kernel:
     cdef public i64 steps
     cdef i64 still
     cdef public double reward
+    cdef double added
 
     @cython.locals(a=int, group=int, location=int, i=int)
     cdef void _prepare(self) noexcept
@@ -67,6 +68,12 @@ cdef class Kernel:
     @cython.locals(rest=u64, choice=int, first=int, end=int, at=i64, k=int, cell=int, slot=int, a=int, group=int, i=int)
     cdef void _enter(self, u64 number) noexcept
     cpdef void root(self, u64 number) noexcept
+    @cython.locals(i=int)
+    cdef void _forget_conditions(self) noexcept
+    @cython.locals(i=int)
+    cdef void _reset_goal(self) noexcept
+    cdef void _seed(self, u64 seed, u64 trace) noexcept
+    cdef u64 _root_number(self) noexcept
     @cython.locals(z=u64)
     cdef u64 _mixed(self, u64 value) noexcept
     cdef u64 _draw(self) noexcept
@@ -134,15 +141,18 @@ cdef class Kernel:
     cdef int _is_possible(self, int way) noexcept
     @cython.locals(i=int)
     cdef int _changes(self, int slot, int way) noexcept
-    @cython.locals(status=int, i=int)
+    @cython.locals(status=int)
     cdef int _advance(self, i64 limit) noexcept
+    @cython.locals(status=int)
+    cdef int _after_step(self) noexcept
     cdef int _finish(self, int status) noexcept
     @cython.locals(i=int, decided=int)
     cdef int _look(self) noexcept
     cdef int _holds(self, int code) noexcept
     cdef int _is_deadlock(self) noexcept
-    @cython.locals(i=int)
     cdef int _ends(self, int repeats) noexcept
+    @cython.locals(i=int)
+    cdef int _ends_for(self, int reason, int repeats) noexcept
     @cython.locals(i=int)
     cdef int _goes_round(self) noexcept
     @cython.locals(reason=int, i=int, mark=int)

@@ -42,6 +42,8 @@ FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
 """The status of the goal. UNKNOWN: the trace can go on; FAULTY: the model has executed an undefined operation."""
 DECIDED, TIME, FINISHED, STUCK, QUIET, DEADLOCK, IDLE = 0, 1, 2, 3, 4, 5, 6
 """The reason why a trace has ended, see `end.End`."""
+GOES_ON = -1
+"""The status of a trace that has not ended."""
 ASKED = 2
 """The activity of a question without code for its activity, see `goal.Activity`."""
 
@@ -193,6 +195,7 @@ class Kernel:
         self.steps = 0
         self.still = 0
         self.reward = 0.0
+        self.added = 0.0
         self._prepare()
 
     # ------------------------------------------------------------ public
@@ -213,12 +216,9 @@ class Kernel:
         Returns:
             The status of the goal in the initial state: UNKNOWN if one of the questions is undecided.
         """
-        self.key = self._mixed((self._mixed(seed & UINT64_MASK) + (trace & UINT64_MASK) * GOLDEN) & UINT64_MASK)
-        self.drawn = 0
+        self._seed(seed & UINT64_MASK, trace & UINT64_MASK)
         self.scheduler = scheduler & UINT64_MASK
-        self._reset()
-        if self.roots > 1:
-            self._enter(self._mixed(self.key) % self.roots)
+        self.root(self._root_number())
         return self._finish(self._look())
 
     def root(self, number: int) -> None:
@@ -427,18 +427,27 @@ class Kernel:
             self.noted[self.notes[i]] = 0
         self.note_count = 0
         self.fault = self.fault_0
-        self.end = DECIDED
         self.vector = -1
         self.looped = 0
         self.loop_drawn = UINT64_MASK
+        self.parts = 0
+        self._forget_conditions()
+        self._reset_goal()
+
+    def _forget_conditions(self) -> None:
+        """Let the goal be evaluated again, with all of its conditions."""
+        self.must_look = 1
+        for i in range(self.leaves):
+            self.stale[i] = 1
+
+    def _reset_goal(self) -> None:
+        """Set what is known about the trace to its start. The state is not changed."""
+        self.end = DECIDED
         self.steps = 0
         self.still = 0
         self.reward = 0.0
-        self.parts = 0
-        self.must_look = 1
         for i in range(self.leaves):
             self.verdict[i] = UNKNOWN
-            self.stale[i] = 1
         self.status = UNKNOWN
         for i in range(self.questions):
             self.known[i] = UNKNOWN
@@ -478,6 +487,15 @@ class Kernel:
         self.note_count = 0
 
     # ------------------------------------------------------------ random numbers
+
+    def _seed(self, seed: int, trace: int) -> None:
+        """Set the random numbers to the first one of a trace."""
+        self.key = self._mixed((self._mixed(seed) + trace * GOLDEN) & UINT64_MASK)
+        self.drawn = 0
+
+    def _root_number(self) -> int:
+        """The number of the initial state of the trace."""
+        return self._mixed(self.key) % self.roots if self.roots > 1 else 0
 
     def _mixed(self, value: int) -> int:
         """The finalizer of SplitMix64 (Steele, Lea and Flood 2014)."""
@@ -1026,7 +1044,6 @@ class Kernel:
     # ------------------------------------------------------------ the goal
 
     def _advance(self, limit: int) -> int:
-        status = UNKNOWN
         if self.fault != 0:
             return FAULTY
         while self.steps < limit:
@@ -1036,26 +1053,31 @@ class Kernel:
             if self.fault != 0:
                 return FAULTY
             self.steps += 1
-            if self.looped != 0 and self.is_bounded == 0:
-                return self._finish(self._goes_round())
-            if self.is_bounded == 2:
-                self.must_look = 1
-                for i in range(self.leaves):
-                    self.stale[i] = 1
-            if self.must_look != 0 or self.is_bounded != 0:
-                status = self._look()
-                if status != UNKNOWN:
-                    if self.is_bounded == 2 and self.enabled_count == 0:
-                        self.end = self._reason(0)
-                        self.known_end[0] = self.end
-                    return self._finish(status)
-            if self.moved != 0:
-                self.still = 0
-            else:
-                self.still += 1
-                if self.still & (self.still - 1) == 0 and self.lasts == 0 and self._can_leave() == 0:
-                    return self._finish(self._ends(0 if self.enabled_count == 0 else 1))
+            status = self._after_step()
+            if status != GOES_ON:
+                return self._finish(status)
         return UNKNOWN
+
+    def _after_step(self) -> int:
+        """Evaluate the goal after a step; return GOES_ON if the trace has not ended."""
+        if self.looped != 0 and self.is_bounded == 0:
+            return self._goes_round()
+        if self.is_bounded == 2:
+            self._forget_conditions()
+        if self.must_look != 0 or self.is_bounded != 0:
+            status = self._look()
+            if status != UNKNOWN:
+                if self.is_bounded == 2 and self.enabled_count == 0:
+                    self.end = self._reason(0)
+                    self.known_end[0] = self.end
+                return status
+        if self.moved != 0:
+            self.still = 0
+        else:
+            self.still += 1
+            if self.still & (self.still - 1) == 0 and self.lasts == 0 and self._can_leave() == 0:
+                return self._ends(0 if self.enabled_count == 0 else 1)
+        return GOES_ON
 
     def _finish(self, status: int) -> int:
         return FAULTY if self.fault != 0 else status
@@ -1106,7 +1128,10 @@ class Kernel:
     def _ends(self, repeats: int) -> int:
         """Evaluate the goal if the state never changes again; with `repeats`, steps that change nothing go on for
         ever."""
-        self.end = self._reason(repeats)
+        return self._ends_for(self._reason(repeats), repeats)
+
+    def _ends_for(self, reason: int, repeats: int) -> int:
+        self.end = reason
         for i in range(self.leaves):
             if self.verdict[i] == UNKNOWN:
                 if self.right[i] == -5:
@@ -1193,7 +1218,8 @@ class Kernel:
 
     def _add_reward(self, code: int) -> None:
         register = self._execute(code)
-        self.reward += self.reals[register]
+        self.added = self.reals[register]
+        self.reward += self.added
 
     def _accumulate(self, codes: Any) -> None:
         """Add the rewards of a step, which `codes` compute, to the variables that contain accumulated rewards."""

@@ -12,8 +12,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, Protocol, TypeAlias
 
-from roaml.smc.batch import BatchOutcome, Task, run, run_in_worker, run_on, start_worker
-from roaml.smc.kernel import Kernel
+from roaml.smc.batch import BatchOutcome, Simulator, Task, run, run_in_worker, run_on, start_worker
 from roaml.smc.program import Compiled
 
 if TYPE_CHECKING:
@@ -34,14 +33,14 @@ class WorkersLostError(Exception):
 
 
 class Alone:
-    """Runs batches in this thread. Each object has its own kernel, so several threads may use one each."""
+    """Runs batches in this thread. Each object has its own simulator, so several threads may use one each."""
 
     def __init__(self, compiled: Compiled) -> None:
-        self._kernel = Kernel(compiled.program, compiled.goal)
+        self._simulator = Simulator(compiled)
 
     def outcomes(self, tasks: Iterable[Task], pulse: Pulse | None = None) -> Iterator[tuple[Task, BatchOutcome]]:
         """The outcome of each task, in the order of the tasks."""
-        return ((task, run_on(self._kernel, task, pulse)) for task in tasks)
+        return ((task, run_on(self._simulator, task, pulse)) for task in tasks)
 
 
 class Runner(Protocol):

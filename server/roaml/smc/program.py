@@ -55,6 +55,8 @@ class Program(Record, frozen=True, eq=False):
         watch_instance: the instances whose guards read a watched variable.
         watch_table: for each of these instances, the index in `watched_start` for its first location.
         watched_group: for each location of these instances, the groups whose guards read the variable.
+        cell_watch: for each variable register, integers first, the number of its variable among the watched variables,
+            or -1.
         settle: code that resets transient variables; location_code: code that sets their values in a location.
         location_mark: why a trace that stays in a location ends (`end.End`); 0 if unknown.
         zero_*: a zero for each slot, vector, watched variable and instance, which the kernel copies.
@@ -108,6 +110,7 @@ class Program(Record, frozen=True, eq=False):
     watch_table: Ints
     watched_start: Ints
     watched_group: Ints
+    cell_watch: Ints
     settle: int
     location_code: Ints
     location_mark: Ints
