@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from itertools import combinations
 
@@ -50,12 +51,29 @@ def _texts(drawing: Drawing) -> Iterator[str]:
         card = next((item for item in around if item.role in ("card", "label-card", "frame")), None)
         if card is None or not card.box.grown(-1).contains(text.box):
             yield f"a text leaves its card: {text}"
+        for shape in around if card is not None else ():
+            if shape.role in ("bar", "badge") and not _is_inside(shape.box, card):
+                yield f"a symbol leaves its card: {shape}"
+        if card is not None and not _is_inside(text.box, card):
+            yield f"a text is in a round corner: {text}"
         for shape in around:
             if shape.role in ("bar", "badge") and shape.box.overlaps(text.box):
                 yield f"a text on a symbol: {text}"
     for (_, a), (_, b) in combinations(texts, 2):
         if a.box.overlaps(b.box):
             yield f"two texts overlap: {a.text!r}, {b.text!r}"
+
+
+def _is_inside(box: Box, card: Shape) -> bool:
+    """Whether a box is inside a card with round corners."""
+    radius, outer = card.rounding, card.box
+    for x in (box.x, box.right):
+        for y in (box.y, box.bottom):
+            dx = max(outer.x + radius - x, x - (outer.right - radius), 0.0)
+            dy = max(outer.y + radius - y, y - (outer.bottom - radius), 0.0)
+            if dx and dy and math.hypot(dx, dy) > radius + _NEAR:
+                return False
+    return True
 
 
 def _lines(drawing: Drawing) -> Iterator[str]:

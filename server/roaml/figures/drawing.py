@@ -11,6 +11,7 @@ import enum
 from collections.abc import Iterator, Mapping
 from typing import TypeAlias
 
+from roaml.exhaustive import assert_never
 from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.text import text_width
 from roaml.record import Record
@@ -50,10 +51,31 @@ class Outline(enum.Enum):
     DOUBLE = "double"
 
 
+MAX_ROUNDING = 24.0
+"""The maximum radius of the corners of a `PILL`, in pixels. The ends of lower pills are half circles."""
+
+
 class Shape(Record, frozen=True):
     box: Box
     outline: Outline
     role: str
+
+    @property
+    def rounding(self) -> float:
+        """The radius of the corners, in pixels; 0 for outlines with other corners."""
+        match self.outline:
+            case Outline.ROUNDED:
+                return min(7.0, self.box.height / 2)
+            case Outline.PILL:
+                return min(self.box.width / 2, self.box.height / 2, MAX_ROUNDING)
+            case Outline.RECTANGLE:
+                return 2.0
+            case Outline.DOUBLE:
+                return 3.0
+            case Outline.HEXAGON | Outline.CUT:
+                return 0.0
+            case _:
+                return assert_never(self.outline)
 
 
 class TextItem(Record, frozen=True):

@@ -78,14 +78,10 @@ def _item(item: Shape | TextItem | Polyline | Glyph) -> Iterator[str]:
 
 def _shape(shape: Shape) -> Iterator[str]:
     match shape.outline:
-        case Outline.RECTANGLE:
-            yield _rectangle(shape.box, 2, shape.role)
-        case Outline.ROUNDED:
-            yield _rectangle(shape.box, min(7, shape.box.height / 2), shape.role)
-        case Outline.PILL:
-            yield _rectangle(shape.box, min(shape.box.width, shape.box.height) / 2, shape.role)
+        case Outline.RECTANGLE | Outline.ROUNDED | Outline.PILL:
+            yield _rectangle(shape.box, shape.rounding, shape.role)
         case Outline.DOUBLE:
-            yield _rectangle(shape.box, 3, shape.role)
+            yield _rectangle(shape.box, shape.rounding, shape.role)
             yield _rectangle(shape.box.grown(-3), 2, f"{shape.role} inner")
         case Outline.HEXAGON:
             yield _cut(shape, min(8, shape.box.height / 2), shape.box.height / 2)

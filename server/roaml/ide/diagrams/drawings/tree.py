@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from roaml.figures.drawing import Drawing, Group, Item, Outline, Polyline, Shape, Tone
+from roaml.figures.drawing import MAX_ROUNDING, Drawing, Group, Item, Outline, Polyline, Shape, Tone
 from roaml.figures.geometry import Box, Extent
 from roaml.figures.layout import LayoutDirection, tidy_tree
 from roaml.figures.layout.packing import shelves
@@ -88,7 +88,7 @@ def _size(card: Card, kind: DiagramNodeKind) -> Extent:
     """The size of a card; shapes with slanted or round ends need more space at the sides."""
     width, height = card.size
     outline = _OUTLINES.get(kind, Outline.ROUNDED)
-    extra = {Outline.HEXAGON: 12.0, Outline.PILL: min(height / 2, 24.0), Outline.DOUBLE: 6.0}.get(outline, 0.0)
+    extra = {Outline.HEXAGON: 12.0, Outline.PILL: min(height / 2, MAX_ROUNDING), Outline.DOUBLE: 6.0}.get(outline, 0.0)
     return Extent(width + extra, height)
 
 
