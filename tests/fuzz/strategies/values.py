@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Random JANI networks: the exact values over all states, and the traces of the same networks."""
+"""Random JANI networks: the exact values over all states, the same after reductions, and the traces of the same
+networks."""
 
 from __future__ import annotations
 
@@ -12,6 +13,7 @@ from scipy.stats import binom
 from fuzz.networks import NetworkCase, bounded
 from fuzz.strategy import Failure, Strategy
 from roaml import api
+from roaml.explicit.independence import can_be_reduced
 from roaml.explicit.space import LimitError, StateLimits, explore
 from roaml.explicit.values import NoValueError, values_of
 from roaml.jani.reader import read_model
@@ -19,6 +21,7 @@ from roaml.json_syntax import parse
 from roaml.smc.fault import FaultError
 from roaml.smc.pool import Alone
 from roaml.smc.run import EstimationMethod, Options
+from roaml.smc.statistics import Bounds
 
 MAX_STATES = 20_000
 TRACES = 2_000
@@ -43,6 +46,11 @@ class Network(NetworkCase):
             exact = values_of(space)
         except (FaultError, LimitError, NoValueError):
             return
+        compiled = checker.compiled(property_)
+        if can_be_reduced(compiled.program, compiled.goal):
+            reduced = values_of(explore(checker, property_, StateLimits(states=MAX_STATES), is_reduced=True))
+            if not _overlap(reduced.minimum, exact.minimum) or not _overlap(reduced.maximum, exact.maximum):
+                yield Failure("reductions change the exact values", f"{exact}\n{reduced}")
         options = Options(method=EstimationMethod.FIXED, max_traces=TRACES, max_steps=STEPS, seed=self.seed)
         try:
             tally = checker.answer(property_, options, Alone(checker.compiled(property_))).tally
@@ -60,6 +68,10 @@ class Network(NetworkCase):
         if min(too_many, too_few) < ERROR:
             details = f"{successes} to {possible} of {TRACES} traces; the exact value is in [{lower!r}, {upper!r}]"
             yield Failure("the exact value contradicts the traces", details)
+
+
+def _overlap(one: Bounds, other: Bounds) -> bool:
+    return max(one.lower, other.lower) <= min(one.upper, other.upper) + TOLERANCE
 
 
 def make(seed: int) -> Network:
