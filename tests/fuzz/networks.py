@@ -128,7 +128,24 @@ def bounded(random: Random) -> Json:
     if random.random() < 0.4:
         path["reward-bounds"] = [_reward_bound(random) for _ in range(random.randint(1, 2))]
     document["properties"][0]["expression"]["values"] = {"op": "Pmin", "exp": path}
+    if random.random() < 0.3:
+        _open(random, document)
     return document
+
+
+def _open(random: Random, document: Json) -> None:
+    """Let a bounded network begin in several states."""
+    names = random.sample(SHARED, random.randint(1, len(SHARED)))
+    for variable in document["variables"]:
+        if variable["name"] in names:
+            del variable["initial-value"]
+            variable["type"] = {"kind": "bounded", "base": "int", "lower-bound": 0, "upper-bound": 3}
+    if random.random() < 0.7:
+        parts = [_small_condition(random, SHARED) for _ in range(2)]
+        document["restrict-initial"] = {"exp": {"op": random.choice("∧∨"), "left": parts[0], "right": parts[1]}}
+    if random.random() < 0.4:
+        automaton = random.choice(document["automata"])
+        automaton["initial-locations"] = random.sample("lmn", 2)
 
 
 def _reward_bound(random: Random) -> Json:

@@ -15,12 +15,13 @@ from threading import Barrier
 from typing import Any
 
 import pytest
+from scipy.stats import binom
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
 from roaml.smc.batch import BatchOutcome, Simulator, Task, run, simulator_of
 from roaml.smc.fault import FaultError
 from roaml.smc.model import ModelChecker
-from roaml.smc.pool import MAX_CONSECUTIVE_LOSSES, Pool, WorkersLostError
+from roaml.smc.pool import MAX_CONSECUTIVE_LOSSES, Alone, Pool, WorkersLostError
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.run import Answer, EstimationMethod, Options, Tally
 from roaml.smc.statistics import okamoto
@@ -75,6 +76,28 @@ def test_sequential_test(relation: str, number: float, accepted: bool) -> None:
 def test_a_method_is_a_member_not_its_value() -> None:
     with pytest.raises(ValueError, match="there is no method `fixed`"):
         Options(method="fixed", max_traces=1)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("p", [0.5, 0.01, 0.999])
+@pytest.mark.parametrize(
+    "method", [EstimationMethod.ADAPTIVE, EstimationMethod.OKAMOTO, EstimationMethod.FIXED, EstimationMethod.SPRT]
+)
+def test_coverage_over_300_runs(method: EstimationMethod, p: float) -> None:
+    """The intervals of runs with different seeds contain the probability as often as their confidence states."""
+    runs, confidence = 300, 0.9
+    written = coin(p)
+    written["properties"][0]["expression"] = op("≥", {"op": "Pmax", "exp": op("F", op("=", "x", 1))}, 0.7)
+    checker = ModelChecker(model(written))
+    property_ = checker.compiled_properties[0]
+    pool = Alone(checker.compiled(property_))
+    missed = 0
+    for seed in range(runs):
+        most = 300 if method is EstimationMethod.FIXED else None
+        options = Options(confidence=confidence, epsilon=0.05, method=method, max_traces=most, seed=seed)
+        lower, upper = checker.answer(property_, options, pool).bounds
+        missed += not lower <= p <= upper
+    # A correct interval fails this test once in ten thousand times.
+    assert binom.sf(missed - 1, runs, 1 - confidence) > 1e-4
 
 
 def test_another_seed_gives_other_traces_the_same_seed_the_same() -> None:
