@@ -109,12 +109,13 @@ def test_a_saved_run_is_repeated(command: Command, tmp_path: Path) -> None:
 
 def test_interactive_commands(command: Command, tmp_path: Path) -> None:
     saved = tmp_path / "run.json"
-    lines = f"g 4 s\ns\nt\nb 10\n1\nnonsense\nu /nowhere\ne\nw {saved}\nq\n"
+    lines = f"g 4 s\ns\nt\nb 10\nb many\n1\nnonsense\nu /nowhere\ne\nw {saved}\nq\n"
     out = command("simulate", str(ROBOT), "--seed", "3", "--interactive", stdin=lines.encode()).out
     assert "> step 118, 4.000 s\n" in out
     assert "  Arm: moving (holding: true, way: 0)\n" in out
     assert "  MoveToGoal (bt_1006): RUNNING\n" in out
     assert "way: 0 → 1" in out
+    assert "`b` needs a number of steps" in out
     assert "`nonsense` is neither a choice nor a command" in out
     assert "there is no event, topic, service or action `/nowhere`" in out
     assert f"written to {saved}" in out

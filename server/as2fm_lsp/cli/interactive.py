@@ -104,7 +104,9 @@ class Terminal:
                 session.until_decided()
                 return f"{session.save().property}: {session.verdict}"
             case "b":
-                session.back(int(rest) if rest.isdecimal() else 1)
+                if rest and not rest.isdecimal():
+                    return "`b` needs a number of steps, such as `b 10`"
+                session.back(int(rest or 1))
             case "g":
                 return self._go(rest)
             case "u":
