@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from replay import sources_of
 
+from as2fm_lsp.verification.run_files import csv_lines
 from conformance import label, systems
 from roaml.debugging.debugger import Debugger
 from roaml.debugging.start import Start, start
@@ -79,3 +80,20 @@ def test_the_states_of_machines_are_those_of_their_files(path: Path) -> None:
                 break
         except FaultError:
             break
+
+
+def test_members_of_structs_are_separated_by_dots() -> None:
+    path = next(path for path in systems() if path.parent.name == "data_structs")
+    session = start(sources_of(path), Start(), lambda *_: None).session
+    while session.step() is not None:
+        pass
+    changes = [line.strip() for line in as_text(session.story(), lambda _: "").splitlines() if "→" in line]
+    assert any(line.startswith("recv_point.x: 0 → ") for line in changes)
+    assert any(line.startswith("recv_polygons.polygons.points.y: → ") for line in changes)
+    header = next(csv_lines(session, session.position))
+    timeline = Timeline(session)
+    timeline.follow(session)
+    plots = [plot.name for plot in timeline.plots]
+    assert "receiver.recv_point.x" in plots
+    assert "receiver.recv_point.x" in header.split(",")
+    assert not [text for text in (*changes, *plots, header) if "__" in text]

@@ -33,17 +33,18 @@ def csv_lines(session: Session, first: int = 0) -> Iterator[str]:
         if state.time is not None:
             row.append(("time", state.time))
         row.append(("action", session.steps[position - 1].action or "" if position else ""))
-        row += _columns(state)
+        row += _columns(session, state)
         if position == first:
             yield csv_line(name for name, _ in row)
         yield csv_line(cell for _, cell in row)
 
 
-def _columns(state: SystemState) -> Iterator[tuple[str, int | float | str]]:
+def _columns(session: Session, state: SystemState) -> Iterator[tuple[str, int | float | str]]:
     for machine in state.machines:
         yield f"{machine.name}.state", machine.state
+        phrases = session.phrases(machine.automaton)
         for name, value in machine.variables.items():
-            yield from _cells(f"{machine.name}.{name}", value)
+            yield from _cells(f"{machine.name}.{phrases.get(name, name)}", value)
     for node in state.nodes:
         yield f"bt_{node.number}", node.status.value
     for name, value in {**state.blackboard, **state.shared}.items():

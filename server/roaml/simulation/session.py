@@ -23,7 +23,7 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.program import UNKNOWN
 from roaml.smc.record import VERDICTS, AutomatonStep, Plain, RecordedVariable, Recording, TraceStep, TraceVerdict
 from roaml.smc.story import Story, clock_times
-from roaml.views.event_words import goal_phrases
+from roaml.views.variables import variable_phrases
 
 FORMAT_VERSION = 1
 ENGINE_VERSION = 1
@@ -233,10 +233,12 @@ class Session:
         return self._follower.events.variables(event)
 
     def phrases(self, automaton: str) -> Mapping[str, str]:
-        """Phrases for those variables of an automaton that the translation has added, by their names."""
+        """Phrases for those variables of an automaton whose names are not those of the user, by their names: members of
+        structs, and variables that the translation has added."""
         if automaton not in self._phrases:
-            variables = [v.name for known in self._automata if known.name == automaton for v in known.variables]
-            self._phrases[automaton] = goal_phrases(variables, self._follower.events.is_event)
+            known = next((known for known in self._automata if known.name == automaton), None)
+            is_event = self._follower.events.is_event
+            self._phrases[automaton] = {} if known is None else variable_phrases(known, is_event)
         return self._phrases[automaton]
 
     def actors(self, step: TraceStep) -> list[AutomatonStep]:

@@ -35,10 +35,10 @@ from roaml.scxml.names import (
 from roaml.smc.record import AutomatonStep, Plain, TraceStep, VariableChange
 from roaml.smc.story import Story
 from roaml.views.actors import actor, message_phrase
-from roaml.views.event_words import goal_phrases
 from roaml.views.events import EventReader
 from roaml.views.locations import states_of
 from roaml.views.observed import effects, observation, observed_property
+from roaml.views.variables import variable_phrases
 
 _ENDS = ("SUCCESS", "FAILURE")
 
@@ -61,7 +61,7 @@ class Turn(Record):
         ends: whether the automaton takes part in the last step of the trace.
         observed: the name of the observed property if the automaton is an observer; otherwise "".
         observation: what an observer observes.
-        phrases: phrases for those variables of the automaton that the translation has added, by their names.
+        phrases: phrases for those variables of the automaton whose names are not those of the user, by their names.
         states: location of the automaton -> the state to which it belongs.
     """
 
@@ -268,8 +268,8 @@ class _Reader:
 
     def _phrases(self, instance: int) -> Mapping[str, str]:
         if instance not in self._known_phrases:
-            variables = [variable.name for variable in self._story.automata[instance].variables]
-            self._known_phrases[instance] = goal_phrases(variables, self._events.is_event)
+            automaton = self._story.automata[instance]
+            self._known_phrases[instance] = variable_phrases(automaton, self._events.is_event)
         return self._known_phrases[instance]
 
     def _states(self, instance: int) -> Mapping[str, str]:
