@@ -7,7 +7,21 @@ import argparse
 import sys
 from pathlib import Path
 
-from bench import check, debug, growth, observers, qvbs, requests, scan, sharing, storm, translate, trees, verify
+from bench import (
+    check,
+    debug,
+    growth,
+    observers,
+    qvbs,
+    requests,
+    scan,
+    sharing,
+    states,
+    storm,
+    translate,
+    trees,
+    verify,
+)
 from bench.report import Benchmark, machine, table
 
 BENCHMARKS: dict[str, Benchmark] = {
@@ -20,6 +34,7 @@ BENCHMARKS: dict[str, Benchmark] = {
     **scan.BENCHMARKS,
     **sharing.BENCHMARKS,
     **translate.BENCHMARKS,
+    **states.BENCHMARKS,
     **storm.BENCHMARKS,
     **trees.BENCHMARKS,
     **verify.BENCHMARKS,

@@ -9,21 +9,27 @@ import multiprocessing
 import os
 import signal
 import tracemalloc
+from array import array
 from collections.abc import Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from threading import Barrier
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.stats import binom
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
-from roaml.smc.batch import BatchOutcome, Simulator, Task, run, simulator_of
+from roaml.record import replace
+from roaml.smc.batch import BatchOutcome, Rows, Simulator, Task, run, simulator_of
 from roaml.smc.fault import FaultError
+from roaml.smc.goal import Question
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import MAX_CONSECUTIVE_LOSSES, Alone, Pool, WorkersLostError
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.run import Answer, EstimationMethod, Options, Tally
+from roaml.smc.run import _add as add_rows
 from roaml.smc.statistics import okamoto
 
 
@@ -332,3 +338,32 @@ def test_progress_is_reported_during_long_traces() -> None:
         ask(Options(max_steps=10**15), loop, pulse=pulse)
     assert [trace for trace, _ in calls] == [0, 0, 0]
     assert calls[0][1] < calls[1][1] < calls[2][1]
+
+
+class Batch(NamedTuple):
+    """The traces of a batch: verdict, reason of the end, activity and number of steps of each."""
+
+    traces: list[tuple[int, int, int, int]]
+
+    @property
+    def rows(self) -> Rows:
+        verdicts, ends, activities, steps = zip(*self.traces, strict=True)
+        return Rows(
+            bytes(verdicts), bytes(ends), array("q", steps), bytes(activities), array("d", bytes(8 * len(steps)))
+        )
+
+
+TRACE = st.tuples(st.integers(0, 2), st.integers(0, 7), st.integers(0, 2), st.integers(0, 30))
+
+
+@given(st.lists(st.lists(TRACE, min_size=1, max_size=30).map(Batch), min_size=1, max_size=4), st.booleans())
+def test_traces_are_added_together_as_one_by_one(batches: list[Batch], can_be_late: bool) -> None:
+    question = Question("p", "Pmin", False, None, (), can_be_late=can_be_late)
+    # The order is relevant for rewards, so these traces are added one by one.
+    in_order = replace(question, is_reward=True)
+    together, single = Tally(), Tally()
+    for batch in batches:
+        add_rows(together, [batch.rows], question, Options(), 5)
+        add_rows(single, [batch.rows], in_order, Options(), 5)
+    single.mean = together.mean
+    assert together.to_json() == single.to_json()

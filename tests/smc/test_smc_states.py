@@ -186,6 +186,21 @@ def test_an_undefined_operation_ends_the_same_trace(place: str) -> None:
     assert_same(compiled, 50, 500)
 
 
+def test_several_initial_states() -> None:
+    """Each trace begins in one of 20 states."""
+    bounded = {"kind": "bounded", "base": "int", "lower-bound": 0, "upper-bound": 19}
+    steps = [edge("l", way("l", 0.5, x=op("%", op("+", "x", 7), 20)), way("l", 0.5, y=op("%", op("+", "y", 1), 3)))]
+    free = {"name": "x", "type": bounded}
+    written = document(
+        automaton("a", "l", steps),
+        variables=[free, variable("y")],
+        properties={"p": probability(op("F", op("∧", op("=", "x", 3), op("=", "y", 2))))},
+        **{"restrict-initial": {"exp": op("<", "x", 20)}},
+    )
+    nodes = assert_same(compiled_model(written), 300, 200)
+    assert 50 < nodes.nodes <= 60
+
+
 def test_very_many_choices_are_left_to_the_kernel() -> None:
     edges = [edge("l", way("l", x=i % 7), action="a") for i in range(70)]
     parts = [automaton(name, "l", edges, [variable("x")]) for name in ("a", "b")]

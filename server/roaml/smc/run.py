@@ -10,7 +10,10 @@ from them.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import compress, islice
+from itertools import count as count_from
 from typing import NamedTuple
 
 from roaml.exhaustive import Vocabulary
@@ -19,7 +22,7 @@ from roaml.smc.batch import Payload, Rows, Task, TraceProblem
 from roaml.smc.end import End
 from roaml.smc.goal import Activity, Question
 from roaml.smc.pool import Pulse, Runner
-from roaml.smc.program import FALSE, TRUE, UNKNOWN
+from roaml.smc.program import FALSE, TRUE, UNKNOWN, Ints
 from roaml.smc.statistics import Bounds, Mean, Ratio, clopper_pearson, confidence_sequence, okamoto
 
 
@@ -445,6 +448,9 @@ def _batches(done: int, limit: int | None) -> Iterator[tuple[int, int]]:
 
 def _add(tally: Tally, rows: Sequence[Rows], question: Question, options: Options, first: int) -> None:
     ratio = ratio_of(question, options)
+    if ratio is None and not question.is_conditional and not question.is_reward:
+        _add_together(tally, rows[0], question, first)
+        return
     for verdict, reason, steps, activity, reward in _given(rows) if question.is_conditional else _each(rows[0]):
         trace = first + tally.simulated
         tally.steps += steps
@@ -478,6 +484,49 @@ def _add(tally: Tally, rows: Sequence[Rows], question: Question, options: Option
                 return
 
 
+def _add_together(tally: Tally, rows: Rows, question: Question, first: int) -> None:
+    """Add traces whose order has no influence. The loops over all traces are those of Python itself, because the
+    traces of a model with few states take less time than a loop here."""
+    start = first + tally.simulated
+    tally.traces += len(rows.verdicts)
+    tally.steps += sum(rows.steps)
+    kinds = Counter(zip(rows.verdicts, rows.ends, rows.activities, strict=True))
+    for (verdict, reason, activity), count in kinds.items():
+        if verdict == TRUE:
+            tally.successes += count
+        elif verdict == UNKNOWN:
+            tally.undecided += count
+        elif reason == End.TIME and question.can_be_late:
+            tally.late += count
+        if activity == Activity.CLOSED:
+            tally.closed += count
+        elif activity == Activity.IDLE:
+            tally.idle += count
+    for verdict in sorted(set(rows.verdicts), key=rows.verdicts.index):
+        chosen = _chosen(rows.verdicts, verdict)
+        examples = tally.examples[verdict]
+        room = MAX_KEPT_TRACES - len(examples)
+        traces = compress(zip(count_from(start), rows.steps, strict=False), chosen)
+        examples += [StoredTrace(*trace) for trace in islice(traces, room)]
+        shortest = _shortest(rows.steps, chosen, start)
+        if verdict not in tally.shortest or shortest.steps < tally.shortest[verdict].steps:
+            tally.shortest[verdict] = shortest
+    for reason in sorted(set(rows.ends), key=rows.ends.index):
+        chosen = _chosen(rows.ends, reason)
+        _add_end(tally, reason, _shortest(rows.steps, chosen, start), sum(chosen))
+
+
+def _chosen(values: bytes, value: int) -> bytes:
+    """For each of the values, 1 if it is equal to `value`, else 0."""
+    return values.translate(bytes(int(other == value) for other in range(256)))
+
+
+def _shortest(steps: Ints, chosen: bytes, start: int) -> StoredTrace:
+    """The first one of the shortest chosen traces."""
+    length, trace = min(compress(zip(steps, count_from(start), strict=False), chosen))
+    return StoredTrace(trace, length)
+
+
 def _each(rows: Rows) -> Iterator[tuple[int, int, int, int, float]]:
     return zip(rows.verdicts, rows.ends, rows.steps, rows.activities, rows.rewards, strict=True)
 
@@ -495,12 +544,13 @@ def _given(both: Sequence[Rows]) -> Iterator[tuple[int, int, int, int, float]]:
             yield (REJECTED if assumed == FALSE else UNKNOWN), end, steps, row[3], 0.0
 
 
-def _add_end(tally: Tally, reason: int, seen: StoredTrace) -> None:
+def _add_end(tally: Tally, reason: int, seen: StoredTrace, count: int = 1) -> None:
+    """Add traces that ended for a reason. `seen` is the first one of the shortest."""
     ended = tally.ends.get(reason)  # type: ignore[call-overload]
     if ended is None:
-        tally.ends[End(reason)] = Ended(1, seen)
+        tally.ends[End(reason)] = Ended(count, seen)
         return
-    ended.count += 1
+    ended.count += count
     if seen.steps < ended.shortest.steps:
         ended.shortest = seen
 
