@@ -49,6 +49,7 @@ def test_reasons_are_those_of_the_kernel() -> None:
 
 ONE_WAY = [edge("s", way("t", x=1))]
 ROUND = [edge("s", way("t", x=1)), edge("t", way("s", x=2))]
+FALLING = [edge("s", way("t", x=op("-", "x", 1))), edge("t", "s")]
 LOOP = [edge("s", way("t", x=1)), edge("t", "t")]
 
 
@@ -59,7 +60,8 @@ LOOP = [edge("s", way("t", x=1)), edge("t", "t")]
         (ONE_WAY, GLOBALLY, End.DEADLOCK, 1),
         (LOOP, FINALLY, End.IDLE, 0),
         (LOOP, GLOBALLY, End.IDLE, 1),
-        (ROUND, FINALLY, End.CUT, 0.5),
+        (ROUND, FINALLY, End.ROUND, 0),
+        (FALLING, FINALLY, End.CUT, 0.5),
         (ONE_WAY, {"p": probability(op("F", op("=", "x", 1)))}, End.DECIDED, 1),
         (ROUND, {"p": probability(op("G", op("=", "x", 0)))}, End.DECIDED, 0),
         # Decided at the start, without any step.

@@ -118,9 +118,9 @@ def test_deadlock() -> None:
 
 def test_a_trace_that_is_cut_is_undecided() -> None:
     written = document(
-        automaton("a", "l m", [edge("l", "m"), edge("m", "l")]),
+        automaton("a", "l m", [edge("l", way("m", x=op("-", "x", 1))), edge("m", "l")]),
         variables=[variable("x")],
-        properties={"p": probability(op("F", A))},
+        properties={"p": probability(op("F", B))},
     )
     answer = answers(written, 50, max_steps=1000)["p"]
     assert (answer.tally.undecided, answer.value) == (50, 0.5)

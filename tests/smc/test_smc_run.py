@@ -323,7 +323,7 @@ def test_dask() -> None:
 
 def test_progress_is_reported_during_long_traces() -> None:
     loop = document(
-        automaton("a", "l m", [edge("l", "m"), edge("m", "l")]),
+        automaton("a", "l m", [edge("l", way("m", x=op("-", "x", 1))), edge("m", "l")]),
         variables=[variable("x")],
         properties={"p": probability(op("F", op("=", "x", 1)))},
     )

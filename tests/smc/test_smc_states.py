@@ -43,7 +43,7 @@ def with_nodes(compiled: Compiled, memory: int = states.MAX_BYTES, *, plain: boo
     if plain:
         simulator.kernel = plain_kernel().Kernel(compiled.program, compiled.goal)
     module = plain_states() if plain else states
-    simulator.batch = module.TraceBatch(simulator.kernel, compiled.program, memory)
+    simulator.batch = module.TraceBatch(simulator.kernel, compiled.program, memory, simulator.rounds)
     simulator.batch.use_nodes()
     return simulator
 

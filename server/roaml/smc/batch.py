@@ -17,6 +17,7 @@ from roaml.smc.end import End
 from roaml.smc.kernel import Kernel
 from roaml.smc.kernel import compiled as kernel_compiled
 from roaml.smc.program import FAULTY, UNKNOWN, Compiled, Ints, Reals
+from roaml.smc.rounds import Rounds, limits
 from roaml.smc.states import MAX_BYTES, TraceBatch
 from roaml.smc.states import compiled as states_compiled
 
@@ -24,8 +25,7 @@ if TYPE_CHECKING:
     from multiprocessing.synchronize import Event
 
 STEPS_BETWEEN_PULSES = 200_000
-"""The number of steps of a trace after which Python can handle an interrupt: these steps take some hundredths of a
-second."""
+"""The number of steps of a trace after which its progress is reported: these steps take some hundredths of a second."""
 
 
 class Payload(NamedTuple):
@@ -94,7 +94,8 @@ def pack(compiled: Compiled) -> Payload:
 
 
 class Simulator:
-    """The kernel of a compiled model and goal, and the states that its traces have reached so far.
+    """The kernel of a compiled model and goal, the states that its traces have reached so far, and those in which they
+    have been found to repeat.
 
     Args:
         bytes: the maximum memory for states, in bytes; 0 if the kernel generates all traces.
@@ -104,7 +105,8 @@ class Simulator:
         self.kernel = Kernel(compiled.program, compiled.goal)
         # Python cannot read the data of a compiled kernel.
         is_readable = states_compiled() or not kernel_compiled()
-        self.batch = TraceBatch(self.kernel, compiled.program, bytes) if is_readable else None
+        self.rounds = Rounds(compiled)
+        self.batch = TraceBatch(self.kernel, compiled.program, bytes, self.rounds) if is_readable else None
 
 
 class _Simulators(threading.local):
@@ -141,7 +143,7 @@ def run_on(simulator: Simulator, task: Task, pulse: Callable[[int, int], None] |
     """Run the traces of a batch on a simulator that nothing else uses at the same time."""
     batch = simulator.batch
     if batch is None or task.scheduler != 0:
-        return _run_on_kernel(simulator.kernel, task, pulse)
+        return _run_on_kernel(simulator, task, pulse)
     count = batch.run(task.seed, task.first, task.size, task.max_steps, task.questions, pulse)
     problem = None if count == task.size else TraceProblem(task.first + count, *simulator.kernel.problem())
     rewards = batch.rewards[:count]
@@ -153,18 +155,21 @@ def run_on(simulator: Simulator, task: Task, pulse: Callable[[int, int], None] |
     return BatchOutcome(tuple(results), problem)
 
 
-def _run_on_kernel(kernel: Kernel, task: Task, pulse: Callable[[int, int], None] | None) -> BatchOutcome:
+def _run_on_kernel(simulator: Simulator, task: Task, pulse: Callable[[int, int], None] | None) -> BatchOutcome:
+    kernel = simulator.kernel
     kernel.choose(task.questions)
     rows = [(bytearray(), bytearray(), array("q"), bytearray()) for _ in task.questions]
     rewards = array("d")
     problem: TraceProblem | None = None
     for trace in range(task.first, task.first + task.size):
         verdict = kernel.begin(task.seed, trace, task.scheduler)
-        limit = 0
-        while verdict == UNKNOWN and kernel.ending() == End.DECIDED and limit < task.max_steps:
-            limit = min(limit + STEPS_BETWEEN_PULSES, task.max_steps)
+        for limit in limits(task.max_steps):
+            if verdict != UNKNOWN or kernel.ending() != End.DECIDED:
+                break
             verdict = kernel.advance(limit)
-            if pulse is not None and (limit > STEPS_BETWEEN_PULSES or not trace & 63):
+            if verdict == UNKNOWN and kernel.ending() == End.DECIDED and task.scheduler == 0:
+                verdict = simulator.rounds.check(kernel, task.seed, trace)
+            if pulse is not None and (limit >= STEPS_BETWEEN_PULSES or not trace & 63):
                 pulse(trace, limit)
         if verdict == FAULTY:
             problem = TraceProblem(trace, *kernel.problem())

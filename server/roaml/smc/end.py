@@ -2,7 +2,8 @@
 """Why a trace has ended.
 
 In any model, a trace ends because the goal is decided, because no step is possible (DEADLOCK), because only steps
-without any change are possible (IDLE), or because there were too many steps (CUT). A caller that knows the meaning of
+without any change are possible (IDLE), because the same states repeat for ever (ROUND), or because there were too many
+steps (CUT). A caller that knows the meaning of
 the automata marks their locations. The marks explain why a trace without further changes ends: of the marks of all
 current locations, the smallest number is used.
 """
@@ -34,6 +35,8 @@ class End(IntEnum):
     """Only steps that change nothing are possible, or a sampled scheduler repeats a cycle of states."""
     CUT = 7
     """The trace had the maximum length."""
+    ROUND = 8
+    """The trace visits some states again and again, and these do not decide the question (`rounds`)."""
 
     @property
     def text(self) -> str:
@@ -55,6 +58,7 @@ _TEXTS = {
     End.DEADLOCK: "no step possible",
     End.IDLE: "no change possible",
     End.CUT: "too many steps",
+    End.ROUND: "repeats for ever",
 }
 
 

@@ -12,7 +12,7 @@ cdef i64 MAX_INT64, MIN_INT64
 cdef double TO_UNIT, MASS_UNIT, MASS_UNIT_INVERSE
 cdef u64 MAX_DRAWN_COMBINATIONS
 cdef int FALSE, TRUE, UNKNOWN, FAULTY, GOES_ON, ASKED
-cdef int DECIDED, TIME, FINISHED, STUCK, QUIET, DEADLOCK, IDLE
+cdef int DECIDED, TIME, FINISHED, STUCK, QUIET, DEADLOCK, IDLE, ROUND
 
 @cython.final
 cdef class Kernel:
@@ -25,6 +25,9 @@ cdef class Kernel:
     cdef int[::1] place_0, place, first_location
     cdef int[::1] root_start, root_cell, root_first
     cdef i64[::1] root_count, root_int
+    cdef int[::1] place_mark
+    cdef i64[::1] ints_mark
+    cdef double[::1] reals_mark
     cdef double[::1] root_real
     cdef public u64 roots
     cdef int[::1] group_start, group_slot, edge_start, guard, way_start, way_target, way_code, way_chance, way_move
@@ -155,6 +158,9 @@ cdef class Kernel:
     cdef int _ends_for(self, int reason, int repeats) noexcept
     @cython.locals(i=int)
     cdef int _goes_round(self) noexcept
+    cdef int _returns(self, i64 most) noexcept
+    @cython.locals(i=int)
+    cdef int _is_marked(self) noexcept
     @cython.locals(reason=int, i=int, mark=int)
     cdef int _reason(self, int repeats) noexcept
     @cython.locals(status=int, is_open=int, i=int)

@@ -40,7 +40,7 @@ MASS_UNIT_INVERSE = 2.0**-512
 
 FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
 """The status of the goal. UNKNOWN: the trace can go on; FAULTY: the model has executed an undefined operation."""
-DECIDED, TIME, FINISHED, STUCK, QUIET, DEADLOCK, IDLE = 0, 1, 2, 3, 4, 5, 6
+DECIDED, TIME, FINISHED, STUCK, QUIET, DEADLOCK, IDLE, ROUND = 0, 1, 2, 3, 4, 5, 6, 8
 """The reason why a trace has ended, see `end.End`."""
 GOES_ON = -1
 """The status of a trace that has not ended."""
@@ -63,6 +63,9 @@ class Kernel:
         self.reals_0 = program.reals[:]
         self.ints = program.ints[:]
         self.reals = program.reals[:]
+        self.place_mark = program.initial[:]
+        self.ints_mark = program.ints[:]
+        self.reals_mark = program.reals[:]
         self.ints_before = program.ints[:]
         self.reals_before = program.reals[:]
         self.int_count = program.int_count
@@ -329,6 +332,43 @@ class Kernel:
         for i in range(self.instances):
             for group in range(self.group_start[self.place[i]], self.group_start[self.place[i] + 1]):
                 self._set_ready(self.group_slot[group], self._count(group))
+
+    def returns(self, most: int) -> bool:
+        """Whether the trace comes back to the current state within a number of steps."""
+        return self._returns(most) != 0
+
+    def conditions(self) -> list[tuple[bool, bool]]:
+        """Whether the left and the right side of each until hold in the current state."""
+        return [(self._holds(self.left[i]) != 0, self._holds(self.right[i]) != 0) for i in range(self.leaves)]
+
+    def repeat(self, decidable: Sequence[bool], lasting: Sequence[bool]) -> int:
+        """Evaluate the goal if the trace visits each of some states again and again, and no others.
+
+        Args:
+            decidable: for each until, whether it is decided in one of these states.
+            lasting: for each until, whether its right side holds in all of them.
+
+        Returns:
+            The status of the goal: UNKNOWN if a question can still be decided in another way.
+        """
+        self.end = ROUND
+        for question in range(self.questions):
+            leaves = range(self.leaf_start[question], self.leaf_start[question + 1])
+            leaves_open = [i for i in leaves if self.verdict[i] == UNKNOWN]
+            if self.known[question] != UNKNOWN or any(self._can_decide(i, decidable[i]) for i in leaves_open):
+                continue
+            for i in leaves_open:
+                self.verdict[i] = TRUE if self.lower[i] < 0 and lasting[i] else FALSE
+        status = self._combined()
+        if status == UNKNOWN:
+            self.end = DECIDED
+        return self._finish(status)
+
+    def _can_decide(self, leaf: int, decidable: bool) -> bool:
+        """Whether an until without verdict can be decided in the states that the trace visits."""
+        if self.lower[leaf] < 0:
+            return False
+        return decidable or self.upper[leaf] >= 0 or self.lower[leaf] > self.steps
 
     def save(self) -> tuple[Any, ...]:
         """All data that determine how the trace continues; `load` restores them."""
@@ -1142,6 +1182,33 @@ class Kernel:
                 else:
                     self.verdict[i] = TRUE if repeats != 0 and self.holds_right[i] != 0 else FALSE
         return self._combined()
+
+    def _returns(self, most: int) -> int:
+        self.place_mark[:] = self.place
+        self.ints_mark[:] = self.ints
+        self.reals_mark[:] = self.reals
+        for _ in range(most):
+            if self.enabled_count == 0:
+                return 0
+            self._step()
+            if self.fault != 0:
+                return 0
+            if self._is_marked() != 0:
+                return 1
+        return 0
+
+    def _is_marked(self) -> int:
+        """Whether the state is the one in which `_returns` began."""
+        for i in range(self.instances):
+            if self.place[i] != self.place_mark[i]:
+                return 0
+        for i in range(self.int_count):
+            if self.ints[i] != self.ints_mark[i]:
+                return 0
+        for i in range(self.real_count):
+            if self.reals[i] != self.reals_mark[i]:
+                return 0
+        return 1
 
     def _goes_round(self) -> int:
         """Evaluate the goal if the trace repeats a cycle for ever. A condition that has not been true will then never

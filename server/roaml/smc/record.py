@@ -19,6 +19,7 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.names import Storage, read_by, variables_in
 from roaml.smc.program import FALSE, FAULTY, TRUE, UNKNOWN
 from roaml.smc.registers import BOOL, REAL
+from roaml.smc.rounds import Rounds, limits
 from roaml.smc.standstill import Standstill
 
 Plain: TypeAlias = "bool | int | float | list[Plain]"
@@ -182,6 +183,7 @@ class Recorder:
         self.max_steps = max_steps
         self.scheduler = scheduler
         self._kernel = Kernel(compiled.program, compiled.goal)
+        self._rounds = Rounds(compiled)
         self._steps = StepReader(self._kernel, checker.legend)
 
     @property
@@ -202,8 +204,9 @@ class Recorder:
         """Simulate a trace to its end, without recording its steps."""
         kernel = self._kernel
         verdict = kernel.begin(self.seed, recording.trace, self.scheduler)
-        if verdict == UNKNOWN:
-            verdict = kernel.advance(self.max_steps)
+        for limit in limits(self.max_steps):
+            if verdict == UNKNOWN and kernel.ending() == End.DECIDED:
+                verdict = self._checked(kernel.advance(limit), recording)
         self._finish(recording, verdict)
 
     def walk(self, recording: Recording) -> Iterator[TraceStep]:
@@ -211,6 +214,7 @@ class Recorder:
         kernel, done = self._kernel, 0
         verdict = kernel.begin(self.seed, recording.trace, self.scheduler)
         self._steps.start()
+        checks = frozenset(limits(self.max_steps))
         while verdict == UNKNOWN and done < self.max_steps:
             verdict = kernel.advance(done + 1)
             if verdict == FAULTY:
@@ -219,7 +223,15 @@ class Recorder:
                 break
             done += 1
             yield self._steps.read(done)
+            if done in checks:
+                verdict = self._checked(verdict, recording)
         self._finish(recording, verdict)
+
+    def _checked(self, verdict: int, recording: Recording) -> int:
+        """The verdict after a number of steps at which traces are examined (`rounds`)."""
+        if verdict != UNKNOWN or self.scheduler != 0 or self._kernel.ending() != End.DECIDED:
+            return verdict
+        return self._rounds.check(self._kernel, self.seed, recording.trace)
 
     def _finish(self, recording: Recording, verdict: int) -> None:
         recording.verdict = verdict

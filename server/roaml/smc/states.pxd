@@ -22,6 +22,7 @@ cdef double MAX_LOSS_S, MAX_NEW_SHARE
 @cython.final
 cdef class TraceBatch:
     cdef Kernel kernel
+    cdef object rounds
     cdef i64 max_bytes
     cdef public int is_on
     cdef int[::1] cell_watch

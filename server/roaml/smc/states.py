@@ -24,12 +24,15 @@ from array import array
 from time import process_time
 from typing import TYPE_CHECKING, Any
 
+from roaml.smc.rounds import next_limit
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from typing import TypeAlias
 
     from roaml.smc.kernel import Kernel
     from roaml.smc.program import Program
+    from roaml.smc.rounds import Rounds
 
     Pulse: TypeAlias = Callable[[int, int], None]
 
@@ -95,6 +98,7 @@ class TraceBatch:
     Args:
         kernel: the kernel for the program and a goal. Nothing else uses it at the same time.
         bytes: the maximum memory for nodes, in bytes; 0 if the kernel generates all traces.
+        rounds: what examines long traces; `None` if they are not examined.
 
     Attributes:
         verdicts, ends, steps, activities: the results of the traces of the last batch, for each question of the batch;
@@ -102,8 +106,11 @@ class TraceBatch:
         nodes: the number of nodes.
     """
 
-    def __init__(self, kernel: Any, program: Program, bytes: int = MAX_BYTES) -> None:  # noqa: A002
+    def __init__(
+        self, kernel: Any, program: Program, bytes: int = MAX_BYTES, rounds: Rounds | None = None  # noqa: A002
+    ) -> None:  # fmt: skip
         self.kernel: Kernel = kernel
+        self.rounds = rounds
         self.max_bytes = bytes
         self.is_on = 1 if bytes > 0 else 0
         self.cell_watch = program.cell_watch
@@ -181,8 +188,12 @@ class TraceBatch:
             status = self._begin(seed & UINT64_MASK, (first + trace) & UINT64_MASK)
             limit = 0
             while status == UNKNOWN and self.kernel.end == DECIDED and limit < max_steps:
-                limit = min(limit + PULSE_STEPS, max_steps)
+                limit = next_limit(limit, max_steps)
                 status = self._advance(limit)
+                if status == UNKNOWN and self.kernel.end == DECIDED and self.rounds is not None:
+                    if self.is_kernel == 0:
+                        self._go(self.node)
+                    status = self.rounds.check(self.kernel, seed, first + trace)
                 if limit > PULSE_STEPS and pulse is not None:
                     pulse(first + trace, limit)
             since += self.kernel.steps
