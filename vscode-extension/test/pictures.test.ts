@@ -15,6 +15,7 @@ import {
     pan,
     reveal,
     search,
+    shifts,
     zoom,
 } from "../src/pictures/view/find";
 import { edgeHint, edgeWords, legendOf, nodeWords } from "../src/pictures/view/words";
@@ -154,6 +155,27 @@ test("a node is not left below the map", () => {
     // The drawing moves to the left if the node fits beside the map, otherwise up.
     assert.deepEqual(besideCorner(sight, { ...beside, x: 50, y: 70 }, 100, 100, map), { ...sight, x: 30 });
     assert.deepEqual(besideCorner(sight, { ...beside, width: 80, y: 70 }, 100, 100, map), { ...sight, y: 50 });
+});
+
+test("nodes glide from where they were, although other nodes were added before them", () => {
+    const box = { y: 0, width: 10, height: 10 };
+    const before = {
+        ids: ["a", "b"],
+        nodes: [
+            { index: 0, x: 0, ...box },
+            { index: 1, x: 20, ...box },
+        ],
+    };
+    const after = {
+        ids: ["new", "a", "b"],
+        nodes: [
+            { index: 0, x: 20, ...box },
+            { index: 1, x: 0, ...box },
+            { index: 2, x: 50, ...box },
+        ],
+    };
+    assert.deepEqual(shifts(before, after), [{ index: 2, x: -30, y: 0 }]);
+    assert.deepEqual(shifts(before, before), []);
 });
 
 test("a picture is legible at first, and drawn in the direction that suits the window", () => {

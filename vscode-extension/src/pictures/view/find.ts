@@ -147,6 +147,29 @@ export function around(sight: Sight, drawing: Area, box: Box, width: number, hei
     return { ...sight, x: inside(x, sight.x, drawing.width, w), y: inside(y, sight.y, drawing.height, h) };
 }
 
+/** Where a node was before, relative to where it is. */
+export interface Shift {
+    readonly index: number;
+    readonly x: number;
+    readonly y: number;
+}
+
+/** The shifts of the nodes that two drawings of a picture have in common, and that have moved between them. */
+export function shifts(before: PlacedNodes, after: PlacedNodes): Shift[] {
+    const earlier = new Map(before.nodes.map(({ index, x, y }) => [before.ids[index], { x, y }]));
+    return after.nodes.flatMap(({ index, x, y }) => {
+        const old = earlier.get(after.ids[index]);
+        if (!old || (old.x === x && old.y === y)) return [];
+        return [{ index, x: old.x - x, y: old.y - y }];
+    });
+}
+
+/** The nodes of a drawing, and the ids of all nodes of its picture. */
+export interface PlacedNodes {
+    readonly nodes: readonly DrawnNode[];
+    readonly ids: readonly string[];
+}
+
 /** The size of a map of a drawing, and the factor by which the map is smaller. */
 export interface MapScale extends Area {
     readonly factor: number;

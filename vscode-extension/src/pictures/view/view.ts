@@ -24,7 +24,9 @@ import {
     pan,
     reveal,
     search,
+    shifts,
     zoom,
+    type PlacedNodes,
     type Sight,
 } from "./find";
 import { Minimap } from "./minimap";
@@ -41,6 +43,10 @@ const ZOOM = 1.25;
 const MENU_OFFSET = 8;
 /** How long a node whose look has changed is emphasised, in ms. */
 const EMPHASIS_MS = 500;
+/** How nodes move after a change of the text; the duration is in ms. */
+const GLIDE = { duration: 180, easing: "ease-out" };
+/** The maximum number of nodes of an animated drawing. */
+const MAX_ANIMATED = 300;
 
 class View {
     private readonly svg = element("svg", { class: "picture", tabindex: 0, role: "application" });
@@ -117,6 +123,7 @@ class View {
     private show(picture: Picture, here: Part | null, highlighted: string): void {
         const isNew = this.picture?.title !== picture.title || this.picture.kind !== picture.kind;
         const label = this.picture?.nodes[this.selected]?.label;
+        const before = isNew ? undefined : this.placed;
         this.clear();
         this.picture = picture;
         // Beside all parts, the machine itself is meant.
@@ -128,11 +135,29 @@ class View {
             this.shown = this.best();
         }
         this.draw();
+        if (before) this.animateFrom(before);
         if (isNew) this.fitLegibly();
         this.mark(here);
         this.highlight(highlighted);
         if (!isNew && label !== undefined) this.select(picture.nodes.findIndex((node) => node.label === label));
         editor.postMessage({ type: "drawn", nodes: picture.nodes.length, edges: picture.edges.length });
+    }
+
+    private get placed(): PlacedNodes | undefined {
+        const { picture, drawing } = this;
+        return picture && drawing && { nodes: drawing.nodes, ids: picture.nodes.map(({ id }) => id) };
+    }
+
+    /** Let the nodes glide from where they were before a change of the text. The lines appear where they are. */
+    private animateFrom(before: PlacedNodes): void {
+        const { placed, scene } = this;
+        if (!placed || !scene || placed.nodes.length > MAX_ANIMATED || isMotionReduced()) return;
+        const moved = shifts(before, placed);
+        for (const { index, x, y } of moved)
+            scene.nodes.get(index)?.animate([{ transform: `translate(${x}px, ${y}px)` }, {}], GLIDE);
+        if (moved.length === 0) return;
+        for (const part of scene.root.querySelectorAll(":scope > :is(.link, .edge, .label, .start)"))
+            part.animate([{ opacity: 0 }, {}], GLIDE);
     }
 
     /** Draw the picture in the current direction. */
@@ -458,10 +483,14 @@ class View {
 
 /** Draw the outline of a node thick for a moment, because its look has changed. */
 function emphasise(group: SVGGElement): void {
-    const isReduced =
+    if (!isMotionReduced()) group.querySelector(":scope > .card")?.animate([{ strokeWidth: "12px" }, {}], EMPHASIS_MS);
+}
+
+function isMotionReduced(): boolean {
+    return (
         document.body.classList.contains("vscode-reduce-motion") ||
-        window.matchMedia("(prefers-reduced-motion: reduce)").matches;
-    if (!isReduced) group.querySelector(":scope > .card")?.animate([{ strokeWidth: "12px" }, {}], EMPHASIS_MS);
+        window.matchMedia("(prefers-reduced-motion: reduce)").matches
+    );
 }
 
 function entry({ tone, text, isLine }: LegendEntry): HTMLElement {
