@@ -68,7 +68,7 @@ export function themes(stage: Stage): void {
             await window.run("AS2FM: Show ROS Graph");
             const picture = await window.picture();
             await picture.locator('.node[data-label="/hand_over"]').waitFor();
-            await window.screenshot(`graph-${theme}`, { x: 480, y: 35, width: 800, height: 500 });
+            await window.screenshot(`graph-${theme}`, { x: 480, y: 35, width: 800, height: 700 });
             await page.locator(".tab", { hasText: "ROS Graph" }).locator(".codicon-close").click();
             await window.openFile("main.xml");
             await window.run("AS2FM: Translate to JANI");
@@ -82,7 +82,9 @@ export function themes(stage: Stage): void {
             await outline.locator(".monaco-list-row", { hasText: "topic_battery_msg.valid" }).waitFor();
             await outline.locator(".pane-header").getByRole("button", { name: "Collapse All" }).click();
             await outline.locator(".monaco-list-row", { hasText: "automata" }).waitFor();
+            // The hover of the tab would cover the text.
             await page.mouse.move(640, 400);
+            await page.locator(".workbench-hover").first().waitFor({ state: "detached" });
             await window.screenshot(`translate-${theme}`, { x: 0, y: 35, width: 1280, height: 700 });
             await page.locator('.tab[data-resource-name="main (laid out).jani"] .codicon-close').click();
             await window.openFile("properties.jani");
