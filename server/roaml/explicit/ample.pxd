@@ -27,5 +27,5 @@ cdef class AmpleSets:
     cdef void _freeze(self, int instance) noexcept
     @cython.locals(i=int, slot=int)
     cdef int _bar(self, int vector) noexcept
-    @cython.locals(chosen=int, i=int, slot=int, is_open=bint, group=int, k=int)
+    @cython.locals(chosen=int, i=int, slot=int, is_open=bint, is_chosen_open=bint, group=int, k=int)
     cdef int _let_wait(self, int vector) noexcept

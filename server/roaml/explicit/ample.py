@@ -139,6 +139,7 @@ class AmpleSets:
         if self.kernel.vector_missing[vector] == 0:
             return 0
         chosen = -1
+        is_chosen_open = False
         for i in range(self.kernel.all_start[vector], self.kernel.all_start[vector + 1]):
             slot = self.kernel.all_slot[i]
             if self.kernel.ready[slot] != 0:
@@ -147,8 +148,9 @@ class AmpleSets:
             if self.frozen[self.kernel.slot_instance[slot]] == self.runs and not is_open:
                 self.waits[vector] = self.runs
                 return 1
-            if chosen < 0 or not is_open:
+            if chosen < 0 or (is_chosen_open and not is_open):
                 chosen = slot
+                is_chosen_open = is_open
         self.waits[vector] = self.runs
         self._freeze(self.kernel.slot_instance[chosen])
         group = self._group(chosen)
