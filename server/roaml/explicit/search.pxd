@@ -107,7 +107,7 @@ cdef class StateSearch:
     cdef int _take_alone(self, int vector, i64 state) except? -9
     @cython.locals(reason=int, added=int, leaf=int)
     cdef int _end(self) noexcept
-    @cython.locals(count=int, edge_count=int, i=int, slot=int, place=int, group=int, first=int, end=int, edge=int, guard=int)
+    @cython.locals(count=int, edge_count=int, i=int, slot=int, group=int, first=int, end=int, is_single=int, at=int, k=int, edge=int, guard=int)
     cdef int _open(self, int vector) noexcept
     @cython.locals(first=int, end=int, total=double, way=int, register=int)
     cdef void _weigh(self, int edge) noexcept

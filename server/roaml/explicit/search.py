@@ -697,9 +697,7 @@ class StateSearch:
             for cell in range(self.variables, self.cells):
                 self.memory[cell - self.variables] = self.value[cell]
         for i in range(moved):
-            place = self.kernel.place[self.moved[i]]
-            for group in range(self.kernel.group_start[place], self.kernel.group_start[place + 1]):
-                self.kernel._set_ready(self.kernel.group_slot[group], self.kernel._count(group))
+            self.kernel._arrive(self.kernel.place[self.moved[i]])
         if self.kernel.note_count != 0:
             self.kernel._look_around()
 
@@ -880,15 +878,19 @@ class StateSearch:
             self.slots[count] = slot
             self.edge_from[count] = edge_count
             count += 1
-            place = self.kernel.place[self.kernel.slot_instance[slot]]
-            group = self.kernel.group_start[place]
-            while self.kernel.group_slot[group] != slot:
-                group += 1
+            group = self.kernel.slot_group[slot]
             first = self.kernel.edge_start[group]
             end = self.kernel.edge_start[group + 1]
-            for edge in range(first, end):
+            is_single = 1 if end - first == 1 else 0
+            at = -1
+            if self.kernel.group_index[group] >= 0:
+                at = self.kernel._list(self.kernel.group_index[group])
+                first = self.kernel.list_start[at]
+                end = self.kernel.list_start[at + 1]
+            for k in range(first, end):
+                edge = k if at < 0 else self.kernel.list_item[k]
                 guard = self.kernel.guard[edge]
-                if end - first > 1 and guard >= 0 and self.kernel._execute(guard) == 0:
+                if is_single == 0 and guard >= 0 and self.kernel._execute(guard) == 0:
                     continue
                 self.edges[edge_count] = edge
                 edge_count += 1

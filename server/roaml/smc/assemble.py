@@ -62,6 +62,7 @@ class ExpressionAssembler:
         self.tape.emit(Op.RETURN, a=self.tape.constant(INT, 1).register)
         self.tape.mark(otherwise)
         self.tape.emit(Op.RETURN, a=self.tape.constant(INT, 0).register)
+        self.tape.shorten(otherwise)
         return start
 
     def integer(self, expression: Expression, names: StorageNames) -> int:

@@ -17,6 +17,7 @@ from roaml.smc.assign import AssignmentAssembler
 from roaml.smc.cells import CellAssembler
 from roaml.smc.end import Marks
 from roaml.smc.fault import FaultError
+from roaml.smc.index import MIN_INDEXED, Indexes, dimensions_of, fixed_values
 from roaml.smc.initial import MAX_INITIAL_STATES, Cells
 from roaml.smc.layout import MemoryLayout, lay_out
 from roaml.smc.names import Storage, StorageNames
@@ -104,6 +105,7 @@ class Compilation:
         self.way_source: list[int] = []
         self.group_of: dict[tuple[int, int], int] = {}
         self.group_steps: list[list[EdgeStep]] = []
+        self.group_way: list[int] = []
         self.entangled = [self._is_entangled(slots) for slots, _ in self.network.vectors]
         phased = {s for (slots, _), yes in zip(self.network.vectors, self.entangled, strict=True) if yes for s in slots}
         here: dict[int, list[int]] = {}
@@ -117,6 +119,7 @@ class Compilation:
                 self.group_slot.append(number)
                 steps = self.network.slots[number].steps[location]
                 self.group_steps.append(steps)
+                self.group_way.append(len(self.way_target) if len(steps) == 1 == len(steps[0].ways) else -1)
                 for step in steps:
                     self._write_step(step, location, number in phased)
                 self.edge_start.append(len(self.guard))
@@ -216,9 +219,8 @@ class Compilation:
             self.cells.end()
 
     def _write_moves(self) -> None:
-        """Write the tables of the slots whose numbers of enabled edges may differ between the source and the target of
-        each way."""
-        self.move_start, self.move_slot, self.move_count = [0], list[int](), list[int]()
+        """Write the tables of the slots that have edges in the source or the target of each way."""
+        self.move_start, self.move_slot, self.move_group, self.move_count = [0], list[int](), list[int](), list[int]()
         known: dict[tuple[int, int], int] = {}
         for source, target in zip(self.way_source, self.way_target, strict=True):
             if source == target:
@@ -226,25 +228,23 @@ class Compilation:
                 continue
             if (source, target) not in known:
                 known[source, target] = len(self.move_start) - 1
-                before, after = self._counts(source), self._counts(target)
-                for slot in before.keys() - after.keys():
-                    after[slot] = 0
-                for slot in sorted(after):
-                    if after[slot] < 0 or before.get(slot, 0) != after[slot]:
-                        self.move_slot.append(slot)
-                        self.move_count.append(after[slot])
+                before, after = self._groups(source), self._groups(target)
+                for slot in sorted(before.keys() | after.keys()):
+                    group = after.get(slot, -1)
+                    self.move_slot.append(slot)
+                    self.move_group.append(group)
+                    self.move_count.append(0 if group < 0 else self._count(group))
                 self.move_start.append(len(self.move_slot))
             self.way_move.append(known[source, target])
 
-    def _counts(self, location: int) -> dict[int, int]:
-        """For each slot, the number of its enabled edges in a location, or `-1 - group` if that number depends on
-        guards."""
-        counts = {}
-        for group in range(self.group_start[location], self.group_start[location + 1]):
-            steps = self.group_steps[group]
-            is_guarded = any(step.guard is not None for step in steps)
-            counts[self.group_slot[group]] = -1 - group if is_guarded else len(steps)
-        return counts
+    def _groups(self, location: int) -> dict[int, int]:
+        """The slots of a location, with their groups."""
+        return {self.group_slot[g]: g for g in range(self.group_start[location], self.group_start[location + 1])}
+
+    def _count(self, group: int) -> int:
+        """The number of enabled edges of a group, or -1 if that number depends on guards."""
+        steps = self.group_steps[group]
+        return -1 if any(step.guard is not None for step in steps) else len(steps)
 
     # ------------------------------------------------------------ the end
 
@@ -269,7 +269,18 @@ class Compilation:
         active_start, active_slot = _ranges([[s for s in slots if not inert[s]] for slots, _ in self.network.vectors])
         all_start, all_slot = _ranges([slots for slots, _ in self.network.vectors])
         settle, location_code = self._write_transient()
-        watch_start, watch_instance, watch_table, watched_start, watched_group = self._watch_tables()
+        indexes = Indexes()
+        self._constants, self._fixed = self.tape.constants, dict[int, dict[int, int]]()
+        group_index = self._edge_indexes(indexes)
+        watch_start, watch_instance, watch_table, watched_start, watched_group, watched_index = self._watch_tables(
+            indexes
+        )
+        watch_of = {
+            storage.base: storage.watch for storage in self.watched if storage.kind != REAL and not storage.shape
+        }
+        watch_register = [-1] * len(self.watched)
+        for dimension in indexes.dimensions:
+            watch_register[watch_of[dimension.register]] = dimension.register
         initial = [
             self.network.location_of[number][instance.automaton.initial_locations[0]]
             for number, instance in enumerate(self.layout.instances)
@@ -287,6 +298,7 @@ class Compilation:
             first_location=_ints(self.network.first_location),
             group_start=_ints(self.group_start),
             group_slot=_ints(self.group_slot),
+            group_way=_ints(self.group_way),
             edge_start=_ints(self.edge_start),
             guard=_ints(self.guard),
             way_start=_ints(self.way_start),
@@ -297,6 +309,7 @@ class Compilation:
             way_move=_ints(self.way_move),
             move_start=_ints(self.move_start),
             move_slot=_ints(self.move_slot),
+            move_group=_ints(self.move_group),
             move_count=_ints(self.move_count),
             slot_instance=_ints([slot.instance for slot in self.network.slots]),
             slot_gate=_ints(slot_gate),
@@ -319,6 +332,17 @@ class Compilation:
             watched_start=watched_start,
             watched_group=watched_group,
             cell_watch=self._cell_watch(),
+            watched_index=watched_index,
+            watch_register=_ints(watch_register),
+            group_index=_ints(group_index),
+            dimension_start=_ints(indexes.dimension_start),
+            dimension_register=_ints([dimension.register for dimension in indexes.dimensions]),
+            dimension_watch=_ints([watch_of[dimension.register] for dimension in indexes.dimensions]),
+            dimension_low=array("q", [dimension.low for dimension in indexes.dimensions]),
+            dimension_size=_ints([dimension.size for dimension in indexes.dimensions]),
+            first_list=_ints(indexes.first_list),
+            list_start=_ints(indexes.list_start),
+            list_item=_ints(indexes.items),
             settle=settle,
             location_code=location_code,
             location_mark=_ints(
@@ -328,6 +352,7 @@ class Compilation:
             zero_slots=_ints([0] * len(self.network.slots)),
             zero_vectors=_ints([0] * len(self.network.vectors)),
             zero_variables=_ints([0] * len(self.watched)),
+            zero_values=array("q", [0] * len(self.watched)),
             zero_instances=_ints([0] * len(self.layout.instances)),
         )
 
@@ -427,9 +452,52 @@ class Compilation:
                     self.cells.end()
         return settle, _ints(code)
 
-    def _watch_tables(self) -> tuple[Ints, Ints, Ints, Ints, Ints]:
+    def _edge_indexes(self, indexes: Indexes) -> list[int]:
+        """For each group, the index of its edges, or -1."""
+        numbers = [-1] * len(self.group_slot)
+        for group in range(len(self.group_slot)):
+            edges = range(self.edge_start[group], self.edge_start[group + 1])
+            if len(edges) >= MIN_INDEXED:
+                guards = {edge: self._fixed_values(self.guard[edge]) for edge in edges}
+                dimensions = dimensions_of(list(guards.values()))
+                if dimensions:
+                    numbers[group] = indexes.add(dimensions, guards, has_all=True)
+        return numbers
+
+    def _add_index(self, groups: list[int], indexes: Indexes) -> tuple[int, list[int]]:
+        """Add an index of groups. Return its number, -1 if there is none; and the groups that are not in it."""
+        if len(groups) < MIN_INDEXED:
+            return -1, groups
+        fixed = {group: self._fixed_in_all(group) for group in groups}
+        dimensions = dimensions_of(list(fixed.values()))
+        if not dimensions:
+            return -1, groups
+        keyed = {
+            group: values
+            for group, values in fixed.items()
+            if all(dimension.register in values for dimension in dimensions)
+        }
+        return indexes.add(dimensions, keyed, has_all=False), [group for group in groups if group not in keyed]
+
+    def _fixed_in_all(self, group: int) -> dict[int, int]:
+        """The values that registers must have for one of the edges of a group to be enabled."""
+        first, *others = range(self.edge_start[group], self.edge_start[group + 1])
+        values = self._fixed_values(self.guard[first])
+        for edge in others:
+            values = dict(values.items() & self._fixed_values(self.guard[edge]).items())
+        return values
+
+    def _fixed_values(self, guard: int) -> dict[int, int]:
+        values = self._fixed.get(guard)
+        if values is None:
+            values = fixed_values(self.tape.code, guard, self.tape.ints, self.int_count, self._constants)
+            self._fixed[guard] = values
+        return values
+
+    def _watch_tables(self, indexes: Indexes) -> tuple[Ints, Ints, Ints, Ints, Ints, Ints]:
         """Two tables: the instances whose guards read each watched variable, and the groups of these guards in each
-        location of these instances."""
+        location of these instances; for each of these locations, an index of groups, which are left out of the table,
+        or -1."""
         readers: dict[tuple[int, int], dict[int, list[int]]] = {}
         for (location, _), group in self.group_of.items():
             number, _ = self.network.locations[location]
@@ -444,6 +512,7 @@ class Compilation:
                     readers.setdefault((meaning.watch, number), {}).setdefault(location, []).append(group)
         watch_start, watch_instance, watch_table = [0], list[int](), list[int]()
         watched_start, watched_group = [0], list[int]()
+        watched_index = list[int]()
         by_variable: dict[int, list[int]] = {}
         for variable, number in sorted(readers):
             by_variable.setdefault(variable, []).append(number)
@@ -454,10 +523,13 @@ class Compilation:
                 places = readers[variable, number]
                 first = self.network.first_location[number]
                 for location in range(first, first + len(self.network.location_of[number])):
-                    watched_group += places.get(location, ())
+                    index, groups = self._add_index(places.get(location, []), indexes)
+                    watched_index.append(index)
+                    watched_group += groups
                     watched_start.append(len(watched_group))
             watch_start.append(len(watch_instance))
-        return tuple(map(_ints, (watch_start, watch_instance, watch_table, watched_start, watched_group)))  # type: ignore[return-value]
+        tables = watch_start, watch_instance, watch_table, watched_start, watched_group, watched_index
+        return tuple(map(_ints, tables))  # type: ignore[return-value]
 
 
 def _ints(values: Iterable[int]) -> Ints:

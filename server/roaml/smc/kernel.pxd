@@ -30,23 +30,25 @@ cdef class Kernel:
     cdef double[::1] reals_mark
     cdef double[::1] root_real
     cdef public u64 roots
-    cdef int[::1] group_start, group_slot, edge_start, guard, way_start, way_target, way_code, way_chance, way_move
+    cdef int[::1] group_start, group_slot, group_way, edge_start, guard, way_start, way_target, way_code, way_chance, way_move
     cdef double[::1] way_sum
-    cdef int[::1] move_start, move_slot, move_count
+    cdef int[::1] move_start, move_slot, move_group, move_count
     cdef int[::1] slot_instance, slot_gate, gate_start, gate_vector
     cdef int[::1] active_start, active_slot, all_start, all_slot, entangled
     cdef int[::1] phase_start, phase_index, phase_read, phase_write
-    cdef int[::1] watch_start, watch_instance, watch_table, watched_start, watched_group, location_code, location_mark
+    cdef int[::1] watch_start, watch_instance, watch_table, watched_start, watched_group, watched_index, watch_register
+    cdef int[::1] group_index, dimension_start, dimension_register, dimension_watch, dimension_size
+    cdef int[::1] first_list, list_start, list_item, location_code, location_mark
     cdef int[::1] seen_start, seen_leaf, left, right, formula, formula_start, leaf_start, activity
     cdef int[::1] verdict, holds_left, holds_right, stale, stack, asked, known, known_end, known_activity
     cdef i64[::1] known_steps
-    cdef i64[::1] lower, upper
+    cdef i64[::1] lower, upper, dimension_low, value_before
     cdef int leaves, questions, status, is_bounded, step_reward, exit_reward
     cdef int[::1] sum_register, sum_watch, sum_step, sum_exit, kept_slot, kept_way
     cdef double[::1] sum_limit
     cdef int sums, lasts
     cdef u64 tried
-    cdef int[::1] ready, ready_0, gate_missing, gate_missing_0, vector_missing, vector_missing_0
+    cdef int[::1] ready, ready_0, slot_group, slot_group_0, gate_missing, gate_missing_0, vector_missing, vector_missing_0
     cdef int[::1] enabled, enabled_0
     cdef int enabled_count, enabled_count_0, plural, plural_0, fault_0
     cdef int[::1] noted, notes, part_slot, part_way
@@ -64,7 +66,7 @@ cdef class Kernel:
     cdef public double reward
     cdef double added
 
-    @cython.locals(a=int, group=int, location=int, i=int)
+    @cython.locals(a=int, i=int)
     cdef void _prepare(self) noexcept
     @cython.locals(i=int)
     cdef void _reset(self) noexcept
@@ -86,8 +88,16 @@ cdef class Kernel:
     cdef void _enable(self, int vector) noexcept
     @cython.locals(at=int, following=int, moved=int)
     cdef void _disable(self, int vector) noexcept
-    @cython.locals(count=int, edge=int)
+    @cython.locals(group=int)
+    cdef void _arrive(self, int location) noexcept
+    @cython.locals(count=int, edge=int, at=int, i=int)
     cdef int _count(self, int group) noexcept
+    @cython.locals(at=int, i=int, value=i64)
+    cdef int _list(self, int index) noexcept
+    @cython.locals(at=int, i=int, value=i64)
+    cdef int _list_before(self, int index) noexcept
+    @cython.locals(variable=int)
+    cdef void _keep_values(self) noexcept
     @cython.locals(total=u64, i=int)
     cdef u64 _total(self) noexcept
     @cython.locals(weight=u64, i=int, count=int)
@@ -111,11 +121,11 @@ cdef class Kernel:
     cdef void _take(self, int vector, u64 rest, int apart) noexcept
     @cython.locals(i=int, slot=int, edge=int)
     cdef void _take_given(self, int vector, list picks, list ways) noexcept
-    @cython.locals(i=int, k=int, move=int, count=int)
+    @cython.locals(i=int, k=int, move=int, slot=int, group=int, count=int)
     cdef void _apply(self, int vector) noexcept
     @cython.locals(i=int)
     cdef void _execute_ways(self, int vector) noexcept
-    @cython.locals(location=int, group=int, edge=int)
+    @cython.locals(group=int, edge=int, i=int)
     cdef int _edge(self, int slot, int pick) noexcept
     @cython.locals(first=int, end=int, unit=double, low=int, high=int, middle=int)
     cdef int _way(self, int edge) noexcept
@@ -127,6 +137,8 @@ cdef class Kernel:
     cdef void _execute_phases(self) noexcept
     @cython.locals(i=int, k=int, m=int, variable=int, instance=int, at=int, group=int)
     cdef void _look_around(self) noexcept
+    @cython.locals(before=int, now=int, i=int, group=int)
+    cdef void _look_up(self, int at) noexcept
     @cython.locals(code=int)
     cdef void _settle_location(self, int instance) noexcept
     @cython.locals(i=int, k=int, vector=int, slot=int, pick=int, edge=int, way=int)

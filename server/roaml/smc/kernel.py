@@ -85,6 +85,7 @@ class Kernel:
         self.first_location = program.first_location
         self.group_start = program.group_start
         self.group_slot = program.group_slot
+        self.group_way = program.group_way
         self.edge_start = program.edge_start
         self.guard = program.guard
         self.way_start = program.way_start
@@ -95,6 +96,7 @@ class Kernel:
         self.way_move = program.way_move
         self.move_start = program.move_start
         self.move_slot = program.move_slot
+        self.move_group = program.move_group
         self.move_count = program.move_count
         self.slot_instance = program.slot_instance
         self.slot_gate = program.slot_gate
@@ -114,6 +116,18 @@ class Kernel:
         self.watch_table = program.watch_table
         self.watched_start = program.watched_start
         self.watched_group = program.watched_group
+        self.watched_index = program.watched_index
+        self.watch_register = program.watch_register
+        self.group_index = program.group_index
+        self.dimension_start = program.dimension_start
+        self.dimension_register = program.dimension_register
+        self.dimension_watch = program.dimension_watch
+        self.dimension_low = program.dimension_low
+        self.dimension_size = program.dimension_size
+        self.first_list = program.first_list
+        self.list_start = program.list_start
+        self.list_item = program.list_item
+        self.value_before = program.zero_values[:]
         self.settle = program.settle
         self.location_code = program.location_code
         self.location_mark = program.location_mark
@@ -155,6 +169,8 @@ class Kernel:
 
         self.ready = program.zero_slots[:]
         self.ready_0 = program.zero_slots[:]
+        self.slot_group = program.zero_slots[:]
+        self.slot_group_0 = program.zero_slots[:]
         self.gate_missing = program.gate_missing[:]
         self.gate_missing_0 = program.gate_missing[:]
         self.vector_missing = program.vector_missing[:]
@@ -327,11 +343,11 @@ class Kernel:
             self.ints[i] = ints[i]
         for i in range(self.real_count):
             self.reals[i] = reals[i]
+        self._keep_values()
         for slot in range(len(self.ready)):
             self._set_ready(slot, 0)
         for i in range(self.instances):
-            for group in range(self.group_start[self.place[i]], self.group_start[self.place[i] + 1]):
-                self._set_ready(self.group_slot[group], self._count(group))
+            self._arrive(self.place[i])
 
     def returns(self, most: int) -> bool:
         """Whether the trace comes back to the current state within a number of steps."""
@@ -386,6 +402,7 @@ class Kernel:
         for array, values in zip(self._changing(), arrays, strict=True):
             for i, value in enumerate(values):
                 array[i] = value
+        self._keep_values()
         self.enabled_count, self.plural, self.fault, self.end, self.vector, self.looped, self.moved = counts
         self.status, self.must_look, self.steps, self.still, self.reward = goal
         self.key, self.drawn, self.scheduler = draws
@@ -395,7 +412,8 @@ class Kernel:
         """The arrays that steps change, except for those whose contents are used only within a step."""
         state: list[Any] = [self.ints, self.reals, self.place, self.verdict, self.holds_left, self.holds_right]
         goal: list[Any] = [self.stale, self.known, self.known_end, self.known_activity, self.known_steps]
-        return [*state, *goal, self.ready, self.gate_missing, self.vector_missing, self.enabled]
+        enabled: list[Any] = [self.ready, self.slot_group, self.gate_missing, self.vector_missing]
+        return [*state, *goal, *enabled, self.enabled]
 
     def choices(self) -> list[tuple[int, int, list[list[list[float]]]]]:
         """All enabled vectors. Each is described by its number, the number of choices that differ only in slots without
@@ -435,15 +453,14 @@ class Kernel:
         """Compute what is enabled in the initial state; every trace starts with a copy of it."""
         for a in range(self.instances):
             self._settle_location(a)
-            location = self.place[a]
-            for group in range(self.group_start[location], self.group_start[location + 1]):
-                self._set_ready(self.group_slot[group], self._count(group))
+            self._arrive(self.place[a])
         self.note_count = 0
         for i in range(len(self.noted)):
             self.noted[i] = 0
         self.ints_0[:] = self.ints
         self.reals_0[:] = self.reals
         self.ready_0[:] = self.ready
+        self.slot_group_0[:] = self.slot_group
         self.gate_missing_0[:] = self.gate_missing
         self.vector_missing_0[:] = self.vector_missing
         self.enabled_0[:] = self.enabled
@@ -456,8 +473,10 @@ class Kernel:
             self.ints[i] = self.ints_0[i]
         for i in range(self.real_count):
             self.reals[i] = self.reals_0[i]
+        self._keep_values()
         self.place[:] = self.place_0
         self.ready[:] = self.ready_0
+        self.slot_group[:] = self.slot_group_0
         self.gate_missing[:] = self.gate_missing_0
         self.vector_missing[:] = self.vector_missing_0
         self.enabled[:] = self.enabled_0
@@ -519,9 +538,9 @@ class Kernel:
             self._set_ready(slot, 0)
         for a in range(self.instances):
             self._settle_location(a)
+        self._keep_values()
         for a in range(self.instances):
-            for group in range(self.group_start[self.place[a]], self.group_start[self.place[a] + 1]):
-                self._set_ready(self.group_slot[group], self._count(group))
+            self._arrive(self.place[a])
         for i in range(self.note_count):
             self.noted[self.notes[i]] = 0
         self.note_count = 0
@@ -597,13 +616,52 @@ class Kernel:
             self.enabled[at] = following
             following = moved
 
+    def _arrive(self, location: int) -> None:
+        """Compute what the edges of a location enable."""
+        for group in range(self.group_start[location], self.group_start[location + 1]):
+            self.slot_group[self.group_slot[group]] = group
+            self._set_ready(self.group_slot[group], self._count(group))
+
     def _count(self, group: int) -> int:
         """The number of enabled edges of a group."""
         count = 0
+        if self.group_index[group] >= 0:
+            at = self._list(self.group_index[group])
+            for i in range(self.list_start[at], self.list_start[at + 1]):
+                edge = self.list_item[i]
+                if self.guard[edge] < 0 or self._execute(self.guard[edge]) != 0:
+                    count += 1
+            return count
         for edge in range(self.edge_start[group], self.edge_start[group + 1]):
             if self.guard[edge] < 0 or self._execute(self.guard[edge]) != 0:
                 count += 1
         return count
+
+    def _list(self, index: int) -> int:
+        """The list of an index for the current values."""
+        at = 0
+        for i in range(self.dimension_start[index], self.dimension_start[index + 1]):
+            value = self.ints[self.dimension_register[i]] - self.dimension_low[i]
+            if value < 0 or value >= self.dimension_size[i]:
+                return self.first_list[index + 1] - 1
+            at = at * self.dimension_size[i] + value
+        return self.first_list[index] + at
+
+    def _list_before(self, index: int) -> int:
+        """The list of an index for the values before this step."""
+        at = 0
+        for i in range(self.dimension_start[index], self.dimension_start[index + 1]):
+            value = self.value_before[self.dimension_watch[i]] - self.dimension_low[i]
+            if value < 0 or value >= self.dimension_size[i]:
+                return self.first_list[index + 1] - 1
+            at = at * self.dimension_size[i] + value
+        return self.first_list[index] + at
+
+    def _keep_values(self) -> None:
+        """Store the values of the variables in indexes, which `_list_before` reads."""
+        for variable in range(len(self.watch_register)):
+            if self.watch_register[variable] >= 0:
+                self.value_before[variable] = self.ints[self.watch_register[variable]]
 
     def _total(self) -> int:
         """The number of choices if it is at most MAX_DRAWN_COMBINATIONS, else any greater number."""
@@ -783,12 +841,14 @@ class Kernel:
                 else:
                     pick = rest % count
                     rest //= count
-            edge = self._edge(slot, pick)
-            way = self.way_start[edge]
-            if self.way_start[edge + 1] - way > 1:
-                way = self._way(edge)
-                if way < 0:
-                    return
+            way = self.group_way[self.slot_group[slot]]
+            if way < 0:
+                edge = self._edge(slot, pick)
+                way = self.way_start[edge]
+                if self.way_start[edge + 1] - way > 1:
+                    way = self._way(edge)
+                    if way < 0:
+                        return
             self.part_slot[self.parts] = slot
             self.part_way[self.parts] = way
             self.parts += 1
@@ -816,10 +876,13 @@ class Kernel:
             if move >= 0:
                 self.moved = 1
                 for k in range(self.move_start[move], self.move_start[move + 1]):
+                    slot = self.move_slot[k]
+                    group = self.move_group[k]
                     count = self.move_count[k]
                     if count < 0:
-                        count = self._count(-count - 1)
-                    self._set_ready(self.move_slot[k], count)
+                        count = self._count(group)
+                    self.slot_group[slot] = group
+                    self._set_ready(slot, count)
         if self.note_count != 0:
             self._look_around()
 
@@ -850,13 +913,19 @@ class Kernel:
 
     def _edge(self, slot: int, pick: int) -> int:
         """Enabled edge number `pick` of a slot."""
-        location = self.place[self.slot_instance[slot]]
-        group = self.group_start[location]
-        while self.group_slot[group] != slot:
-            group += 1
+        group = self.slot_group[slot]
         edge = self.edge_start[group]
         if self.edge_start[group + 1] - edge == 1:
             return edge
+        if self.group_index[group] >= 0:
+            i = self.list_start[self._list(self.group_index[group])]
+            while True:
+                edge = self.list_item[i]
+                if self.guard[edge] < 0 or self._execute(self.guard[edge]) != 0:
+                    if pick == 0:
+                        return edge
+                    pick -= 1
+                i += 1
         while True:
             if self.guard[edge] < 0 or self._execute(self.guard[edge]) != 0:
                 if pick == 0:
@@ -960,10 +1029,27 @@ class Kernel:
             for k in range(self.watch_start[variable], self.watch_start[variable + 1]):
                 instance = self.watch_instance[k]
                 at = self.watch_table[k] + self.place[instance] - self.first_location[instance]
+                if self.watched_index[at] >= 0:
+                    self._look_up(at)
                 for m in range(self.watched_start[at], self.watched_start[at + 1]):
                     group = self.watched_group[m]
                     self._set_ready(self.group_slot[group], self._count(group))
+            if self.watch_register[variable] >= 0:
+                self.value_before[variable] = self.ints[self.watch_register[variable]]
         self.note_count = 0
+
+    def _look_up(self, at: int) -> None:
+        """Evaluate the guards of a location that are in an index. Guards that are neither in the list for the previous
+        values nor in that for the current ones were false and stay false."""
+        before = self._list_before(self.watched_index[at])
+        now = self._list(self.watched_index[at])
+        for i in range(self.list_start[now], self.list_start[now + 1]):
+            group = self.list_item[i]
+            self._set_ready(self.group_slot[group], self._count(group))
+        if before == now:
+            return
+        for i in range(self.list_start[before], self.list_start[before + 1]):
+            self._set_ready(self.group_slot[self.list_item[i]], 0)
 
     def _settle_location(self, instance: int) -> None:
         """Give transient variables the values that they have in the current location of `instance`."""
@@ -1568,4 +1654,30 @@ class Kernel:
                 self.arguments.append(self.ints[a])
             elif op == 50:  # ARGUMENT_REAL
                 self.arguments.append(self.reals[a])
+            elif op == 51:  # FAIL_TRUE
+                if self.ints[a] != 0:
+                    return 0
+            elif op == 52:  # FAIL_FALSE
+                if self.ints[a] == 0:
+                    return 0
+            elif op == 53:  # FAIL_EQ
+                if self.ints[a] == self.ints[b]:
+                    return 0
+            elif op == 54:  # FAIL_NE
+                if self.ints[a] != self.ints[b]:
+                    return 0
+            elif op == 55:  # FAIL_LT
+                if self.ints[a] < self.ints[b]:
+                    return 0
+            elif op == 56:  # FAIL_LE
+                if self.ints[a] <= self.ints[b]:
+                    return 0
+            elif op == 57:  # IS_EQ
+                return 1 if self.ints[a] == self.ints[b] else 0
+            elif op == 58:  # IS_NE
+                return 1 if self.ints[a] != self.ints[b] else 0
+            elif op == 59:  # IS_LT
+                return 1 if self.ints[a] < self.ints[b] else 0
+            elif op == 60:  # IS_LE
+                return 1 if self.ints[a] <= self.ints[b] else 0
             pc += 5

@@ -68,6 +68,16 @@ class Op(enum.IntEnum):
     CALL_REAL = 48
     ARGUMENT = 49  # append I[a] to the arguments of the next call
     ARGUMENT_REAL = 50
+    FAIL_TRUE = 51  # the value is 0 if I[a]; continue otherwise
+    FAIL_FALSE = 52
+    FAIL_EQ = 53  # the value is 0 if I[a] = I[b]; continue otherwise
+    FAIL_NE = 54
+    FAIL_LT = 55
+    FAIL_LE = 56
+    IS_EQ = 57  # the value is 1 if I[a] = I[b], otherwise 0
+    IS_NE = 58
+    IS_LT = 59
+    IS_LE = 60
 
 
 class FaultCode(enum.IntEnum):

@@ -43,9 +43,11 @@ class Program(Record, frozen=True, eq=False):
         way_sum: the sum of the probabilities of the ways of an edge up to this way, included.
         way_chance: code that returns the register of the probability of a way, if it depends on the state.
         way_move: the move of a way: the number of its pair of a source and a target location; -1 if both are equal.
-        move_slot: the slots whose number of enabled edges may differ between the two locations of a move.
-        move_count: for each of these slots, the number of its enabled edges in the target location; `-1 - group` if the
-            number depends on the guards of the group.
+        group_way: the way of a group that consists of one edge with one way; -1 for other groups.
+        move_slot: the slots that have edges in one of the two locations of a move.
+        move_group: for each of these slots, its group in the target location, -1 if there is none.
+        move_count: for each of these slots, the number of its enabled edges in the target location, -1 if it depends on
+            guards.
         slot_gate: the gate of each slot (`roaml.smc.kernel` defines gates); gate_vector: the vectors of a gate.
         gate_missing, vector_missing: the number of slots of each gate, and the number of gates of each vector.
         active_slot: the slots of a vector that have an effect; all_slot: all slots.
@@ -54,12 +56,19 @@ class Program(Record, frozen=True, eq=False):
         phase_read, phase_write: for each of these indices, code that computes the values, and code that assigns them.
         watch_instance: the instances whose guards read a watched variable.
         watch_table: for each of these instances, the index in `watched_start` for its first location.
-        watched_group: for each location of these instances, the groups whose guards read the variable.
+        watched_group: for each location of these instances, the groups whose guards read the variable, without those
+            that are in an index.
+        watched_index: for each location of these instances, the index of the other groups, -1 if there is none.
+        watch_register: the register of each watched variable that is a dimension of an index, otherwise -1.
+        group_index: the index of the edges of each group, -1 if there is none.
+        dimension_start, first_list, list_start, list_item: the indexes and their lists, see `index.Indexes`.
+        dimension_register, dimension_watch, dimension_low, dimension_size: the dimensions of the indexes; the variable
+            in the register has the number `dimension_watch` among the watched variables.
         cell_watch: for each variable register, integers first, the number of its variable among the watched variables,
             or -1.
         settle: code that resets transient variables; location_code: code that sets their values in a location.
         location_mark: why a trace that stays in a location ends (`end.End`); 0 if unknown.
-        zero_*: a zero for each slot, vector, watched variable and instance, which the kernel copies.
+        zero_*: a zero for each slot, vector, watched variable (twice) and instance, which the kernel copies.
     """
 
     code: Ints
@@ -79,6 +88,7 @@ class Program(Record, frozen=True, eq=False):
     first_location: Ints
     group_start: Ints
     group_slot: Ints
+    group_way: Ints
     edge_start: Ints
     guard: Ints
     way_start: Ints
@@ -89,6 +99,7 @@ class Program(Record, frozen=True, eq=False):
     way_move: Ints
     move_start: Ints
     move_slot: Ints
+    move_group: Ints
     move_count: Ints
     slot_instance: Ints
     slot_gate: Ints
@@ -111,12 +122,24 @@ class Program(Record, frozen=True, eq=False):
     watched_start: Ints
     watched_group: Ints
     cell_watch: Ints
+    watched_index: Ints
+    watch_register: Ints
+    group_index: Ints
+    dimension_start: Ints
+    dimension_register: Ints
+    dimension_watch: Ints
+    dimension_low: Ints
+    dimension_size: Ints
+    first_list: Ints
+    list_start: Ints
+    list_item: Ints
     settle: int
     location_code: Ints
     location_mark: Ints
     zero_slots: Ints
     zero_vectors: Ints
     zero_variables: Ints
+    zero_values: Ints
     zero_instances: Ints
 
 

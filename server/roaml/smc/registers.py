@@ -13,6 +13,23 @@ from roaml.smc.opcodes import WIDTH, Op
 BOOL, INT, REAL = "bool", "int", "real"
 """Kinds of values. Bools and ints share the same registers."""
 
+_FAILING = {
+    Op.JUMP_TRUE: Op.FAIL_TRUE,
+    Op.JUMP_FALSE: Op.FAIL_FALSE,
+    Op.JUMP_EQ: Op.FAIL_EQ,
+    Op.JUMP_NE: Op.FAIL_NE,
+    Op.JUMP_LT: Op.FAIL_LT,
+    Op.JUMP_LE: Op.FAIL_LE,
+}
+"""A jump -> the instruction that returns 0 instead of jumping."""
+_DECIDING = {
+    Op.FAIL_EQ: (Op.IS_NE, False),
+    Op.FAIL_NE: (Op.IS_EQ, False),
+    Op.FAIL_LT: (Op.IS_LE, True),
+    Op.FAIL_LE: (Op.IS_LT, True),
+}
+"""An instruction that returns 0 -> the one that returns 1 otherwise, and whether its operands are swapped."""
+
 Number: TypeAlias = "bool | int | float"
 
 
@@ -90,6 +107,21 @@ class Tape:
         for use in label.uses:
             self.code[use] = label.at
 
+    def shorten(self, otherwise: Label) -> None:
+        """Shorten a condition that has just been written: jumps to `otherwise`, whose code returns 0, become
+        instructions that return 0; a comparison before the instruction that returns 1 returns the result itself."""
+        returns_1 = otherwise.at - WIDTH
+        for use in otherwise.uses:
+            at = use - 1
+            op = _FAILING.get(Op(self.code[at]))
+            if op is None:
+                continue
+            self.code[at : at + 2] = op, 0
+            if at + WIDTH == returns_1 and op in _DECIDING:
+                self.code[at], is_swapped = _DECIDING[op]
+                if is_swapped:
+                    self.code[at + 2], self.code[at + 3] = self.code[at + 3], self.code[at + 2]
+
     def constant(self, kind: str, value: Number) -> Operand:
         """A register that always contains this value."""
         # The sign distinguishes -0.0 from 0.0, which are equal.
@@ -125,6 +157,11 @@ class Tape:
             self._free_ints.append(self.reserve(kind, 1))
         self._used_ints += 1
         return self._free_ints[self._used_ints - 1]
+
+    @property
+    def constants(self) -> frozenset[int]:
+        """The int registers that contain constants."""
+        return frozenset(operand.register for operand in self._constants.values() if operand.kind != REAL)
 
     def function(self, operator: Operator) -> int:
         """The number with which code calls the function of an operator."""

@@ -578,8 +578,7 @@ class TraceBatch:
                 moved += 1
         for i in range(moved):
             place = self.kernel.place[self.moved[i]]
-            for group in range(self.kernel.group_start[place], self.kernel.group_start[place + 1]):
-                self.kernel._set_ready(self.kernel.group_slot[group], self.kernel._count(group))
+            self.kernel._arrive(place)
         if self.kernel.note_count != 0:
             self.kernel._look_around()
 

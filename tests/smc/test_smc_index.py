@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Indexes of guards change no trace and no state."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from smc_models import automaton, document, edge, model, op, probability, variable, way
+from smc_random import networks
+
+from both_kernels import difference
+from examples import examples
+from roaml.explicit.space import StateLimits, explore
+from roaml.smc import compile as compilation
+from roaml.smc import index, kernel
+from roaml.smc.model import ModelChecker
+from roaml.smc.opcodes import Op
+from roaml.smc.program import UNKNOWN
+
+VARIABLES = ("x", "y", "z")
+
+
+@st.composite
+def guarded(draw: st.DrawFn) -> dict[str, Any]:
+    """Automata with many edges whose guards compare variables with constants."""
+    value = st.integers(-1, 3)
+    equal = st.builds(lambda name, number, swaps: op("=", *((number, name) if swaps else (name, number))),
+                      st.sampled_from(VARIABLES), value, st.booleans())  # fmt: skip
+    other = st.builds(op, st.sampled_from(["<", "≠", "≤"]), st.sampled_from(VARIABLES), value)
+
+    def some_edge(action: str | None) -> Any:
+        guard = draw(equal)
+        for part in draw(st.lists(st.one_of(equal, equal, other), max_size=2)):
+            guard = op("∧", guard, part)
+        if draw(st.integers(0, 9)) == 0:
+            guard = draw(other)
+        changes = draw(st.dictionaries(st.sampled_from(VARIABLES), value, min_size=1))
+        return edge("l", way("l", **changes), action=action, guard=guard)
+
+    first = automaton("a", "l", [some_edge(None) for _ in range(draw(st.integers(4, 14)))])
+    actions = draw(st.lists(st.sampled_from(["s", "t", "u"]), min_size=4, max_size=14))
+    second = automaton("b", "l", [some_edge(action) for action in actions])
+    return document(
+        first,
+        second,
+        variables=[variable(name, initial=draw(value)) for name in VARIABLES],
+        properties={"p": probability(op("F", op("=", "x", 77)))},
+    )
+
+
+def with_threshold(patch: pytest.MonkeyPatch, threshold: int, written: dict[str, Any]) -> ModelChecker:
+    """The model with indexes of at least this many guards."""
+    for module in (index, compilation):
+        patch.setattr(module, "MIN_INDEXED", threshold)
+    return ModelChecker(model(written))
+
+
+def outcomes(checker: ModelChecker) -> list[Any]:
+    results = []
+    for property_ in checker.compiled_properties:
+        compiled = checker.compiled(property_)
+        simulator = kernel.Kernel(compiled.program, compiled.goal)
+        for trace in range(5):
+            for scheduler in (0, 5):
+                verdict = simulator.begin(3, trace, scheduler)
+                if verdict == UNKNOWN:
+                    verdict = simulator.advance(60)
+                results.append((verdict, simulator.ending(), simulator.outcome(), simulator.snapshot()))
+        space = explore(checker, property_, StateLimits(states=2_000, bytes=1 << 24)) if is_finite(checker) else None
+        if space is not None:
+            search = space.search
+            results.append([(search.key(s), search.choices_of(s)) for s in range(search.expanded)])
+    return results
+
+
+def is_finite(checker: ModelChecker) -> bool:
+    return all(name in VARIABLES for name in (v.name for v in checker.model.variables))
+
+
+def check_same(written: dict[str, Any]) -> ModelChecker:
+    with pytest.MonkeyPatch.context() as patch:
+        plain = with_threshold(patch, 1 << 30, written)
+        assert len(plain.program.first_list) == 1
+        indexed = with_threshold(patch, 1, written)
+    assert repr(outcomes(indexed)) == repr(outcomes(plain))
+    return indexed
+
+
+@settings(max_examples=examples(150), suppress_health_check=list(HealthCheck))
+@given(guarded())
+def test_many_guards(written: dict[str, Any]) -> None:
+    indexed = check_same(written)
+    for property_ in indexed.compiled_properties:
+        assert difference(indexed, property_, 3, 3, 40) == ""
+
+
+@settings(max_examples=examples(60), suppress_health_check=list(HealthCheck))
+@given(networks())
+def test_random_networks(written: dict[str, Any]) -> None:
+    check_same(written)
+
+
+def grid(size: int) -> dict[str, Any]:
+    """A robot on a grid: one edge for each cell and direction."""
+    edges = []
+    for x in range(size):
+        for y in range(size):
+            for dx, dy in ((1, 0), (0, 1), (-1, 0), (0, -1)):
+                if 0 <= x + dx < size and 0 <= y + dy < size:
+                    here = op("∧", op("=", "x", x), op("=", "y", y))
+                    edges.append(edge("l", way("l", x=x + dx, y=y + dy), action=f"go{len(edges)}", guard=here))
+    return document(
+        automaton("robot", "l", edges),
+        variables=[variable("x"), variable("y")],
+        properties={"p": probability(op("F", op("=", "x", size)))},
+    )
+
+
+def test_few_guards_of_a_grid_are_evaluated() -> None:
+    """The lists for a cell contain its edges only, and each edge is in the index of each of the two variables."""
+    program = check_same(grid(6)).program
+    assert len(program.guard) == 120
+    assert list(program.watched_group) == []
+    lengths = [program.list_start[i + 1] - program.list_start[i] for i in range(len(program.list_start) - 1)]
+    assert max(lengths) == 4
+    assert sum(lengths) == 2 * 120
+
+
+def test_values_after_another_instruction_are_not_used() -> None:
+    """Its evaluation might fail, which an index must not hide."""
+    code = [Op.FAIL_NE, 0, 0, 2, 0, Op.DIVIDE, 0, 0, 0, 0, Op.IS_EQ, 0, 1, 2, 0]
+    assert index.fixed_values(code, 0, [0, 0, 7], 2, {2}) == {0: 7}
+    assert index.fixed_values(code, 10, [0, 0, 7], 2, {2}) == {1: 7}
+    assert index.fixed_values(code, -1, [0, 0, 7], 2, {2}) == {}
