@@ -111,7 +111,8 @@ def parser() -> ArgumentParser:
     add("--max-memory", type=size, metavar="SIZE", help="with --exhaustive: stop when the states occupy "
         "this much memory, for example 4G or 500M; the result is then undecided (half of the free memory)")  # fmt: skip
     add("--no-reductions", action="store_true", help="with --exhaustive: explore all states even if there are many; "
-        "without it, choices are left out that change neither the minimum nor the maximum")  # fmt: skip
+        "without it, choices are left out that change neither the minimum nor the maximum, and states that differ only "
+        "in variables without influence are one state")  # fmt: skip
     add_model_arguments(result)
     add("--stuck", action=WordAction, words=StuckLevel, default=StuckLevel.WARNING,
         help="report traces that get stuck as a "

@@ -21,6 +21,7 @@ cdef int STATUS, LASTS, FAILS, HOLDS, OPEN, ENDED, GETS_STUCK
 cdef class StateSearch:
     cdef Kernel kernel
     cdef int[::1] way_start, way_cell, settled, cell_watch
+    cdef int[::1] drop_start, drop_cell, owner_start, owner_instance, owner_table, is_dead
     cdef int places, first_real, variables, leaves, counter, cells
     cdef i64 most_steps, lower_bound
     cdef int remembers
@@ -29,7 +30,7 @@ cdef class StateSearch:
     cdef i64 most_depth, layer_end
     cdef double[::1] box
     cdef i64[::1] box_bits
-    cdef i64[::1] low, old_low, value, memory
+    cdef i64[::1] initial, low, old_low, value, memory
     cdef int[::1] bits, word, shift, live_start, live, old_word, old_shift
     cdef u64[::1] mask, old_mask, room, now, following
     cdef public int words
@@ -62,6 +63,10 @@ cdef class StateSearch:
     @cython.locals(value=i64)
     cdef i64 _current(self, int cell) noexcept
     cdef void _set_current(self, int cell, i64 value) noexcept
+    @cython.locals(k=int)
+    cdef int _is_dead(self, int cell) noexcept
+    @cython.locals(j=int, way=int, k=int, move=int)
+    cdef void _reset_dead(self) noexcept
     @cython.locals(value=i64, code=u64, at=int, shift=int)
     cdef void _pack(self, int cell) noexcept
     @cython.locals(code=u64)
@@ -123,9 +128,9 @@ cdef class StateSearch:
     cdef int _successor(self, int vector, int count, i64 state) except? -9
     @cython.locals(j=int)
     cdef void _execute_choice(self, int vector, int count) noexcept
-    @cython.locals(i=int, j=int, k=int, way=int, cell=int)
+    @cython.locals(i=int, j=int, k=int, way=int, cell=int, move=int)
     cdef void _pack_parts(self) noexcept
-    @cython.locals(j=int, k=int, way=int, cell=int)
+    @cython.locals(j=int, k=int, way=int, cell=int, move=int)
     cdef void _undo_parts(self) noexcept
     @cython.locals(successor=i64)
     cdef int _pass_on(self, i64 state) except? -9

@@ -91,6 +91,12 @@ class StateSearch:
         self.way_cell = tables.way_cell
         self.settled = tables.settled
         self.cell_watch = tables.cell_watch
+        self.drop_start = tables.drop_start
+        self.drop_cell = tables.drop_cell
+        self.owner_start = tables.owner_start
+        self.owner_instance = tables.owner_instance
+        self.owner_table = tables.owner_table
+        self.is_dead = tables.is_dead
         self.places = self.kernel.instances
         self.first_real = self.places + self.kernel.int_count
         self.variables = self.first_real + self.kernel.real_count
@@ -110,6 +116,7 @@ class StateSearch:
         box = array("d", [0.0])
         self.box = box
         self.box_bits = memoryview(box).cast("B").cast("q")
+        self.initial = array("q", [0] * self.cells)
         self.low = array("q", [0] * self.cells)
         self.bits = array("i", [0] * self.cells)
         self.mask = array("Q", [0] * self.cells)
@@ -180,8 +187,9 @@ class StateSearch:
         for leaf in range(self.leaves):
             self.memory[leaf] = UNKNOWN
         for cell in range(self.cells):
-            self.low[cell] = self._current(cell)
-            self.value[cell] = self.low[cell]
+            self.initial[cell] = self._current(cell)
+            self.low[cell] = self.initial[cell]
+            self.value[cell] = self.initial[cell]
         if self.kernel.fault != 0:
             self.status = FAULT
         for cell in range(self.places):
@@ -327,6 +335,9 @@ class StateSearch:
             if self.kernel.fault != 0:
                 self.status = FAULT
                 return
+            for cell in range(self.places, self.variables):
+                if self._is_dead(cell) != 0:
+                    self._set_current(cell, self.initial[cell])
             for cell in range(self.cells):
                 self._pack(cell)
             while self.misfit >= 0:
@@ -373,6 +384,26 @@ class StateSearch:
             self.kernel.reals[cell - self.first_real] = self.box[0]
         else:
             self.memory[cell - self.variables] = value
+
+    def _is_dead(self, cell: int) -> int:
+        """Whether the value of a variable does not matter in the current locations."""
+        for k in range(self.owner_start[cell], self.owner_start[cell + 1]):
+            if self.is_dead[self.owner_table[k] + self.kernel.place[self.owner_instance[k]]] != 0:
+                return 1
+        return 0
+
+    def _reset_dead(self) -> None:
+        """Give the dead cells their initial values that the step of the kernel has written, or that were not dead
+        before it."""
+        for j in range(self.kernel.parts):
+            way = self.kernel.part_way[j]
+            for k in range(self.way_start[way], self.way_start[way + 1]):
+                if self._is_dead(self.way_cell[k]) != 0:
+                    self._set_current(self.way_cell[k], self.initial[self.way_cell[k]])
+            move = self.kernel.way_move[way]
+            if move >= 0:
+                for k in range(self.drop_start[move], self.drop_start[move + 1]):
+                    self._set_current(self.drop_cell[k], self.initial[self.drop_cell[k]])
 
     def _pack(self, cell: int) -> None:
         """Put the current value of a cell into `following`. If the value does not fit, store the cell in `misfit`."""
@@ -436,7 +467,7 @@ class StateSearch:
                     break
                 for cell in range(self.variables):
                     value = self._current(cell)
-                    if ((value - self.low[cell]) & UINT64_MASK) > self.room[cell]:
+                    if self._is_dead(cell) == 0 and ((value - self.low[cell]) & UINT64_MASK) > self.room[cell]:
                         self._fit(cell, value)
         self._repack()
         self.kernel.root(0)
@@ -1024,6 +1055,7 @@ class StateSearch:
 
     def _pack_parts(self) -> None:
         """Put the key of the state after a step into `following`. The kernel has executed the step."""
+        self._reset_dead()
         for i in range(self.words):
             self.following[i] = self.now[i]
         for j in range(self.kernel.parts):
@@ -1031,6 +1063,10 @@ class StateSearch:
             self._pack(self.kernel.slot_instance[self.kernel.part_slot[j]])
             for k in range(self.way_start[way], self.way_start[way + 1]):
                 self._pack(self.way_cell[k])
+            move = self.kernel.way_move[way]
+            if move >= 0:
+                for k in range(self.drop_start[move], self.drop_start[move + 1]):
+                    self._pack(self.drop_cell[k])
         for k in range(len(self.settled)):
             self._pack(self.settled[k])
         if self.remembers != 0:
@@ -1045,6 +1081,10 @@ class StateSearch:
             self.kernel.place[cell] = self.value[cell]
             for k in range(self.way_start[way], self.way_start[way + 1]):
                 self._set_current(self.way_cell[k], self.value[self.way_cell[k]])
+            move = self.kernel.way_move[way]
+            if move >= 0:
+                for k in range(self.drop_start[move], self.drop_start[move + 1]):
+                    self._set_current(self.drop_cell[k], self.value[self.drop_cell[k]])
         for k in range(len(self.settled)):
             self._set_current(self.settled[k], self.value[self.settled[k]])
         for k in range(self.kernel.note_count):

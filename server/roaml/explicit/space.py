@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 from roaml.explicit import ample, codes
 from roaml.explicit import search as engine
 from roaml.explicit.independence import independence_of
+from roaml.explicit.liveness import all_live, liveness_of
 from roaml.explicit.memory import available
 from roaml.explicit.tables import tables_of
 from roaml.record import Record
@@ -44,7 +45,8 @@ class StateLimits(Record, frozen=True):
             no limit.
         work: the maximum number of additions for each value that a property asks for; `None` for the limit of the
             solver.
-        reduces: whether choices may be left out where that keeps the minimum and the maximum.
+        reduces: whether dead variables are reset, and whether choices may be left out where that keeps the minimum and
+            the maximum.
     """
 
     states: int = MAX_STATES
@@ -131,10 +133,13 @@ def explore(
     goal = compiled.goal
     program = compiled.program
     steps, lower, depth = _bounds(goal)
+    transient = _transient(checker)
+    observed = checker.observed(property_)
+    liveness = liveness_of(checker.legend, observed, transient) if limits.reduces else all_live(checker.legend)
     simulator = kernel_module.Kernel(program, goal)
     search = search_module.StateSearch(
         simulator,
-        tables_of(program, goal, checker.legend, _transient(checker)),
+        tables_of(program, goal, checker.legend, transient, liveness),
         steps,
         lower,
         depth,

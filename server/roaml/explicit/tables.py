@@ -11,11 +11,11 @@ from __future__ import annotations
 from array import array
 from collections.abc import Iterable
 
-from roaml.jani.expressions import ArrayAccess, Expression, Name
-from roaml.jani.model import Assignment
+from roaml.explicit.liveness import Liveness, bits
 from roaml.record import Record
 from roaml.smc.compile import Legend
 from roaml.smc.names import Storage
+from roaml.smc.network import root
 from roaml.smc.program import Goal, Ints, Program
 from roaml.smc.registers import REAL, product
 
@@ -28,15 +28,27 @@ class Tables(Record, frozen=True, eq=False):
         settled: the cells that any step can change: those of transient variables and of accumulated rewards.
         cell_watch: for each cell of a location or variable, the number of the variable among the watched variables, or
             -1.
+        drop_start, drop_cell: for each move, the cells that are dead in its target location, but not in its source
+            location.
+        owner_start: for each cell of a location or variable, the index of its first owner.
+        owner_instance: the instances on whose locations it depends whether the cell is dead.
+        owner_table: for each of these, the index in `is_dead` for the location with the number 0.
+        is_dead: whether a cell is dead in a location of an owner.
     """
 
     way_start: Ints
     way_cell: Ints
     settled: Ints
     cell_watch: Ints
+    drop_start: Ints
+    drop_cell: Ints
+    owner_start: Ints
+    owner_instance: Ints
+    owner_table: Ints
+    is_dead: Ints
 
 
-def tables_of(program: Program, goal: Goal, legend: Legend, transient: Iterable[Storage]) -> Tables:
+def tables_of(program: Program, goal: Goal, legend: Legend, transient: Iterable[Storage], liveness: Liveness) -> Tables:
     """The tables of a program with a goal."""
     way_start, way_cell = [0], list[int]()
     instance_of = [number for number, _ in legend.locations]
@@ -44,7 +56,7 @@ def tables_of(program: Program, goal: Goal, legend: Legend, transient: Iterable[
         names = legend.layout.instances[instance_of[program.way_target[way]]].names
         written: dict[int, None] = {}
         for assignment in destination.assignments:
-            storage = names.values[_root(assignment)]
+            storage = names.values[root(assignment)]
             assert isinstance(storage, Storage)
             written.update(dict.fromkeys(_cells(storage, program)))
         way_cell += written
@@ -55,17 +67,58 @@ def tables_of(program: Program, goal: Goal, legend: Legend, transient: Iterable[
             watch[cell] = storage.watch
     settled = [cell for storage in transient for cell in _cells(storage, program)]
     settled += [program.instances + program.int_count + register for register in goal.sum_register]
-    return Tables(array("i", way_start), array("i", way_cell), array("i", settled), array("i", watch))
+    return Tables(
+        array("i", way_start),
+        array("i", way_cell),
+        array("i", settled),
+        array("i", watch),
+        *_dropped(program, legend, liveness),
+        *_owners(program, legend, liveness),
+    )
+
+
+def _dropped(program: Program, legend: Legend, liveness: Liveness) -> tuple[Ints, Ints]:
+    """`drop_start` and `drop_cell`."""
+    storages = legend.layout.storages
+    moves = dict(zip(program.way_move, legend.moves, strict=True))
+    starts, cells = [0], list[int]()
+    for move in range(len(program.move_start) - 1):
+        source, target = moves[move]
+        dropped = liveness.dead[target] & ~liveness.dead[source]
+        for number in bits(dropped):
+            cells += _cells(storages[number], program)
+        starts.append(len(cells))
+    return array("i", starts), array("i", cells)
+
+
+def _owners(program: Program, legend: Legend, liveness: Liveness) -> tuple[Ints, Ints, Ints, Ints]:
+    """`owner_start`, `owner_instance`, `owner_table` and `is_dead`."""
+    ranges = [*program.first_location, len(legend.locations)]
+    owners: dict[int, list[tuple[int, int]]] = {}
+    is_dead = list[int]()
+
+    def add(number: int, instance: int, dead: Iterable[int]) -> None:
+        pair = instance, len(is_dead) - ranges[instance]
+        is_dead.extend(dead)
+        for cell in _cells(legend.layout.storages[number], program):
+            owners.setdefault(cell, []).append(pair)
+
+    for number in bits(liveness.unobserved):
+        add(number, 0, [1] * (ranges[1] - ranges[0]))
+    for instance, variables in enumerate(liveness.owned):
+        locations = range(ranges[instance], ranges[instance + 1])
+        for number in bits(variables):
+            dead = [liveness.dead[location] >> number & 1 for location in locations]
+            if any(dead):
+                add(number, instance, dead)
+    starts, pairs = [0], list[tuple[int, int]]()
+    for cell in range(program.instances + program.int_count + program.real_count):
+        pairs += owners.get(cell, ())
+        starts.append(len(pairs))
+    instances, tables = zip(*pairs, strict=True) if pairs else ((), ())
+    return array("i", starts), array("i", instances), array("i", tables), array("i", is_dead)
 
 
 def _cells(storage: Storage, program: Program) -> range:
     first = program.instances + storage.base + (program.int_count if storage.kind == REAL else 0)
     return range(first, first + product(storage.shape))
-
-
-def _root(assignment: Assignment) -> str:
-    target: Expression = assignment.target
-    while isinstance(target, ArrayAccess):
-        target = target.array
-    assert isinstance(target, Name)
-    return target.identifier

@@ -21,7 +21,7 @@ from roaml.smc.index import MIN_INDEXED, Indexes, dimensions_of, fixed_values
 from roaml.smc.initial import MAX_INITIAL_STATES, Cells
 from roaml.smc.layout import MemoryLayout, lay_out
 from roaml.smc.names import Storage, StorageNames
-from roaml.smc.network import CompiledNetwork, EdgeStep, Slot, root
+from roaml.smc.network import CompiledNetwork, EdgeStep, Reads, Slot, root
 from roaml.smc.program import Ints, Program
 from roaml.smc.registers import REAL, Tape, product
 
@@ -35,15 +35,19 @@ class Legend(Record, frozen=True):
         layout: the registers of all variables.
         locations: the number of the instance and the name of each location.
         ways: the edge and the destination of each way.
+        moves: the numbers of the source and the target location of each way.
         vectors: the numbers of the slots of each synchronisation vector, and its action.
         slots: the edges of each instance for one action.
+        reads: the names that the expressions and assignments of the model read.
     """
 
     layout: MemoryLayout
     locations: list[tuple[int, str]]
     ways: list[tuple[Edge, Destination]]
+    moves: list[tuple[int, int]]
     vectors: list[tuple[list[int], str | None]]
     slots: list[Slot]
+    reads: Reads
 
 
 class Compilation:
@@ -410,7 +414,9 @@ class Compilation:
 
     @property
     def legend(self) -> Legend:
-        return Legend(self.layout, self.network.locations, self.ways, self.network.vectors, self.network.slots)
+        network = self.network
+        moves = list(zip(self.way_source, self.way_target, strict=True))
+        return Legend(self.layout, network.locations, self.ways, moves, network.vectors, network.slots, network.reads)
 
     def _cell_watch(self) -> Ints:
         numbers = [-1] * (self.int_count + self.real_count)

@@ -7,10 +7,10 @@ import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import MappingProxyType
 
-from roaml.jani.expressions import Name
+from roaml.jani.expressions import Call, Name
 from roaml.jani.model import Model, ModelType
 from roaml.jani.passive import without_passive
-from roaml.jani.properties import Formula, Property
+from roaml.jani.properties import Formula, Property, identifiers, walk
 from roaml.record import replace
 from roaml.smc.batch import Payload, TraceProblem, pack
 from roaml.smc.choices import Choices, check_choices
@@ -26,6 +26,7 @@ from roaml.smc.goal import (
     conditional,
 )
 from roaml.smc.lss import Search, candidates, search
+from roaml.smc.names import variables_in
 from roaml.smc.opcodes import MESSAGES, FaultCode
 from roaml.smc.pool import Pool, Pulse, Runner
 from roaml.smc.program import Compiled, Program, merged
@@ -155,6 +156,16 @@ class ModelChecker:
         """All formulas on which the probability of a property depends."""
         outputs = self.outputs.get(property_.property.name, NO_OUTPUTS)
         return (property_.property.expression, *(expression for _, expression in outputs.open))
+
+    def observed(self, property_: CompiledProperty) -> frozenset[str]:
+        """The names of the variables of the model on which the probability or reward of a property depends directly."""
+        names: set[str] = set()
+        for formula in self._read(property_):
+            names.update(name for name, _ in identifiers(formula))
+            for part in walk(formula):
+                if isinstance(part, Call):
+                    names |= variables_in(part, self.legend.layout.names.functions)
+        return frozenset(names)
 
     def _outputs(self, property_: CompiledProperty) -> Mapping[str, ObserverOutputs]:
         name = property_.property.name
