@@ -4,6 +4,7 @@ through all states, on random networks."""
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from smc_models import Json, automaton, document, edge, model, op, probability, 
 from smc_random import networks as entangled_networks
 
 import conformance
+from as2fm_lsp.cli.main import run
 from as2fm_lsp.verification import exact_report
 from examples import examples
 from roaml import api
@@ -290,3 +292,19 @@ def test_steps_that_change_nothing_can_avoid_an_end() -> None:
     assert values_of(explore(checker, property_, ALL)).minimum.upper == 0.0
     assert values_of(explore(checker, property_, ALL)).maximum.lower == 1.0
     assert both(*question_of(written)) is not None
+
+
+def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "model.jani"
+    file.write_text(json.dumps(counters(7, CHOICE)), encoding="utf-8")
+    arguments = ["verify", str(file), "--exhaustive", "--max-states", "30000"]
+    assert run([*arguments, "--explain"]) == 0
+    text = capsys.readouterr().out
+    assert "p: minimum 0, maximum 1, exact, " in text
+    assert "\np failed in a trace after 64 steps" in text
+    assert (
+        "\ncomputed for all reachable states, over all schedulers; choices that change no result were left out\n"
+        in text
+    )
+    assert run([*arguments, "--no-reductions"]) == 1
+    assert "stopped at 30,000 states" in capsys.readouterr().out

@@ -368,7 +368,13 @@ class _Verification:
     def _assumptions(self) -> str:
         """The assumptions of all results: one line, or two lines if some values are exact and others are estimates."""
         if self.options.exhaustive:
-            return "computed from all reachable states, over all schedulers and for uniform choices"
+            exact = [result.exact for result in self.results if result.exact is not None]
+            over = "over all schedulers"
+            if all(values.uniform is not None for values in exact):
+                over += " and for uniform choices"
+            if any(values.is_reduced for values in exact):
+                return f"computed for all reachable states, {over}; choices that change no result were left out"
+            return f"computed from all reachable states, {over}"
         if self.options.scheduler is Scheduler.LSS:
             how = f"with each scheduler found; others may be more extreme; seed {self.limits.seed}"
             return f"{self.limits.confidence:g} confidence {how}"
