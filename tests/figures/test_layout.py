@@ -148,3 +148,14 @@ def test_spread() -> None:
     assert spread([0, 0, 0], [10, 10], low=0) == [0, 10, 20]
     assert spread([0, 0], [10], [1, 3]) == [-7.5, 2.5]
     assert spread([], []) == []
+
+
+def test_parts_that_are_not_connected_are_placed_so_that_they_suit_the_page() -> None:
+    """A chain of four nodes and one of two nodes: beside each other on a page, in a row or column if there is no other
+    space."""
+    nodes = {name: Extent(120, 60) for name in "abcdef"}
+    links = [Link(one, other) for one, other in ("ab", "bc", "cd", "ef")]
+    sizes = {aspect: layered(nodes, links, LayoutDirection.DOWN, aspect).size for aspect in (0.01, 0.8, 100.0)}
+    assert sizes[0.8] == sizes[100.0]
+    assert sizes[0.8].width > 240 > sizes[0.01].width
+    assert sizes[0.01].height > sizes[0.8].height

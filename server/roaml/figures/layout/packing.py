@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable, Iterator, Sequence
 
@@ -11,6 +12,8 @@ from roaml.figures.layout.graph import Layout, Link, Route
 
 DISTANCE = 48.0
 """The distance between parts that are not connected, in pixels."""
+MAX_IN_ROW = 50
+"""The maximum number of parts in the first row."""
 
 
 def components(names: Iterable[str], links: Sequence[Link]) -> Iterator[tuple[list[str], list[int]]]:
@@ -51,7 +54,11 @@ def shelves(sizes: Sequence[Extent], aspect: float, distance: float = DISTANCE) 
         distance: the distance between boxes, in pixels.
     """
     area = sum((size.width + distance) * (size.height + distance) for size in sizes)
-    limit = max([size.width for size in sizes] + [math.sqrt(area * aspect)])
+    return _rows(sizes, max([size.width for size in sizes] + [math.sqrt(area * aspect)]), distance)
+
+
+def _rows(sizes: Sequence[Extent], limit: float, distance: float) -> tuple[list[Point], Extent]:
+    """The places of boxes in rows that are at most `limit` pixels wide, and the size of all rows."""
     places: list[Point] = []
     x = y = height = width = 0.0
     for size in sizes:
@@ -63,6 +70,14 @@ def shelves(sizes: Sequence[Extent], aspect: float, distance: float = DISTANCE) 
     return places, Extent(width, y + height)
 
 
+def _best_rows(sizes: Sequence[Extent], aspect: float) -> tuple[list[Point], Extent]:
+    """The places of boxes in rows whose number suits a page of a ratio best, and the size of all rows."""
+    widths = itertools.accumulate(size.width + DISTANCE for size in sizes)
+    least = max((size.width for size in sizes), default=0.0)
+    candidates = (_rows(sizes, max(least, width), DISTANCE) for width in itertools.islice(widths, MAX_IN_ROW))
+    return min(candidates, key=lambda rows: max(rows[1].width, rows[1].height * aspect), default=([], Extent(0.0, 0.0)))
+
+
 def pack(parts: Sequence[tuple[Layout, Sequence[int]]], links: int, aspect: float) -> Layout:
     """Several layouts side by side, as one layout.
 
@@ -71,7 +86,7 @@ def pack(parts: Sequence[tuple[Layout, Sequence[int]]], links: int, aspect: floa
         links: the number of links of the whole graph.
         aspect: the desired ratio of width to height.
     """
-    places, size = shelves([layout.size for layout, _ in parts], aspect)
+    places, size = _best_rows([layout.size for layout, _ in parts], aspect)
     boxes: dict[str, Box] = {}
     routes: dict[int, Route] = {}
     for (layout, indexes), (dx, dy) in zip(parts, places, strict=True):
