@@ -61,17 +61,13 @@ def tables_of(program: Program, goal: Goal, legend: Legend, transient: Iterable[
             written.update(dict.fromkeys(_cells(storage, program)))
         way_cell += written
         way_start.append(len(way_cell))
-    watch = [-1] * (program.instances + program.int_count + program.real_count)
-    for storage in legend.layout.storages:
-        for cell in _cells(storage, program):
-            watch[cell] = storage.watch
     settled = [cell for storage in transient for cell in _cells(storage, program)]
     settled += [program.instances + program.int_count + register for register in goal.sum_register]
     return Tables(
         array("i", way_start),
         array("i", way_cell),
         array("i", settled),
-        array("i", watch),
+        array("i", [-1]) * program.instances + program.cell_watch,
         *_dropped(program, legend, liveness),
         *_owners(program, legend, liveness),
     )
