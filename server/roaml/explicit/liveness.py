@@ -126,10 +126,16 @@ class _Analysis:
         self.reads = legend.reads
         self.instances = legend.layout.instances
         bits = {id(storage): 1 << number for number, storage in enumerate(legend.layout.storages)}
+        shared = {storage.name: bits[id(storage)] for storage in legend.layout.shared}
         self.scopes = [
-            {name: bits[id(meaning)] for name, meaning in instance.names.values.items() if id(meaning) in bits}
-            for instance in self.instances
+            {**shared, **{storage.name: bits[id(storage)] for storage in instance.own}} for instance in self.instances
         ]
+        self.locations: list[list[int]] = [[] for _ in self.instances]
+        for location, (number, _) in enumerate(legend.locations):
+            self.locations[number].append(location)
+        self.slots: list[list[int]] = [[] for _ in self.instances]
+        for number, slot in enumerate(legend.slots):
+            self.slots[slot.instance].append(number)
         self.location_of = {key: number for number, key in enumerate(legend.locations)}
         self.transient = sum(bits[id(storage)] for storage in transient)
         self.observed = sum(bits[id(storage)] for storage in legend.layout.shared if storage.name in observed)
@@ -292,16 +298,14 @@ class _Analysis:
     def _live(self, instance: int, owned: int) -> dict[int, int]:
         """For each location of an instance, those of its variables that are live there."""
         steps: dict[int, list[tuple[_Edge, list[_Part]]]] = {}
-        for number, slot in enumerate(self.legend.slots):
-            if slot.instance != instance:
-                continue
+        for number in self.slots[instance]:
             others = [
                 _joined([self.parts[other] for other in self.legend.vectors[vector][0] if other != number])
-                for vector in slot.vectors
+                for vector in self.legend.slots[number].vectors
             ]
             for location, edges in self.edges[number].items():
                 steps.setdefault(location, []).extend((edge, others) for edge in edges)
-        live = {location: 0 for location, (number, _) in enumerate(self.legend.locations) if number == instance}
+        live = dict.fromkeys(self.locations[instance], 0)
         is_growing = True
         while is_growing:
             is_growing = False
