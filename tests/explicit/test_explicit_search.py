@@ -144,6 +144,27 @@ def test_numbers_get_as_many_bits_as_they_need(last: int) -> None:
     assert sorted(key[1] for key in keys(space)) == list(range(-last, last + 1))
 
 
+@pytest.mark.parametrize("modules", [None, (plain_kernel(), plain_search())], ids=["compiled", "plain"])
+def test_counters_outgrow_their_bits_in_a_large_search(modules: Any) -> None:
+    """Random traces begin again too often to show how large the counters become, so thousands of states are packed
+    again. A counter that has no bits until then gets some."""
+    lasts = {"x": 40, "y": 130, "z": 1}
+    ups = [edge("l", way("l", **{n: op("+", n, 1)}), guard=op("<", n, last)) for n, last in lasts.items()]
+    late = edge("l", way("l", w=op("+", "w", 1)), guard=op("∧", op("=", "y", 130), op("<", "w", 9)))
+    again = edge("l", way("l", x=0, y=0, z=0, w=0))
+    written = document(
+        automaton("a", "l", [*ups, late, again]),
+        variables=[variable(name, initial=0) for name in [*lasts, "w"]],
+        properties={"p": probability(op("F", op("=", "w", 10)))},
+    )
+    space = space_of(written, StateLimits(reduces=False), modules)
+    expected = {
+        (x, y, z, w) for x in range(41) for y in range(131) for z in range(2) for w in range(10 if y == 130 else 1)
+    }
+    assert space.states == len(expected)
+    assert {key[1:5] for key in keys(space)} == expected
+
+
 @pytest.mark.parametrize("first", [(1 << 62) - 5, -(1 << 62)])
 def test_numbers_of_64_bits(first: int) -> None:
     """All states are kept apart, though the distance of two numbers needs more than 64 bits."""

@@ -11,6 +11,7 @@ ctypedef long long i64
 
 cdef u64 UINT64_MASK, HASH_1, HASH_2, UINT32_MASK, MAX_INT64
 cdef i64 MAX_COUNTED_STATES, SPARE_BITS_FROM_STATES
+cdef int MAX_SPREAD_BITS
 cdef int SAMPLED_TRACES, SAMPLED_STEPS, MAX_PASSED
 cdef int FALSE, TRUE, UNKNOWN, FAULTY
 cdef int TIME, STUCK
@@ -34,7 +35,7 @@ cdef class StateSearch:
     cdef int[::1] bits, word, shift, live_start, live, old_word, old_shift
     cdef u64[::1] mask, old_mask, room, now, following
     cdef public int words
-    cdef int misfit, has_learned, old_words
+    cdef int misfit, has_learned, old_words, unused
     cdef i64 misfit_value
     cdef double[::1] chance
     cdef int[::1] edges, edge_from, slots, picks, ways, moved, pending
@@ -43,7 +44,8 @@ cdef class StateSearch:
     cdef public i64 alone, passed
     cdef public u64[::1] keys
     cdef u64[::1] table
-    cdef u64 table_mask
+    cdef u64 table_mask, tag
+    cdef int table_shift
     cdef public i64[::1] start
     cdef public int[::1] parent, code
     cdef public unsigned char[::1] label
@@ -84,19 +86,27 @@ cdef class StateSearch:
     cdef void _fit(self, int cell, i64 value) noexcept
     @cython.locals(cell=int, i=int, old_keys=u64[::1], state=i64, source=i64, target=i64, code=u64)
     cdef void _repack(self) except *
+    @cython.locals(words=int, left=int, bits=int, cell=int)
+    cdef void _spread(self) except *
+    @cython.locals(words=int, used=int, cell=int, bits=int)
+    cdef int _words_needed(self) except -1
     @cython.locals(at=int, used=int, live=int, cell=int, bits=int)
     cdef void _lay_out(self) except *
     @cython.locals(value=u64, i=int)
     cdef u64 _hash_of(self, i64 at) noexcept
-    @cython.locals(state=i64, value=u64, at=u64)
-    cdef void _rehash(self, u64 size) except *
-    @cython.locals(value=u64, tag=u64, at=u64, entry=u64, state=i64, first=i64, i=int, same=int)
+    @cython.locals(size=u64, state=i64, tag=u64, at=u64)
+    cdef void _rehash(self) except *
+    @cython.locals(old_table=u64[::1], size=u64, i=u64, entry=u64, at=u64)
+    cdef void _double_table(self) except *
+    @cython.locals(value=u64, tag=u64, at=u64, entry=u64, first=i64, i=int, same=int)
+    cdef u64 _look_up(self) noexcept
+    @cython.locals(at=u64, state=i64, first=i64, i=int)
     cdef int _find(self, i64 parent) except? -9
     cdef i64 _used(self) noexcept
     cdef void _make_room(self) except *
     cdef int _emit(self, int word) except -1
     cdef int _number(self, double value) except -1
-    @cython.locals(value=u64, tag=u64, at=u64, entry=u64, state=i64, first=i64, i=int, same=int)
+    @cython.locals(state=i64)
     cdef int _known(self) noexcept
     @cython.locals(first=i64, w=int)
     cdef void _visit(self, i64 state) noexcept

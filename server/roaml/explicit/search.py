@@ -5,7 +5,8 @@
 - A state is packed into words of 64 bits. A *cell* (see `tables`) gets as many bits as its values so far require: none
   while its value does not change. If a value does not fit, the cell gets more bits, for which all states may have to be
   packed again.
-- A hash table with open addressing contains the numbers of the states, each with half of the hash of the state.
+- A hash table with open addressing contains the numbers of the states, each with half of the hash of the state. Its
+  upper bits are the index at which the search for the state begins.
 - The choices of a state are a sequence of 32-bit words. A word that is not negative is a choice with one destination.
   Other choices have n destinations, a weight other than 1, or a reward. These choices consist of `-n`, the number of
   its weight, the number of its reward, and for each destination a state and the number of its probability. These
@@ -34,6 +35,8 @@ UINT32_MASK = 0xFFFFFFFF
 MAX_INT64 = 0x7FFFFFFFFFFFFFFF
 SPARE_BITS_FROM_STATES = 4096
 """With more states than this, cells get more bits than they need, because packing all states again is slow."""
+MAX_SPREAD_BITS = 40
+"""Cells with more bits than this get no unused ones."""
 SAMPLED_TRACES, SAMPLED_STEPS = 32, 1000
 """The numbers of random traces, and of steps in each, from which the values that cells will have are estimated."""
 MAX_COUNTED_STATES = 0x7FFFFFF0
@@ -137,6 +140,7 @@ class StateSearch:
         self.following = array("Q", [0])
         self.misfit = -1
         self.misfit_value = 0
+        self.unused = 0
         self.has_learned = 0
 
         ways = len(self.kernel.way_target)
@@ -161,6 +165,8 @@ class StateSearch:
 
         self.keys = flat("Q", 64)
         self.table_mask = 255
+        self.table_shift = 24
+        self.tag = 0
         self.table = flat("Q", 256)
         self.start = flat("q", 64)
         self.parent = flat("i", 64)
@@ -516,6 +522,8 @@ class StateSearch:
 
     def _repack(self) -> None:
         """Pack all states again."""
+        if self.count > SPARE_BITS_FROM_STATES:
+            self._spread()
         self._lay_out()
         self.now = array("Q", [0] * self.words)
         self.following = array("Q", [0] * self.words)
@@ -530,7 +538,39 @@ class StateSearch:
                 code = (old_keys[source + self.old_word[cell]] >> self.old_shift[cell]) & self.old_mask[cell]
                 code = (code + self.old_low[cell] - self.low[cell]) & UINT64_MASK
                 self.keys[target + self.word[cell]] |= code << self.shift[cell]
-        self._rehash(self.table_mask + 1)
+        self._rehash()
+
+    def _spread(self) -> None:
+        """Give half of the bits that would be unused in the last word to variables, those with most bits first. When
+        one counter exceeds its bits, others often do so soon."""
+        words = self._words_needed()
+        left = self.unused // 2
+        for bits in range(MAX_SPREAD_BITS, 1, -1):
+            for cell in range(self.places, self.first_real):
+                if left == 0:
+                    return
+                if self.bits[cell] != bits:
+                    continue
+                self.bits[cell] += 1
+                if self._words_needed() > words:
+                    self.bits[cell] -= 1
+                    continue
+                self.room[cell] = 2 * self.room[cell] + 1
+                left -= 1
+
+    def _words_needed(self) -> int:
+        """The number of words in which all cells fit; `unused` becomes the number of bits that the last one has
+        left."""
+        words = 1
+        used = 0
+        for cell in range(self.cells):
+            bits = self.bits[cell]
+            if used + bits > 64:
+                words += 1
+                used = 0
+            used += bits
+        self.unused = 64 - used
+        return words
 
     def _lay_out(self) -> None:
         """Assign a word and a shift to each cell. The bits of a cell are in one word."""
@@ -570,42 +610,66 @@ class StateSearch:
             value ^= value >> 32
         return (value * HASH_2) & UINT64_MASK
 
-    def _rehash(self, size: int) -> None:
+    def _rehash(self) -> None:
+        """Fill the table anew, after the keys of the states have changed."""
+        size = self.table_mask + 1
         self.table = flat("Q", size)
-        self.table_mask = size - 1
         for state in range(self.count):
-            value = self._hash_of(state * self.words)
-            at = (value >> 7) & self.table_mask
+            tag = self._hash_of(state * self.words) >> 32
+            at = tag >> self.table_shift
             while self.table[at] != 0:
                 at = (at + 1) & self.table_mask
-            self.table[at] = ((value >> 32) << 32) | (state + 1)
+            self.table[at] = (tag << 32) | (state + 1)
 
-    def _find(self, parent: int) -> int:
-        """The number of the state with the key `following`, which is added if it has not been reached before. -1 if
-        this would exceed the maximum number of states or the maximum memory."""
+    def _double_table(self) -> None:
+        """Double the size of the table. Its entries move in ascending order, so the memory is accessed in order."""
+        old_table = self.table
+        size = self.table_mask + 1
+        self.table = flat("Q", 2 * size)
+        self.table_mask = 2 * size - 1
+        self.table_shift -= 1
+        for i in range(size):
+            entry = old_table[i]
+            if entry == 0:
+                continue
+            at = entry >> 32 >> self.table_shift
+            while self.table[at] != 0:
+                at = (at + 1) & self.table_mask
+            self.table[at] = entry
+
+    def _look_up(self) -> int:
+        """The index in the table of the state with the key `following`. If this state has not been stored, this is the
+        index where it will be, and `tag` is the half of its hash that is stored."""
         value = HASH_2
         for i in range(self.words):
             value = ((value ^ self.following[i]) * HASH_1) & UINT64_MASK
             value ^= value >> 32
-        value = (value * HASH_2) & UINT64_MASK
-        tag = value >> 32
-        state: int
-        at = (value >> 7) & self.table_mask
+        tag = ((value * HASH_2) & UINT64_MASK) >> 32
+        at = tag >> self.table_shift
         while True:
             entry = self.table[at]
             if entry == 0:
                 break
             if entry >> 32 == tag:
-                state = (entry & UINT32_MASK) - 1
-                first = state * self.words
+                first = ((entry & UINT32_MASK) - 1) * self.words
                 same = 1
                 for i in range(self.words):
                     if self.keys[first + i] != self.following[i]:
                         same = 0
                         break
                 if same != 0:
-                    return state
+                    break
             at = (at + 1) & self.table_mask
+        self.tag = tag
+        return at
+
+    def _find(self, parent: int) -> int:
+        """The number of the state with the key `following`, which is added if it has not been reached before. -1 if
+        this would exceed the maximum number of states or the maximum memory."""
+        at = self._look_up()
+        state: int = (self.table[at] & UINT32_MASK) - 1
+        if state >= 0:
+            return state
         state = self.count
         if state >= self.most_states:
             self.status = STATES
@@ -618,37 +682,16 @@ class StateSearch:
         for i in range(self.words):
             self.keys[first + i] = self.following[i]
         self.parent[state] = parent
-        self.table[at] = (tag << 32) | (state + 1)
+        self.table[at] = (self.tag << 32) | (state + 1)
         self.count += 1
         if self.count * 8 > self.table_mask * 5:
-            self._rehash((self.table_mask + 1) * 2)
+            self._double_table()
         return state
 
     def _known(self) -> int:
         """The number of the state with the key `following`; -1 if it has not been stored."""
-        value = HASH_2
-        for i in range(self.words):
-            value = ((value ^ self.following[i]) * HASH_1) & UINT64_MASK
-            value ^= value >> 32
-        value = (value * HASH_2) & UINT64_MASK
-        tag = value >> 32
-        state: int
-        at = (value >> 7) & self.table_mask
-        while True:
-            entry = self.table[at]
-            if entry == 0:
-                return -1
-            if entry >> 32 == tag:
-                state = (entry & UINT32_MASK) - 1
-                first = state * self.words
-                same = 1
-                for i in range(self.words):
-                    if self.keys[first + i] != self.following[i]:
-                        same = 0
-                        break
-                if same != 0:
-                    return state
-            at = (at + 1) & self.table_mask
+        state: int = (self.table[self._look_up()] & UINT32_MASK) - 1
+        return state
 
     def _used(self) -> int:
         """The bytes in use. Memory that was reserved but never written is not included."""
