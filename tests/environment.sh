@@ -43,8 +43,16 @@ make_environment() {
     fail "the Python module venv is missing: as root, 'apt-get install python3-venv'"
 }
 
+# Prints the files on which the installed extension modules depend. An old module might give wrong results.
+compiled_from() {
+    cat pyproject.toml setup.py
+    for types in server/roaml/*/*.pxd; do
+        cat "$types" "${types%.pxd}.py"
+    done
+}
+
 prepare() {
-    wanted=$(cat pyproject.toml setup.py server/roaml/smc/kernel.py server/roaml/smc/kernel.pxd | cksum)
+    wanted=$(compiled_from | cksum)
     case "$(cat .venv/prepared 2>/dev/null)" in
         "$wanted $1" | "$wanted [dev]") return ;;
     esac

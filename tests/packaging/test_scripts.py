@@ -70,6 +70,25 @@ def test_an_old_python_is_named(tmp_path: Path, tools: Path) -> None:
     )
 
 
+def test_changes_of_all_compiled_modules_are_noticed(tmp_path: Path, tools: Path) -> None:
+    tree = tmp_path / "tree"
+    (tree / "tests").mkdir(parents=True)
+    for name in ["pyproject.toml", "setup.py", "tests/environment.sh"]:
+        shutil.copy(ROOT / name, tree / name)
+    modules = re.findall(r'"(roaml\.\w+\.\w+)"', (ROOT / "setup.py").read_text())
+    files = [tree / f"server/{name.replace('.', '/')}{suffix}" for name in modules for suffix in (".py", ".pxd")]
+    for file in files:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / file.relative_to(tree), file)
+    script(tree / "sum_up", 'cd "$(dirname "$0")"\n. tests/environment.sh\ncompiled_from | cksum')
+    shown = {run(tree / "sum_up", environment={"PATH": str(tools)}).stdout}
+    for file in files:
+        file.write_text(file.read_text() + "\n")
+        shown.add(run(tree / "sum_up", environment={"PATH": str(tools)}).stdout)
+    assert len(modules) > 1
+    assert len(shown) == 1 + len(files)
+
+
 def test_no_python(tmp_path: Path, tools: Path) -> None:
     script(tools / "python3", "exit 127")
     done = prepared(tmp_path, tools)

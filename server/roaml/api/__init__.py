@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     from roaml.smc.choices import Choices, Extreme, ExtremeMethod
     from roaml.smc.end import End
     from roaml.smc.fault import FaultError
-    from roaml.smc.goal import CompiledProperty, Question, Threshold
+    from roaml.smc.goal import CompiledProperty, InitialFold, Question, Threshold
     from roaml.smc.lss import Search, Side
     from roaml.smc.model import ModelChecker
     from roaml.smc.pool import Pool, Pulse, WorkersLostError
@@ -100,7 +100,7 @@ else:
         "roaml.smc.choices": ("Choices", "Extreme", "ExtremeMethod"),
         "roaml.smc.end": ("End",),
         "roaml.smc.fault": ("FaultError",),
-        "roaml.smc.goal": ("CompiledProperty", "Question", "Threshold"),
+        "roaml.smc.goal": ("CompiledProperty", "InitialFold", "Question", "Threshold"),
         "roaml.smc.lss": ("Search", "Side"),
         "roaml.smc.model": ("ModelChecker",),
         "roaml.smc.pool": ("Pool", "Pulse", "WorkersLostError"),
@@ -152,6 +152,7 @@ __all__ = [
     "Extreme",
     "ExtremeMethod",
     "FaultError",
+    "InitialFold",
     "JaniError",
     "LineColumn",
     "LoadedSystem",
