@@ -112,6 +112,23 @@ def test_choices_name_automata_and_messages(robot: api.VerificationTarget) -> No
     assert sum(choice.probability for choice in session.choices()) == pytest.approx(1)
 
 
+def test_choices_say_to_which_time_the_clock_goes(robot: api.VerificationTarget) -> None:
+    """Listing the choices of a state does not change the run."""
+    session, other = (api.session(robot, "block_placed", seed=3) for _ in range(2))
+    times = set()
+    while (session.time or 0) < 4:
+        passing = [choice for choice in session.choices() if choice.text.startswith("time passes")]
+        for choice in passing:
+            fork = session.fork()
+            fork.step(choice)
+            assert choice.text == f"time passes to {fork.time:.3f} s"
+            times.add(fork.time)
+        session.step()
+        other.step()
+        assert session.state() == other.state()
+    assert {1.0, 2.0, 3.0} <= times
+
+
 def test_a_different_step_discards_later_steps(robot: api.VerificationTarget) -> None:
     session = api.session(robot, "block_placed", seed=3)
     session.until_decided()

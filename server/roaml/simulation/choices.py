@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from roaml.jani.expressions import Boolean, Integer, Name, Real
 from roaml.jani.model import Automaton, Destination, Edge
@@ -88,11 +88,14 @@ class _Part(Record, frozen=True):
     probabilities: tuple[float, ...]
 
 
-def choices(enabled: Sequence[Enabled], legend: Legend, events: EventReader) -> Iterator[Choice]:
+def choices(
+    enabled: Sequence[Enabled], legend: Legend, events: EventReader, time_after: Callable[[Decision], float | None]
+) -> Iterator[Choice]:
     """The choices of a state, at most `MAX_CHOICES`.
 
     Args:
         events: the reader of events, after it has read all steps up to this state.
+        time_after: returns the time of the clock in s after a step; `None` if the model has no clock.
     """
     total = sum(vector.ties * math.prod(len(slot.edges) for slot in vector.slots) for vector in enabled)
     number = 0
@@ -105,12 +108,17 @@ def choices(enabled: Sequence[Enabled], legend: Legend, events: EventReader) -> 
             actors = [part for part in parts if not events.is_event(part.automaton.name)]
             actors = [part for part in actors if not is_observer(part.automaton.name)] or actors
             action = legend.vectors[vector.vector][1] or ""
+            outcomes = tuple(_outcomes(vector.vector, picks, parts, legend, events))
+            if action == CLOCK_ACTION:
+                text = _time_text(time_after(outcomes[0].decision))
+            else:
+                text = _text(action, actors, parts, events, legend)
             yield Choice(
                 number,
-                _text(action, actors, parts, events, legend),
+                text,
                 tuple(part.automaton.name for part in (*actors, *(p for p in parts if p not in actors))),
                 vector.ties / total,
-                tuple(_outcomes(vector.vector, picks, parts, legend, events)),
+                outcomes,
                 (actors or parts)[0].edge.origin if parts else None,
                 len(actors) <= 1 and not sent_by(action) and not received_by(action) and action != CLOCK_ACTION,
             )
@@ -169,11 +177,13 @@ def _consequences(
         (destination,) = following[0].destinations
 
 
+def _time_text(time_s: float | None) -> str:
+    return "time passes" if time_s is None else f"time passes to {time_s:.3f} s"
+
+
 def _text(action: str, actors: Sequence[_Part], parts: Sequence[_Part], events: EventReader, legend: Legend) -> str:
     names = [who(part.automaton.name) for part in actors]
     clients = [instance.automaton.name for instance in legend.layout.instances]
-    if action == CLOCK_ACTION:
-        return "time passes"
     event = sent_by(action)
     spoken = event or received_by(action)
     description = tree_text(_listed(names), spoken, bool(event), events.parameters(spoken), clients) if names else ""

@@ -288,6 +288,14 @@ class Run:
         """The enabled synchronisation vectors."""
         return [Enabled(vector, ties, self._edges(vector, slots)) for vector, ties, slots in self._kernel.choices()]
 
+    def values_after(self, decision: Decision) -> list[tuple[RecordedVariable, Plain]]:
+        """The values of all variables after a possible next step, which is not taken."""
+        saved = self._kernel.save()
+        self._kernel.go(decision.vector, list(decision.picks), list(decision.ways))
+        values = self.values()
+        self._kernel.load(saved)
+        return values
+
     def _edges(self, vector: int, slots: Sequence[Sequence[Sequence[float]]]) -> tuple[EnabledEdges, ...]:
         program = self._program
         active = program.active_slot[program.active_start[vector] : program.active_start[vector + 1]]

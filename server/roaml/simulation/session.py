@@ -274,7 +274,16 @@ class Session:
 
     def choices(self) -> tuple[Choice, ...]:
         """The possible next steps, at most `MAX_CHOICES`."""
-        return tuple(choices(self._run.enabled(), self._run.legend, self._follower.events))
+        return tuple(choices(self._run.enabled(), self._run.legend, self._follower.events, self._time_after))
+
+    def _time_after(self, decision: Decision) -> float | None:
+        if self._clock is None:
+            return None
+        values = {variable.name: value for variable, value in self._run.values_after(decision) if variable.instance < 0}
+        seconds, nanoseconds = (values[name] for name in self._clock)
+        assert isinstance(seconds, (int, float))
+        assert isinstance(nanoseconds, (int, float))
+        return seconds + nanoseconds / 1e9
 
     def state(self) -> SystemState:
         """The state of the system."""
