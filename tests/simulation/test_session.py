@@ -14,7 +14,8 @@ import conformance
 from roaml import api
 from roaml.smc.record import VERDICTS, Recorder, Recording, TraceVerdict
 
-ROBOT = Path(__file__).parents[2] / "examples/assembly_robot/main_with_bug.xml"
+EXAMPLES = Path(__file__).parents[2] / "examples"
+ROBOT = EXAMPLES / "assembly_robot/main_with_bug.xml"
 TRACES = 5
 """The number of traces of each property that are replayed."""
 
@@ -127,6 +128,16 @@ def test_choices_say_to_which_time_the_clock_goes(robot: api.VerificationTarget)
         other.step()
         assert session.state() == other.state()
     assert {1.0, 2.0, 3.0} <= times
+
+
+def test_outcomes_show_computed_values() -> None:
+    session = api.session(api.as_target(api.load(str(EXAMPLES / "grid_world/main.xml"))), "arrives")
+    (choice,) = session.choices()
+    assert [outcome.text for outcome in choice.outcomes] == [
+        "x := 1, energy := 23",
+        "y := 1, energy := 23",
+        "energy := 23",
+    ]
 
 
 def test_a_different_step_discards_later_steps(robot: api.VerificationTarget) -> None:

@@ -10,9 +10,10 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Protocol, TypeGuard
 
-from roaml.jani.expressions import Boolean, Integer, Name, Real
+from roaml.jani.expressions import Boolean, Expression, Integer, Name, Real
 from roaml.jani.model import Automaton, Destination, Edge
 from roaml.jani.node import Origin
 from roaml.record import Record
@@ -78,24 +79,33 @@ class Choice(Record, frozen=True):
     is_internal: bool
 
 
+class Future(Protocol):
+    """The values after a possible next step, which is not taken."""
+
+    def values(self, decision: Decision) -> Mapping[tuple[int, str], Plain]:
+        """The values of all variables by the number of their instance, -1 for those of the model, and their name."""
+
+    def time_s(self, decision: Decision) -> float | None:
+        """The time of the clock in s; `None` if the model has no clock."""
+
+
 class _Part(Record, frozen=True):
-    """An automaton that takes part in a step, with its edge, the number of the first destination of this edge in the
-    kernel, and the probabilities of the destinations."""
+    """An automaton that takes part in a step, with the number of its instance, its edge, the number of the first
+    destination of this edge in the kernel, and the probabilities of the destinations."""
 
     automaton: Automaton
+    instance: int
     edge: Edge
     first_way: int
     probabilities: tuple[float, ...]
 
 
-def choices(
-    enabled: Sequence[Enabled], legend: Legend, events: EventReader, time_after: Callable[[Decision], float | None]
-) -> Iterator[Choice]:
+def choices(enabled: Sequence[Enabled], legend: Legend, events: EventReader, future: Future) -> Iterator[Choice]:
     """The choices of a state, at most `MAX_CHOICES`.
 
     Args:
         events: the reader of events, after it has read all steps up to this state.
-        time_after: returns the time of the clock in s after a step; `None` if the model has no clock.
+        future: the values after a step that is not taken.
     """
     total = sum(vector.ties * math.prod(len(slot.edges) for slot in vector.slots) for vector in enabled)
     number = 0
@@ -108,9 +118,9 @@ def choices(
             actors = [part for part in parts if not events.is_event(part.automaton.name)]
             actors = [part for part in actors if not is_observer(part.automaton.name)] or actors
             action = legend.vectors[vector.vector][1] or ""
-            outcomes = tuple(_outcomes(vector.vector, picks, parts, legend, events))
+            outcomes = tuple(_outcomes(vector.vector, picks, parts, legend, events, future))
             if action == CLOCK_ACTION:
-                text = _time_text(time_after(outcomes[0].decision))
+                text = _time_text(future.time_s(outcomes[0].decision))
             else:
                 text = _text(action, actors, parts, events, legend)
             yield Choice(
@@ -127,26 +137,55 @@ def choices(
 def _part(legend: Legend, slot: EnabledEdges, pick: int) -> _Part:
     first_way, probabilities = slot.edges[pick]
     edge, _ = legend.ways[first_way]
-    return _Part(legend.layout.instances[slot.instance].automaton, edge, first_way, probabilities)
+    return _Part(legend.layout.instances[slot.instance].automaton, slot.instance, edge, first_way, probabilities)
 
 
 def _outcomes(
-    vector: int, picks: tuple[int, ...], parts: Sequence[_Part], legend: Legend, events: EventReader
+    vector: int,
+    picks: tuple[int, ...],
+    parts: Sequence[_Part],
+    legend: Legend,
+    events: EventReader,
+    future: Future,
 ) -> Iterator[Outcome]:
     ways = [[way for way, chance in enumerate(part.probabilities) if chance > 0] for part in parts]
     is_certain = all(len(possible) == 1 for possible in ways)
     for taken in itertools.islice(itertools.product(*ways), MAX_OUTCOMES):
         probability = math.prod(part.probabilities[way] for part, way in zip(parts, taken, strict=True))
-        text = "" if is_certain else ", ".join(_effects(parts, taken, legend, events)) or "nothing changes"
-        yield Outcome(probability, text, Decision(vector, picks, taken))
+        decision = Decision(vector, picks, taken)
+        text = ""
+        if not is_certain:
+            text = ", ".join(_effects(parts, taken, legend, events, future.values(decision))) or "nothing changes"
+        yield Outcome(probability, text, decision)
 
 
-def _effects(parts: Sequence[_Part], taken: Sequence[int], legend: Legend, events: EventReader) -> Iterator[str]:
-    """The consequences of each destination that was drawn from several ones."""
+def _effects(
+    parts: Sequence[_Part],
+    taken: Sequence[int],
+    legend: Legend,
+    events: EventReader,
+    after: Mapping[tuple[int, str], Plain],
+) -> Iterator[str]:
+    """The consequences of each destination that was drawn from several ones.
+
+    Args:
+        after: the values after the step.
+    """
     clients = [instance.automaton.name for instance in legend.layout.instances]
     for part, way in zip(parts, taken, strict=True):
         if sum(chance > 0 for chance in part.probabilities) > 1:
-            yield from _consequences(part.automaton, legend.ways[part.first_way + way][1], clients, events)
+            destination = legend.ways[part.first_way + way][1]
+            for assignment in destination.assignments:
+                if isinstance(assignment.target, Name) and not _is_plain(assignment.value):
+                    name = assignment.target.identifier
+                    value = after.get((part.instance, name), after.get((-1, name)))
+                    if value is not None and not events.carries_event(name) and not is_length(name):
+                        yield f"{name} := {shown_value(value)}"
+            yield from _consequences(part.automaton, destination, clients, events)
+
+
+def _is_plain(value: Expression) -> TypeGuard[Boolean | Integer | Real]:
+    return isinstance(value, (Boolean, Integer, Real))
 
 
 def _consequences(
@@ -159,7 +198,7 @@ def _consequences(
     visited: set[str] = set()
     while True:
         for assignment in destination.assignments:
-            if isinstance(assignment.target, Name) and isinstance(assignment.value, (Boolean, Integer, Real)):
+            if isinstance(assignment.target, Name) and _is_plain(assignment.value):
                 variable = assignment.target.identifier
                 if not events.carries_event(variable) and not is_length(variable):
                     yield f"{variable} := {shown_value(assignment.value.value)}"
