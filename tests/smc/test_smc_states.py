@@ -49,7 +49,7 @@ def with_nodes(compiled: Compiled, memory: int = states.MAX_BYTES, *, plain: boo
 
 
 def assert_same(compiled: Compiled, traces: int, steps: int, memory: int = states.MAX_BYTES, questions: int = 1) -> Any:
-    """Compare nodes with the kernel; return the nodes."""
+    """Compare nodes with the kernel, also after traces under another scheduler; return the nodes."""
     task = Task(NO_PAYLOAD, 7, 0, traces, steps, 0, tuple(range(questions)))
     alone, nodes = Simulator(compiled, 0), with_nodes(compiled, memory)
     for first, size in ((0, 1), (1, traces), (traces + 1, 5)):
@@ -58,6 +58,7 @@ def assert_same(compiled: Compiled, traces: int, steps: int, memory: int = state
         assert results(actual) == results(expected)
         if expected.problem is not None:
             break
+        run_on(nodes, task._replace(size=2, scheduler=3))
     assert alone.batch is not None
     assert alone.batch.nodes == 0
     return nodes.batch

@@ -107,15 +107,6 @@ class Simulator:
         is_readable = states_compiled() or not kernel_compiled()
         self.rounds = Rounds(compiled)
         self.batch = TraceBatch(self.kernel, compiled.program, bytes, self.rounds) if is_readable else None
-        self._compiled = compiled
-        self._apart: Simulator | None = None
-
-    def apart(self) -> Simulator:
-        """A simulator with another kernel, for traces under sampled schedulers. They would change the state of this
-        kernel, on which the next trace over remembered states depends."""
-        if self._apart is None:
-            self._apart = Simulator(self._compiled, 0)
-        return self._apart
 
 
 class _Simulators(threading.local):
@@ -151,10 +142,8 @@ def run(task: Task, pulse: Callable[[int, int], None] | None = None) -> BatchOut
 def run_on(simulator: Simulator, task: Task, pulse: Callable[[int, int], None] | None = None) -> BatchOutcome:
     """Run the traces of a batch on a simulator that nothing else uses at the same time."""
     batch = simulator.batch
-    if batch is None:
+    if batch is None or task.scheduler != 0:
         return _run_on_kernel(simulator, task, pulse)
-    if task.scheduler != 0:
-        return _run_on_kernel(simulator.apart(), task, pulse)
     count = batch.run(task.seed, task.first, task.size, task.max_steps, task.questions, pulse)
     problem = None if count == task.size else TraceProblem(task.first + count, *simulator.kernel.problem())
     rewards = batch.rewards[:count]

@@ -96,7 +96,7 @@ class TraceBatch:
     """Generates batches of traces.
 
     Args:
-        kernel: the kernel for the program and a goal. Nothing else uses it at the same time.
+        kernel: the kernel for the program and a goal. Nothing else uses it during a batch.
         bytes: the maximum memory for nodes, in bytes; 0 if the kernel generates all traces.
         rounds: what examines long traces; `None` if they are not examined.
 
@@ -173,6 +173,7 @@ class TraceBatch:
             pulse: see `batch.run`.
         """
         count = len(questions)
+        self.is_kernel = 1  # The kernel is at no node: other traces may have used it since the last batch.
         self.kernel.choose(questions)
         self.verdicts = bytearray(size * count)
         self.ends = bytearray(size * count)
