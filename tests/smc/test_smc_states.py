@@ -168,6 +168,20 @@ def test_rewards_are_added_in_the_same_order(accumulate: list[str]) -> None:
     assert nodes.nodes > 20
 
 
+@pytest.mark.parametrize("accumulate", [["steps"], ["exit"], ["steps", "exit"]])
+def test_a_step_has_its_own_reward(accumulate: list[str]) -> None:
+    """The reward of a step is assigned by its destination; the reward for leaving a state is that of its location."""
+    stays = way("l", 0.5, x=op("+", "x", 1), r=op("/", "x", 8))
+    written = document(
+        automaton("a", "l m", [edge("l", way("m", 0.5, r=2), stays), edge("m", way("l", x=op("+", "x", 1), r=3))]),
+        variables=[variable("x"), variable("r", "real", 0.0, transient=True)],
+        properties=expected({"exp": "r", "accumulate": accumulate}, op("≥", "x", 9)),
+    )
+    for location, value in zip(written["automata"][0]["locations"], (5, 7), strict=True):
+        location["transient-values"] = [{"ref": "r", "value": value}]
+    assert_same(compiled_model(written), 50, 300)
+
+
 @pytest.mark.parametrize("place", ["value", "guard", "goal"])
 def test_an_undefined_operation_ends_the_same_trace(place: str) -> None:
     quotient = op("%", 7, op("-", 4, "x"))

@@ -102,7 +102,7 @@ cdef class TraceBatch:
     cdef int _here(self) except? -9
     @cython.locals(total=u64)
     cdef int _choice_count(self) noexcept
-    @cython.locals(flags=int, i=int, bits=int, reward=double)
+    @cython.locals(flags=int, i=int, bits=int, register=int)
     cdef void _describe(self, int node, int size) except *
     cdef i64 _used(self) noexcept
     cdef void _reserve(self, int count) except *

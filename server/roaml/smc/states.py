@@ -805,10 +805,8 @@ class TraceBatch:
                 flags = DECIDES
         self.cells[node + REWARD] = 0
         if self.has_exit != 0:
-            reward = self.kernel.reward
-            self.kernel._add_reward(self.kernel.exit_reward)
-            self.kernel.reward = reward
-            self.cells[node + REWARD] = self._number(self.kernel.added)
+            register = self.kernel._execute(self.kernel.exit_reward)
+            self.cells[node + REWARD] = self._number(self.kernel.reals[register])
         if self.kernel.fault != 0:
             # The kernel finds the undefined operation again, where it is relevant.
             self.kernel.fault = 0
