@@ -6,6 +6,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
+from bracketed_script import with_brackets
 from roaml.script.infer import Type, check_types, type_of
 from roaml.script.parse import ASSIGNMENTS, BINARY, COMPARISONS, MAX_DEPTH, MAX_PROBLEMS, UNARY, parse
 from roaml.script.tree import (
@@ -63,31 +64,6 @@ def larger(parts: st.SearchStrategy[Expr]) -> st.SearchStrategy[Expr]:
 SCRIPTS = st.lists(st.recursive(LEAVES, larger, max_leaves=12), min_size=1, max_size=3)
 
 
-def written(expr: Expr) -> str:
-    """An expression with parentheses around all its parts."""
-    match expr:
-        case Number(value=value):
-            return repr(value)
-        case Boolean(value=value):
-            return str(value).lower()
-        case String(value=value):
-            return f"'{value}'"
-        case Name(name=name):
-            return name
-        case Unary(operator=operator, operand=operand):
-            return f"{operator}({written(operand)})"
-        case Binary(operator=operator, left=left, right=right):
-            return f"({written(left)}) {operator} ({written(right)})"
-        case Comparison(operators=operators, operands=operands):
-            rest = (f" {operator} ({written(node)})" for operator, node in zip(operators, operands[1:], strict=True))
-            return f"({written(operands[0])}){''.join(rest)}"
-        case Conditional(test=test, yes=yes, no=no):
-            return f"({written(test)}) ? ({written(yes)}) : ({written(no)})"
-        case Assignment(operator=operator, target=target, value=value):
-            return f"{target.name} {operator} ({written(value)})"
-    return ""
-
-
 def structure(expr: Expr) -> object:
     """An expression without its places."""
     match expr:
@@ -101,7 +77,7 @@ def structure(expr: Expr) -> object:
 
 @given(SCRIPTS)
 def test_written_scripts_are_parsed_back(statements: list[Expr]) -> None:
-    script, problems = parse(Decoded("; ".join(map(written, statements)), 0))
+    script, problems = parse(Decoded("; ".join(map(with_brackets, statements)), 0))
     assert problems == ()
     assert [structure(statement) for statement in script.statements] == [
         structure(statement) for statement in statements
