@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import enum
 
-from roaml.jani.expressions import Expression, LValue
+from roaml.jani.expressions import ArrayAccess, Expression, LValue, Name
 from roaml.jani.node import CommentedNode, Node
 from roaml.jani.properties import Property
 from roaml.jani.types import Type
@@ -114,6 +114,14 @@ class Assignment(CommentedNode, frozen=True):
     target: LValue
     value: Expression
     index: int = 0
+
+    @property
+    def variable(self) -> str:
+        """The variable that the assignment writes completely or in part; "" if the target has no name."""
+        target: Expression = self.target
+        while isinstance(target, ArrayAccess):
+            target = target.array
+        return target.identifier if isinstance(target, Name) else ""
 
 
 class Destination(CommentedNode, frozen=True):

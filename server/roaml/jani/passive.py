@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.jani.expressions import ArrayAccess, Expression, Name
+from roaml.jani.expressions import Expression, Name
 from roaml.jani.expressions import walk as walk_expression
 from roaml.jani.model import Assignment, Automaton, Edge, Model
 from roaml.jani.properties import Formula, identifiers
@@ -27,7 +27,7 @@ def unread_variables(model: Model, *formulas: Formula) -> frozenset[str]:
             needed |= _read(automaton)
             continue
         for assignment in _assignments(automaton.edges):
-            target = _target(assignment)
+            target = assignment.variable
             written.add(target)
             sources.setdefault(target, set()).update(_names(assignment.target), _names(assignment.value))
     waiting = list(needed)
@@ -69,13 +69,13 @@ def without_passive(model: Model, *formulas: Formula) -> Model:
 
 def _without(automaton: Automaton, gone: frozenset[str]) -> Automaton:
     """The automaton without its assignments to the variables `gone`; `automaton` itself if there are none."""
-    if all(_target(assignment) not in gone for assignment in _assignments(automaton.edges)):
+    if all(assignment.variable not in gone for assignment in _assignments(automaton.edges)):
         return automaton
     edges = tuple(
         replace(
             edge,
             destinations=tuple(
-                replace(d, assignments=tuple(a for a in d.assignments if _target(a) not in gone))
+                replace(d, assignments=tuple(a for a in d.assignments if a.variable not in gone))
                 for d in edge.destinations
             ),
         )
@@ -99,14 +99,6 @@ def _follows(automaton: Automaton) -> bool:
 
 def _assignments(edges: tuple[Edge, ...]) -> Iterator[Assignment]:
     return (a for edge in edges for destination in edge.destinations for a in destination.assignments)
-
-
-def _target(assignment: Assignment) -> str:
-    """The variable that an assignment writes completely or in part."""
-    target: Expression = assignment.target
-    while isinstance(target, ArrayAccess):
-        target = target.array
-    return target.identifier if isinstance(target, Name) else ""
 
 
 def _read(automaton: Automaton) -> set[str]:

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from typing import TypeAlias
 
-from roaml.jani.expressions import ArrayAccess, Boolean, Expression, Name
+from roaml.jani.expressions import Boolean
 from roaml.jani.model import Action, Assignment, Edge, Function, Model, Sync
 from roaml.jani.nesting import is_nested
 from roaml.jani.node import Node
@@ -204,13 +204,7 @@ def _writing_steps(model: Model, names: AbstractSet[str]) -> set[_Step]:
 
 
 def _writes(edge: Edge, names: AbstractSet[str]) -> bool:
-    return any(_root(a.target) in names for destination in edge.destinations for a in destination.assignments)
-
-
-def _root(target: Expression) -> str:
-    while isinstance(target, ArrayAccess):
-        target = target.array
-    return target.identifier if isinstance(target, Name) else ""
+    return any(a.variable in names for destination in edge.destinations for a in destination.assignments)
 
 
 def _with_named_steps(model: Model, names: AbstractSet[str]) -> Model:
