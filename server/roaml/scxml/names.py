@@ -122,11 +122,11 @@ _TREE_EVENT = re.compile(r"bt_(\d+)(?:_inner\d*)?_(tick|response|halt|halt_respo
 _OBSERVER_SUFFIX = "__observer"
 """The end of the name of the automaton that observes a property in XML (docs/spec/jani.md#observers)."""
 STATUSES = {"SUCCESS": 1, "FAILURE": 2, "RUNNING": 3}
+"""The statuses of a tree node and their numbers (docs/spec/plugins.md#status)."""
 _SKIPPED = "SKIPPED"
 STATUS_NAMES = {**{number: name for name, number in STATUSES.items()}, 4: _SKIPPED, 5: _SKIPPED}
 """The number of a status that a node returns -> the name of the status. A node returns SKIPPED only in trees that are
 executed as by the library (docs/spec/nodes.md#library)."""
-"""The statuses of a tree node and their numbers (docs/spec/plugins.md#status)."""
 TOPIC_PREFIX, SERVICE_PREFIX, ACTION_PREFIX = "topic_", "srv_", "action_"
 CANCEL_PREFIX = "cancel_action_"
 """The beginning of the name of an event that requests to cancel a goal of an action."""
