@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from smc_models import automaton, document, edge, model, op, variable, way
+from smc_models import at, automaton, document, edge, model, op, variable, way, ways
 
 import conformance
 from roaml import api
@@ -138,6 +138,60 @@ def test_outcomes_show_computed_values() -> None:
         "y := 1, energy := 23",
         "energy := 23",
     ]
+
+
+STRUCT = {
+    "main.xml": """<roaml>
+    <parameters><max_time value="9" unit="s" /></parameters>
+    <data_declarations><input type="xml" src="types.xml" /></data_declarations>
+    <node_models><input type="node-ascxml" src="robot.ascxml" /></node_models>
+    <properties><input type="jani" src="properties.jani" /></properties>
+</roaml>""",
+    "properties.jani": '{"properties": []}',
+    "types.xml": """<types>
+    <struct id="Pose"><member id="x" type="int32" /><member id="y" type="int32" /></struct>
+</types>""",
+    "robot.ascxml": """<ascxml name="Robot" version="1.0" initial="driving">
+    <datamodel>
+        <data id="pose" type="Pose" expr="{'x': 3, 'y': 0}" />
+        <data id="count" type="int32" expr="0" />
+    </datamodel>
+    <ros_time_rate name="second" rate_hz="1" />
+    <state id="driving">
+        <ros_rate_callback name="second">
+            <target id="driving" prob="0.5"><assign location="pose.x" expr="pose.x + 1" /></target>
+            <target id="driving" prob="0.5"><assign location="pose.y" expr="7" /></target>
+        </ros_rate_callback>
+    </state>
+</ascxml>""",
+}
+
+
+def test_outcomes_name_members_of_structs(tmp_path: Path) -> None:
+    for name, text in STRUCT.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    session = api.session(api.as_target(api.load(str(tmp_path / "main.xml"))))
+    while not (drawn := [choice for choice in session.choices() if len(choice.outcomes) > 1]):
+        session.step()
+    texts = [outcome.text for outcome in drawn[0].outcomes]
+    assert texts == ["pose.x := 4, Robot enters `driving`", "pose.y := 7, Robot enters `driving`"]
+
+
+def test_outcomes_show_elements_of_arrays_and_failures() -> None:
+    """The text of an outcome that fails states why. Listing the choices changes nothing."""
+    array = {"kind": "array", "base": "int"}
+    element = ways("a", [(at("cells", 1), op("+", "x", 5), 0)], 0.5)
+    division = way("a", 0.5, x=op("floor", op("/", 1, "x")))
+    constructor = {"op": "ac", "var": "i", "length": 2, "exp": 0}
+    variables = [variable("x"), variable("cells", array, constructor)]
+    session = api.session(model(document(automaton("A", "a", [edge("a", element, division)]), variables=variables)))
+    for _ in range(2):
+        (choice,) = session.choices()
+        texts = [outcome.text for outcome in choice.outcomes]
+        assert texts == ["cells := [0, 5]", "the step fails: division by zero"]
+    session.step(choice, choice.outcomes[0])
+    with pytest.raises(api.FaultError, match="division by zero"):
+        session.step(choice, choice.outcomes[1])
 
 
 def test_a_different_step_discards_later_steps(robot: api.VerificationTarget) -> None:

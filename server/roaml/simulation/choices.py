@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Protocol, TypeGuard
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import TypeAlias
 
-from roaml.jani.expressions import Boolean, Expression, Integer, Name, Real
-from roaml.jani.model import Automaton, Destination, Edge
+from roaml.jani.expressions import Boolean, Integer, Name, Real
+from roaml.jani.model import Assignment, Automaton, Destination, Edge
 from roaml.jani.node import Origin
 from roaml.record import Record
 from roaml.scxml.events import Role
@@ -28,10 +28,11 @@ from roaml.scxml.names import (
     received_by,
     sent_by,
 )
-from roaml.simulation.run import Decision, Enabled, EnabledEdges
+from roaml.simulation.run import Decision, EnabledEdges, Run
 from roaml.simulation.words import resting, tree_text, who
 from roaml.smc.compile import Legend
-from roaml.smc.record import Plain
+from roaml.smc.fault import FaultError
+from roaml.smc.record import Plain, RecordedVariable
 from roaml.views.event_words import event_phrase
 from roaml.views.events import EventReader
 from roaml.views.locations import states_of
@@ -79,14 +80,8 @@ class Choice(Record, frozen=True):
     is_internal: bool
 
 
-class Future(Protocol):
-    """The values after a possible next step, which is not taken."""
-
-    def values(self, decision: Decision) -> Mapping[tuple[int, str], Plain]:
-        """The values of all variables by the number of their instance, -1 for those of the model, and their name."""
-
-    def time_s(self, decision: Decision) -> float | None:
-        """The time of the clock in s; `None` if the model has no clock."""
+Phrases: TypeAlias = Callable[[str], Mapping[str, str]]
+"""The name of an automaton -> phrases for those of its variables whose names are not those of the user."""
 
 
 class _Part(Record, frozen=True):
@@ -100,13 +95,14 @@ class _Part(Record, frozen=True):
     probabilities: tuple[float, ...]
 
 
-def choices(enabled: Sequence[Enabled], legend: Legend, events: EventReader, future: Future) -> Iterator[Choice]:
+def choices(run: Run, events: EventReader, phrases: Phrases, clock: Sequence[str]) -> Iterator[Choice]:
     """The choices of a state, at most `MAX_CHOICES`.
 
     Args:
         events: the reader of events, after it has read all steps up to this state.
-        future: the values after a step that is not taken.
+        clock: the variables of the model with its time in s and the rest in ns; empty if it has no clock.
     """
+    enabled, legend = run.enabled(), run.legend
     total = sum(vector.ties * math.prod(len(slot.edges) for slot in vector.slots) for vector in enabled)
     number = 0
     for vector in enabled:
@@ -118,9 +114,9 @@ def choices(enabled: Sequence[Enabled], legend: Legend, events: EventReader, fut
             actors = [part for part in parts if not events.is_event(part.automaton.name)]
             actors = [part for part in actors if not is_observer(part.automaton.name)] or actors
             action = legend.vectors[vector.vector][1] or ""
-            outcomes = tuple(_outcomes(vector.vector, picks, parts, legend, events, future))
+            outcomes = tuple(_outcomes(run, vector.vector, picks, parts, events, phrases))
             if action == CLOCK_ACTION:
-                text = _time_text(future.time_s(outcomes[0].decision))
+                text = _time_text(_time_after(run, outcomes[0].decision, clock))
             else:
                 text = _text(action, actors, parts, events, legend)
             yield Choice(
@@ -141,67 +137,72 @@ def _part(legend: Legend, slot: EnabledEdges, pick: int) -> _Part:
 
 
 def _outcomes(
-    vector: int,
-    picks: tuple[int, ...],
-    parts: Sequence[_Part],
-    legend: Legend,
-    events: EventReader,
-    future: Future,
+    run: Run, vector: int, picks: tuple[int, ...], parts: Sequence[_Part], events: EventReader, phrases: Phrases
 ) -> Iterator[Outcome]:
     ways = [[way for way, chance in enumerate(part.probabilities) if chance > 0] for part in parts]
     is_certain = all(len(possible) == 1 for possible in ways)
     for taken in itertools.islice(itertools.product(*ways), MAX_OUTCOMES):
         probability = math.prod(part.probabilities[way] for part, way in zip(parts, taken, strict=True))
         decision = Decision(vector, picks, taken)
-        text = ""
-        if not is_certain:
-            text = ", ".join(_effects(parts, taken, legend, events, future.values(decision))) or "nothing changes"
+        text = "" if is_certain else ", ".join(_effects(run, decision, parts, events, phrases)) or "nothing changes"
         yield Outcome(probability, text, decision)
 
 
 def _effects(
-    parts: Sequence[_Part],
-    taken: Sequence[int],
-    legend: Legend,
-    events: EventReader,
-    after: Mapping[tuple[int, str], Plain],
+    run: Run, decision: Decision, parts: Sequence[_Part], events: EventReader, phrases: Phrases
 ) -> Iterator[str]:
-    """The consequences of each destination that was drawn from several ones.
+    """The consequences of each destination that was drawn from several ones, or the reason why the step fails."""
+    destinations = [
+        (part, run.legend.ways[part.first_way + way][1])
+        for part, way in zip(parts, decision.ways, strict=True)
+        if sum(chance > 0 for chance in part.probabilities) > 1
+    ]
+    computed = {
+        RecordedVariable(instance, assignment.variable)
+        for part, destination in destinations
+        for assignment in destination.assignments
+        if _constant(assignment) is None
+        for instance in (part.instance, -1)
+    }
+    try:
+        after = run.values_after(decision, computed) if computed else {}
+    except FaultError as fault:
+        yield f"the step fails: {fault.message}"
+        return
+    clients = [instance.automaton.name for instance in run.legend.layout.instances]
+    for part, destination in destinations:
+        values = {variable.name: value for variable, value in after.items() if variable.instance in (-1, part.instance)}
+        yield from _consequences(part.automaton, destination, values, clients, events, phrases(part.automaton.name))
 
-    Args:
-        after: the values after the step.
-    """
-    clients = [instance.automaton.name for instance in legend.layout.instances]
-    for part, way in zip(parts, taken, strict=True):
-        if sum(chance > 0 for chance in part.probabilities) > 1:
-            destination = legend.ways[part.first_way + way][1]
-            for assignment in destination.assignments:
-                if isinstance(assignment.target, Name) and not _is_plain(assignment.value):
-                    name = assignment.target.identifier
-                    value = after.get((part.instance, name), after.get((-1, name)))
-                    if value is not None and not events.carries_event(name) and not is_length(name):
-                        yield f"{name} := {shown_value(value)}"
-            yield from _consequences(part.automaton, destination, clients, events)
 
-
-def _is_plain(value: Expression) -> TypeGuard[Boolean | Integer | Real]:
-    return isinstance(value, (Boolean, Integer, Real))
+def _constant(assignment: Assignment) -> Plain | None:
+    """The constant to which an assignment sets a variable, known before the step; `None` for another assignment."""
+    if isinstance(assignment.target, Name) and isinstance(assignment.value, (Boolean, Integer, Real)):
+        return assignment.value.value
+    return None
 
 
 def _consequences(
-    automaton: Automaton, destination: Destination, clients: Sequence[str], events: EventReader
+    automaton: Automaton,
+    destination: Destination,
+    after: Mapping[str, Plain],
+    clients: Sequence[str],
+    events: EventReader,
+    phrases: Mapping[str, str],
 ) -> Iterator[str]:
     """Descriptions of what an automaton does after a destination, up to a state in which it waits or to the next
-    branch."""
+    branch.
+
+    Args:
+        after: the values of the variables that the destination computes.
+    """
     rest, states = resting(automaton), states_of(automaton)
     name = who(automaton.name)
     visited: set[str] = set()
     while True:
-        for assignment in destination.assignments:
-            if isinstance(assignment.target, Name) and _is_plain(assignment.value):
-                variable = assignment.target.identifier
-                if not events.carries_event(variable) and not is_length(variable):
-                    yield f"{variable} := {shown_value(assignment.value.value)}"
+        for variable, value in _assigned(destination, after).items():
+            if not events.carries_event(variable) and not is_length(variable):
+                yield f"{phrases.get(variable, variable)} := {shown_value(value)}"
         location = destination.location
         following = [edge for edge in automaton.edges if edge.source == location]
         if location in rest:
@@ -213,7 +214,28 @@ def _consequences(
         event = sent_by(following[0].action or "")
         if event:
             yield f"{name} sends {event_phrase(event, clients)}"
-        (destination,) = following[0].destinations
+        (destination,), after = following[0].destinations, {}
+
+
+def _assigned(destination: Destination, after: Mapping[str, Plain]) -> dict[str, Plain]:
+    """The variables that a destination sets, with their values as far as they are known."""
+    values: dict[str, Plain] = {}
+    for assignment in destination.assignments:
+        value = after.get(assignment.variable, _constant(assignment))
+        if value is not None:
+            values[assignment.variable] = value
+    return values
+
+
+def _time_after(run: Run, decision: Decision, clock: Sequence[str]) -> float | None:
+    """The time of the clock in s after a step; `None` if it is not known."""
+    variables = [RecordedVariable(-1, name) for name in clock]
+    try:
+        values = run.values_after(decision, variables)
+    except FaultError:
+        return None
+    numbers = [value for variable in variables if isinstance(value := values[variable], (int, float))]
+    return numbers[0] + numbers[1] / 1e9 if numbers else None
 
 
 def _time_text(time_s: float | None) -> str:

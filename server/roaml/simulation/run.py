@@ -7,7 +7,7 @@ back restores the last snapshot before the position and replays the steps from t
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from typing import Any, NamedTuple
 
 from roaml.record import Record
@@ -288,13 +288,22 @@ class Run:
         """The enabled synchronisation vectors."""
         return [Enabled(vector, ties, self._edges(vector, slots)) for vector, ties, slots in self._kernel.choices()]
 
-    def values_after(self, decision: Decision) -> list[tuple[RecordedVariable, Plain]]:
-        """The values of all variables after a possible next step, which is not taken."""
+    def values_after(
+        self, decision: Decision, variables: Collection[RecordedVariable]
+    ) -> dict[RecordedVariable, Plain]:
+        """The values of variables after a possible next step, which is not taken.
+
+        Raises:
+            FaultError: the model executes an undefined operation in the step.
+        """
+        storages = {variable: storage for variable, storage in self._reader.variables if variable in variables}
         saved = self._kernel.save()
-        self._kernel.go(decision.vector, list(decision.picks), list(decision.ways))
-        values = self.values()
-        self._kernel.load(saved)
-        return values
+        try:
+            if self._kernel.go(decision.vector, list(decision.picks), list(decision.ways)) == FAULTY:
+                raise self.checker.fault(TraceProblem(self.trace, *self._kernel.problem()))
+            return dict(zip(storages, self._reader.values(list(storages.values())), strict=True))
+        finally:
+            self._kernel.load(saved)
 
     def _edges(self, vector: int, slots: Sequence[Sequence[Sequence[float]]]) -> tuple[EnabledEdges, ...]:
         program = self._program

@@ -106,26 +106,6 @@ MAX_STEPS = 10_000_000
 """The maximum number of steps of a run."""
 
 
-class _Future:
-    """The values after a possible next step of a run (`choices.Future`)."""
-
-    def __init__(self, run: Run, clock: tuple[str, str] | None) -> None:
-        self._run = run
-        self._clock = clock
-
-    def values(self, decision: Decision) -> Mapping[tuple[int, str], Plain]:
-        return {(v.instance, v.name): value for v, value in self._run.values_after(decision)}
-
-    def time_s(self, decision: Decision) -> float | None:
-        if self._clock is None:
-            return None
-        values = self.values(decision)
-        seconds, nanoseconds = (values[-1, name] for name in self._clock)
-        assert isinstance(seconds, (int, float))
-        assert isinstance(nanoseconds, (int, float))
-        return seconds + nanoseconds / 1e9
-
-
 class Session:
     """A position in a run.
 
@@ -294,8 +274,7 @@ class Session:
 
     def choices(self) -> tuple[Choice, ...]:
         """The possible next steps, at most `MAX_CHOICES`."""
-        future = _Future(self._run, self._clock)
-        return tuple(choices(self._run.enabled(), self._run.legend, self._follower.events, future))
+        return tuple(choices(self._run, self._follower.events, self.phrases, self.clock))
 
     def state(self) -> SystemState:
         """The state of the system."""
