@@ -16,6 +16,7 @@ from setuptools.command.build_py import build_py
 SCHEMAS = Path(__file__).parent / "schemas"
 COMPILED = (
     "roaml.smc.kernel",
+    "roaml.smc.counts",
     "roaml.smc.states",
     "roaml.explicit.ample",
     "roaml.explicit.search",

@@ -29,7 +29,8 @@ from as2fm_lsp.cli.progress_bar import line, search_line
 from roaml import api
 from roaml.smc.goal import Question
 from roaml.smc.lss import Search, SelectedScheduler, Side
-from roaml.smc.run import EstimationMethod, Options, Tally
+from roaml.smc.run import EstimationMethod, Options
+from roaml.smc.tally import Tally
 from roaml.verification.expectations import parse
 from timeouts import TIMEOUT_S
 

@@ -17,7 +17,8 @@ from roaml.smc.batch import Task, run
 from roaml.smc.end import End
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool
-from roaml.smc.run import Answer, EstimationMethod, Options, Tally
+from roaml.smc.run import Answer, EstimationMethod, Options
+from roaml.smc.tally import Tally
 from stuck_models import CROSSED, hospital, system
 
 FINALLY = {"p": probability(op("F", op("=", "x", 9)))}

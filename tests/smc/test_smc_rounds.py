@@ -18,8 +18,9 @@ from roaml.smc.pool import Pool
 from roaml.smc.program import TRUE, UNKNOWN
 from roaml.smc.record import Recorder, Recording
 from roaml.smc.rounds import FIRST_CHECK, Rounds, limits
-from roaml.smc.run import EstimationMethod, Options, Tally
+from roaml.smc.run import EstimationMethod, Options
 from roaml.smc.states import MAX_BYTES
+from roaml.smc.tally import Tally
 
 NEVER, ODD = op("=", "x", 9), op("=", "x", 1)
 TOGGLE = [edge("a", way("b", x=1)), edge("b", way("a", x=0))]

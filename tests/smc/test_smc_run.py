@@ -7,13 +7,14 @@ import importlib
 import json
 import multiprocessing
 import os
+import shutil
 import signal
 import tracemalloc
 from array import array
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from threading import Barrier
-from typing import Any, NamedTuple
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -21,16 +22,18 @@ from hypothesis import strategies as st
 from scipy.stats import binom
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
-from roaml.record import replace
-from roaml.smc.batch import BatchOutcome, Rows, Simulator, Task, run, simulator_of
+from roaml.explicit.plain import plain_counts
+from roaml.smc import counts
+from roaml.smc.batch import BatchOutcome, Counting, Rows, Simulator, Task, run, simulator_of
+from roaml.smc.end import End
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import Question
+from roaml.smc.goal import Activity
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import MAX_CONSECUTIVE_LOSSES, Alone, Pool, WorkersLostError
-from roaml.smc.program import FALSE, TRUE
-from roaml.smc.run import Answer, EstimationMethod, Options, Tally
-from roaml.smc.run import _add as add_rows
+from roaml.smc.program import FALSE, TRUE, UNKNOWN
+from roaml.smc.run import Answer, EstimationMethod, Options
 from roaml.smc.statistics import okamoto
+from roaml.smc.tally import MAX_KEPT_TRACES, REJECTED, Ended, StoredTrace, Tally
 
 
 def coin(p: float = 0.3, extra: int = 0) -> Json:
@@ -340,30 +343,77 @@ def test_progress_is_reported_during_long_traces() -> None:
     assert calls[0][1] < calls[1][1] < calls[2][1]
 
 
-class Batch(NamedTuple):
-    """The traces of a batch: verdict, reason of the end, activity and number of steps of each."""
-
-    traces: list[tuple[int, int, int, int]]
-
-    @property
-    def rows(self) -> Rows:
-        verdicts, ends, activities, steps = zip(*self.traces, strict=True)
-        return Rows(
-            bytes(verdicts), bytes(ends), array("q", steps), bytes(activities), array("d", bytes(8 * len(steps)))
-        )
+Trace = tuple[int, int, int, int, float]
+"""The verdict on a trace, the reason of its end, its activity, its number of steps and its reward."""
+TRACE = st.tuples(
+    st.sampled_from([FALSE, TRUE, UNKNOWN, REJECTED]), st.integers(0, 8), st.integers(0, 2), st.integers(0, 30),
+    st.floats(-100, 100),
+)  # fmt: skip
 
 
-TRACE = st.tuples(st.integers(0, 2), st.integers(0, 7), st.integers(0, 2), st.integers(0, 30))
+def rows_of(traces: Sequence[Trace]) -> Rows:
+    verdicts, ends, activities, steps, rewards = zip(*traces, strict=True)
+    return Rows(bytes(verdicts), bytes(ends), array("q", steps), bytes(activities), array("d", rewards))
 
 
-@given(st.lists(st.lists(TRACE, min_size=1, max_size=30).map(Batch), min_size=1, max_size=4), st.booleans())
-def test_traces_are_added_together_as_one_by_one(batches: list[Batch], can_be_late: bool) -> None:
-    question = Question("p", "Pmin", False, None, (), can_be_late=can_be_late)
-    # The order is relevant for rewards, so these traces are added one by one.
-    in_order = replace(question, is_reward=True)
-    together, single = Tally(), Tally()
+def counted_one_by_one(traces: Sequence[Trace], first: int, can_be_late: bool) -> Tally:
+    tally = Tally()
+    for trace, (verdict, end, activity, steps, reward) in enumerate(traces, first):
+        tally.steps += steps
+        if verdict == REJECTED:
+            tally.rejected += 1
+            continue
+        tally.traces += 1
+        tally.successes += verdict == TRUE
+        tally.undecided += verdict == UNKNOWN
+        tally.late += verdict == FALSE and end == End.TIME and can_be_late
+        tally.closed += activity == Activity.CLOSED
+        tally.idle += activity == Activity.IDLE
+        if verdict == TRUE:
+            tally.mean = tally.mean.add(reward)
+        seen = StoredTrace(trace, steps)
+        if len(tally.examples[verdict]) < MAX_KEPT_TRACES:
+            tally.examples[verdict].append(seen)
+        if verdict not in tally.shortest or steps < tally.shortest[verdict].steps:
+            tally.shortest[verdict] = seen
+        ended = tally.ends.setdefault(End(end), Ended(0, seen))
+        ended.count += 1
+        if steps < ended.shortest.steps:
+            ended.shortest = seen
+    return tally
+
+
+@pytest.mark.parametrize("is_plain", [False, True])
+@given(st.lists(st.lists(TRACE, min_size=1, max_size=30), min_size=1, max_size=4), st.booleans())
+def test_batches_that_are_counted_together_are_counted_as_one_by_one(
+    is_plain: bool, batches: list[list[Trace]], can_be_late: bool
+) -> None:
+    traces = [trace for batch in batches for trace in batch]
+    expected = counted_one_by_one(traces, 5, can_be_late)
+    count = (plain_counts() if is_plain else counts).count
+    tally = Tally()
     for batch in batches:
-        add_rows(together, [batch.rows], question, Options(), 5)
-        add_rows(single, [batch.rows], in_order, Options(), 5)
-    single.mean = together.mean
-    assert together.to_json() == single.to_json()
+        rows = rows_of(batch)
+        columns = rows.verdicts, rows.ends, rows.steps, rows.activities, rows.rewards
+        tally.add(count(*columns, 5 + tally.simulated, tally.room(), can_be_late))
+    assert tally.mean.number == expected.mean.number
+    assert tally.mean.mean == pytest.approx(expected.mean.mean, abs=1e-9)
+    assert tally.mean.squares == pytest.approx(expected.mean.squares, abs=1e-6)
+    tally.mean = expected.mean
+    assert tally.to_json() == expected.to_json()
+
+
+def test_only_as_many_examples_are_counted_as_there_is_room_for() -> None:
+    rows = rows_of([(TRUE, End.DECIDED, Activity.TRIGGERED, 3, 0.0)] * (MAX_KEPT_TRACES - 10))
+    counting = Counting((0,), (0, MAX_KEPT_TRACES, 0))
+    tally = Tally()
+    # Two batches whose tasks were made when no example was stored.
+    for first in (0, MAX_KEPT_TRACES - 10):
+        tally.add(rows.tally(counting, first))
+    assert [example.trace for example in tally.examples[TRUE]] == list(range(MAX_KEPT_TRACES))
+    assert rows.tally(Counting((0,), tally.room()), 0).examples[TRUE] == []
+
+
+def test_counting_is_compiled() -> None:
+    assert counts.compiled() or shutil.which("cc") is None, "pip install -e . compiles it"
+    assert not plain_counts().compiled()

@@ -16,7 +16,8 @@ from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool
 from roaml.smc.program import FALSE, FAULTY, UNKNOWN, Compiled, merged
-from roaml.smc.run import Answer, EstimationMethod, Options, Tally
+from roaml.smc.run import Answer, EstimationMethod, Options
+from roaml.smc.tally import Tally
 
 QUESTIONS: dict[str, Json] = {
     "soon": op("F", op("=", "x", 2)),

@@ -22,6 +22,7 @@ from as2fm_lsp.atomic_write import write_file
 PACKAGE = Path(roaml.__file__).parent
 MODULES = (
     "smc/kernel",
+    "smc/counts",
     "smc/states",
     "explicit/ample",
     "explicit/search",

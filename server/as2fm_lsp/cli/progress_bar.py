@@ -11,7 +11,8 @@ from as2fm_lsp.cli.status_line import StatusLine
 from roaml.record import replace
 from roaml.smc.goal import Question
 from roaml.smc.lss import Search
-from roaml.smc.run import Options, Tally, bounds_of, trace_count
+from roaml.smc.run import Options, bounds_of, trace_count
+from roaml.smc.tally import Tally
 
 BAR_CHARACTERS = 20
 

@@ -51,7 +51,8 @@ from roaml.smc.goal import CompiledProperty
 from roaml.smc.lss import Search
 from roaml.smc.pool import Pool, WorkersLostError
 from roaml.smc.program import FALSE
-from roaml.smc.run import EstimationMethod, Options, Tally
+from roaml.smc.run import EstimationMethod, Options
+from roaml.smc.tally import Tally
 from roaml.text import Location, SourceFile, Span
 from roaml.verification import stuck
 from roaml.verification.counterexample import unwanted_trace, unwanted_verdict

@@ -30,7 +30,8 @@ from roaml.record import replace
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import STUCK_PROPERTY, CompiledProperty
 from roaml.smc.pool import WorkersLostError
-from roaml.smc.run import Tally, summary
+from roaml.smc.run import summary
+from roaml.smc.tally import Tally
 from roaml.text import Location
 from roaml.verification import stuck
 from roaml.verification.expectations import RangeError, check_range

@@ -7,7 +7,8 @@ from __future__ import annotations
 from typing import Any
 
 from roaml.smc.end import End
-from roaml.smc.run import Answer, Tally
+from roaml.smc.run import Answer
+from roaml.smc.tally import Tally
 
 NONE_ACCEPTED = "no trace satisfies the assumptions, so there is no value"
 

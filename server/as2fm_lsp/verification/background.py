@@ -14,7 +14,7 @@ from roaml.project.memo import Interrupted
 from roaml.record import replace
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.pool import Pool
-from roaml.smc.run import Tally
+from roaml.smc.tally import Tally
 from roaml.verification.results import Result
 from roaml.verification.verifier import Verifier
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from roaml.smc.end import End
-from roaml.smc.run import Tally
+from roaml.smc.tally import Tally
 
 
 def as_line(tally: Tally) -> str:

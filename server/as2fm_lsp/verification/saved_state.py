@@ -16,8 +16,9 @@ from as2fm_lsp.atomic_write import write_file
 from roaml.disk import MEGABYTE, required
 from roaml.smc.batch import Payload
 from roaml.smc.goal import Question
-from roaml.smc.run import Options, Tally
+from roaml.smc.run import Options
 from roaml.smc.stored import tally_from_json
+from roaml.smc.tally import Tally
 
 VERSION = 5
 MAX_STATE_BYTES = 64 * MEGABYTE

@@ -19,7 +19,8 @@ from roaml.jani.node import Origin
 from roaml.project.paths import seen_from
 from roaml.smc.end import End
 from roaml.smc.record import VERDICTS, Plain, Recorder, Recording, TraceStep
-from roaml.smc.run import Answer, StoredTrace
+from roaml.smc.run import Answer
+from roaml.smc.tally import StoredTrace
 from roaml.verification.stuck import time_of
 from roaml.verification.target import VerificationTarget
 from roaml.views.waiting import waits

@@ -57,9 +57,10 @@ if TYPE_CHECKING:
     from roaml.smc.model import ModelChecker
     from roaml.smc.pool import Pool, Pulse, WorkersLostError
     from roaml.smc.record import Recorder, Recording, TraceStep, TraceVerdict
-    from roaml.smc.run import Answer, EstimationMethod, Options, Tally, Watch
+    from roaml.smc.run import Answer, EstimationMethod, Options, Watch
     from roaml.smc.statistics import Bounds
     from roaml.smc.story import Story
+    from roaml.smc.tally import Tally
     from roaml.text import Location, SourceFile, Span
     from roaml.verification.counterexample import Counterexample, counterexample
     from roaml.verification.expectations import Expectation, RangeError, Verdict

@@ -19,6 +19,12 @@ def plain_kernel() -> ModuleType:
 
 
 @cache
+def plain_counts() -> ModuleType:
+    """The module that counts results as plain Python, even if it is compiled."""
+    return _loaded("plain_counts", Path(roaml.smc.__file__).with_name("counts.py"))
+
+
+@cache
 def plain_states() -> ModuleType:
     """The module of the nodes as plain Python, even if it is compiled. It needs a plain kernel."""
     return _loaded("plain_states", Path(roaml.smc.__file__).with_name("states.py"))

@@ -13,13 +13,15 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 from roaml.record import Record
+from roaml.smc.counts import count
 from roaml.smc.end import End
 from roaml.smc.kernel import Kernel
 from roaml.smc.kernel import compiled as kernel_compiled
-from roaml.smc.program import FAULTY, UNKNOWN, Compiled, Ints, Reals
+from roaml.smc.program import FALSE, FAULTY, TRUE, UNKNOWN, Compiled, Ints, Reals
 from roaml.smc.rounds import Rounds, limits
 from roaml.smc.states import MAX_BYTES, TraceBatch
 from roaml.smc.states import compiled as states_compiled
+from roaml.smc.tally import REJECTED, Tally
 
 if TYPE_CHECKING:
     from multiprocessing.synchronize import Event
@@ -46,11 +48,29 @@ class TraceProblem(NamedTuple):
     real: float
 
 
+class Counting(NamedTuple):
+    """What is counted for a question.
+
+    Attributes:
+        columns: the indices in `Task.questions` of the question, and of its assumptions if it has any.
+        kept: the number of examples to store; see `Tally.room`.
+        is_reward, can_be_late: see `goal.Question`.
+        is_ordered: whether the order of the traces matters, so that they cannot be counted without those before them.
+    """
+
+    columns: tuple[int, ...]
+    kept: tuple[int, int, int]
+    is_reward: bool = False
+    can_be_late: bool = False
+    is_ordered: bool = False
+
+
 class Task(NamedTuple):
     """A batch: the traces `first` to `first + size - 1`, each with at most `max_steps` steps, under the scheduler
     `scheduler` (0: uniform choices).
 
-    `questions` are the numbers, in the goal of `payload`, of the questions that the traces answer.
+    `questions` are the numbers, in the goal of `payload`, of the questions that the traces answer. If `counted` is not
+    empty, the outcome contains the tallies that it describes instead of rows.
     """
 
     payload: Payload
@@ -60,6 +80,7 @@ class Task(NamedTuple):
     max_steps: int
     scheduler: int = 0
     questions: tuple[int, ...] = (0,)
+    counted: tuple[Counting, ...] = ()
 
 
 class Rows(Record, frozen=True, eq=False):
@@ -73,13 +94,45 @@ class Rows(Record, frozen=True, eq=False):
     activities: bytes
     rewards: Reals
 
+    def given(self, assumptions: Rows) -> Rows:
+        """The rows under assumptions. The verdict on a trace that violates them is REJECTED; a trace for which they are
+        undecided is undecided. Such traces end when the assumptions do."""
+        assumed = assumptions.verdicts
+        verdicts = bytes(
+            verdict if known == TRUE else REJECTED if known == FALSE else UNKNOWN
+            for verdict, known in zip(self.verdicts, assumed, strict=True)
+        )
+        ends = bytes(
+            end if known == TRUE else other
+            for end, other, known in zip(self.ends, assumptions.ends, assumed, strict=True)
+        )
+        steps = array(
+            "q",
+            (
+                length if known == TRUE else other
+                for length, other, known in zip(self.steps, assumptions.steps, assumed, strict=True)
+            ),
+        )
+        return Rows(verdicts, ends, steps, self.activities, self.rewards)
+
+    def tally(self, counting: Counting, first: int, size: int | None = None) -> Tally:
+        """The results of the first `size` traces, or all, in a few numbers. `first` is the number of the first one."""
+        rewards = self.rewards[:size] if counting.is_reward else array("d")
+        columns = self.verdicts[:size], self.ends[:size], self.steps[:size], self.activities[:size]
+        return count(*columns, rewards, first, counting.kept, counting.can_be_late)
+
 
 class BatchOutcome(Record, frozen=True, eq=False):
-    """The result of a batch: rows for each of its questions. A problem ends the batch; the trace with the problem has
-    no row."""
+    """The result of a batch. A problem ends the batch; the trace with the problem has no row.
+
+    Attributes:
+        questions: rows for each question of the task, unless the task counts its results.
+        counted: for each `Counting` of the task, the tally of the traces; their rows if their order matters.
+    """
 
     questions: tuple[Rows, ...]
     problem: TraceProblem | None = None
+    counted: tuple[Tally | Rows, ...] = ()
 
 
 def pack(compiled: Compiled) -> Payload:
@@ -141,6 +194,20 @@ def run(task: Task, pulse: Callable[[int, int], None] | None = None) -> BatchOut
 
 def run_on(simulator: Simulator, task: Task, pulse: Callable[[int, int], None] | None = None) -> BatchOutcome:
     """Run the traces of a batch on a simulator that nothing else uses at the same time."""
+    outcome = _generated(simulator, task, pulse)
+    if not task.counted:
+        return outcome
+    counted: list[Tally | Rows] = []
+    for counting in task.counted:
+        rows, *assumptions = (outcome.questions[column] for column in counting.columns)
+        if assumptions:
+            rows = rows.given(*assumptions)
+        counted.append(rows if counting.is_ordered else rows.tally(counting, task.first))
+    return BatchOutcome((), outcome.problem, tuple(counted))
+
+
+def _generated(simulator: Simulator, task: Task, pulse: Callable[[int, int], None] | None) -> BatchOutcome:
+    """The rows of all questions."""
     batch = simulator.batch
     if batch is None or task.scheduler != 0:
         return _run_on_kernel(simulator, task, pulse)

@@ -26,7 +26,8 @@ from roaml.smc.batch import Payload, Task
 from roaml.smc.goal import Question
 from roaml.smc.pool import Pool, Pulse
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
-from roaml.smc.run import Answer, EstimationMethod, Options, Tally, TraceFaultError, answer
+from roaml.smc.run import Answer, EstimationMethod, Options, TraceFaultError, answer
+from roaml.smc.tally import Tally
 
 INITIAL_SCHEDULERS = 256
 """The initial number of memoryless schedulers."""

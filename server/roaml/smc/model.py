@@ -30,20 +30,10 @@ from roaml.smc.names import variables_in
 from roaml.smc.opcodes import MESSAGES, FaultCode
 from roaml.smc.pool import Pool, Pulse, Runner
 from roaml.smc.program import Compiled, Program, merged
-from roaml.smc.run import (
-    Answer,
-    Inquiry,
-    Options,
-    Tally,
-    TraceFaultError,
-    Watch,
-    answer,
-    answer_together,
-    columns_of,
-    summary,
-)
+from roaml.smc.run import Answer, Inquiry, Options, TraceFaultError, Watch, answer, answer_together, columns_of, summary
 from roaml.smc.size import check_size
 from roaml.smc.sums import sum_names, with_sums
+from roaml.smc.tally import Tally
 
 RECURSION_LIMIT = 15_000
 """Python's recursion limit during compilation, because expressions may be nested as deeply as JSON allows."""

@@ -10,20 +10,16 @@ from them.
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from itertools import compress, islice
-from itertools import count as count_from
-from typing import NamedTuple
 
 from roaml.exhaustive import Vocabulary
-from roaml.record import Record, field
-from roaml.smc.batch import Payload, Rows, Task, TraceProblem
-from roaml.smc.end import End
-from roaml.smc.goal import Activity, Question
+from roaml.record import Record
+from roaml.smc.batch import Counting, Payload, Rows, Task, TraceProblem
+from roaml.smc.goal import Question
 from roaml.smc.pool import Pulse, Runner
-from roaml.smc.program import FALSE, TRUE, UNKNOWN, Ints
-from roaml.smc.statistics import Bounds, Mean, Ratio, clopper_pearson, confidence_sequence, okamoto
+from roaml.smc.program import TRUE, UNKNOWN
+from roaml.smc.statistics import Bounds, Ratio, clopper_pearson, confidence_sequence, okamoto
+from roaml.smc.tally import REJECTED, Tally
 
 
 class EstimationMethod(Vocabulary):
@@ -50,10 +46,6 @@ MAX_REWARD_TRACES = 10_000_000
 """The number of traces after which the adaptive method ends even if the interval is wider than requested."""
 MAX_REJECTED = 100_000
 """The number of traces after which the work ends if the assumptions have rejected all of them."""
-REJECTED = 4
-"""The verdict on a trace that violates the assumptions of a question."""
-MAX_KEPT_TRACES = 1000
-"""The maximum number of stored trace numbers for each verdict."""
 
 
 class Options(Record, frozen=True):
@@ -87,113 +79,6 @@ class Options(Record, frozen=True):
             )
         if self.method is EstimationMethod.FIXED and self.max_traces is None:
             raise ValueError("the method `fixed` needs a number of traces; use `--max-traces`")
-
-
-class StoredTrace(NamedTuple):
-    """A stored trace: its number, and the number of its steps."""
-
-    trace: int
-    steps: int
-
-
-class Ended(Record):
-    """The traces that have ended for one reason: their number, and the shortest one."""
-
-    count: int
-    shortest: StoredTrace
-
-
-class Tally(Record):
-    """The results of the traces so far. They are sufficient to continue.
-
-    Attributes:
-        traces: the number of traces; for a question with assumptions, only the accepted ones.
-        steps: the number of steps of all traces.
-        rejected: the number of traces that violate the assumptions.
-        closed, idle: the numbers of traces with these activities; see `goal.Activity`.
-        late: the number of traces that failed because the time ended before an event that the property requires.
-        mean: the mean of the rewards, for a question about rewards.
-        accepted: the decision of the sequential test: whether the value meets the threshold; `None` if undecided.
-        is_finished: whether no further traces are needed.
-        is_revised: whether the options were changed after results were known: then the number of traces depends on
-            earlier results.
-        examples: for each verdict, the first traces; shortest: for each verdict, the shortest trace.
-        ends: reason -> the traces that have ended for it.
-    """
-
-    traces: int = 0
-    successes: int = 0
-    undecided: int = 0
-    steps: int = 0
-    rejected: int = 0
-    closed: int = 0
-    idle: int = 0
-    late: int = 0
-    mean: Mean = field(default_factory=Mean)
-    accepted: bool | None = None
-    is_finished: bool = False
-    is_revised: bool = False
-    examples: dict[int, list[StoredTrace]] = field(default_factory=lambda: {FALSE: [], TRUE: [], UNKNOWN: []})
-    shortest: dict[int, StoredTrace] = field(default_factory=dict)
-    ends: dict[End, Ended] = field(default_factory=dict)
-
-    @property
-    def simulated(self) -> int:
-        """The number of all traces, rejected or not."""
-        return self.traces + self.rejected
-
-    def ended(self, *reasons: End) -> int:
-        """The number of traces that have ended for one of these reasons."""
-        return sum(self.ends[reason].count for reason in reasons if reason in self.ends)
-
-    def to_json(self) -> dict[str, object]:
-        """The tally as a value for JSON."""
-        return {
-            "traces": self.traces,
-            "successes": self.successes,
-            "undecided": self.undecided,
-            "steps": self.steps,
-            "rejected": self.rejected,
-            "closed": self.closed,
-            "idle": self.idle,
-            "late": self.late,
-            "mean": [self.mean.number, self.mean.mean.hex(), self.mean.squares.hex()],
-            "accepted": self.accepted,
-            "finished": self.is_finished,
-            "revised": self.is_revised,
-            "examples": {str(verdict): seen for verdict, seen in self.examples.items()},
-            "shortest": {str(verdict): seen for verdict, seen in self.shortest.items()},
-            "ends": {end.name.lower(): [ended.count, *ended.shortest] for end, ended in self.ends.items()},
-        }
-
-    @staticmethod
-    def from_json(value: dict) -> Tally:  # type: ignore[type-arg]
-        """The inverse of `to_json`.
-
-        Raises:
-            KeyError, TypeError, ValueError, AttributeError: the value was not written by `to_json`.
-        """
-        count, mean, squares = value["mean"]
-        return Tally(
-            traces=int(value["traces"]),
-            successes=int(value["successes"]),
-            undecided=int(value["undecided"]),
-            steps=int(value["steps"]),
-            rejected=int(value["rejected"]),
-            closed=int(value["closed"]),
-            idle=int(value["idle"]),
-            late=int(value["late"]),
-            mean=Mean(int(count), float.fromhex(mean), float.fromhex(squares)),
-            accepted=value["accepted"],
-            is_finished=bool(value["finished"]),
-            is_revised=bool(value["revised"]),
-            examples={int(v): [StoredTrace(*example) for example in seen] for v, seen in value["examples"].items()},
-            shortest={int(v): StoredTrace(*example) for v, example in value["shortest"].items()},
-            ends={
-                End[name.upper()]: Ended(int(count), StoredTrace(int(trace), int(steps)))
-                for name, (count, trace, steps) in value["ends"].items()
-            },
-        )
 
 
 class Answer(Record, frozen=True):
@@ -355,15 +240,20 @@ def _run(
     def tasks() -> Iterator[Task]:
         for start, size in _batches(done, limit):
             columns = tuple(column for inquiry in open_ for column in inquiry.columns)
-            yield Task(payload, options.seed, first + start, size, options.max_steps, scheduler, columns)
+            counted = tuple(_counting(inquiry, columns, options) for inquiry in open_)
+            yield Task(payload, options.seed, first + start, size, options.max_steps, scheduler, columns, counted)
 
     for task, outcome in pool.outcomes(tasks(), pulse):
         if outcome.problem is not None and len(inquiries) > 1:
             return outcome.problem
-        rows = dict(zip(task.questions, outcome.questions, strict=True))
+        counted = dict(zip((task.questions[c.columns[0]] for c in task.counted), outcome.counted, strict=True))
         for inquiry in tuple(open_):
             tally, question = inquiry.tally, inquiry.question
-            _add(tally, [rows[column] for column in inquiry.columns], question, options, first)
+            results = counted[inquiry.columns[0]]
+            if isinstance(results, Tally):
+                tally.add(results)
+            else:
+                _test(inquiry, results, task.first, options)
             if outcome.problem is not None:
                 return outcome.problem
             tally.is_finished = _is_enough(tally, question, options)
@@ -446,113 +336,37 @@ def _batches(done: int, limit: int | None) -> Iterator[tuple[int, int]]:
         done += size
 
 
-def _add(tally: Tally, rows: Sequence[Rows], question: Question, options: Options, first: int) -> None:
-    ratio = ratio_of(question, options)
-    if ratio is None and not question.is_conditional and not question.is_reward:
-        _add_together(tally, rows[0], question, first)
-        return
-    for verdict, reason, steps, activity, reward in _given(rows) if question.is_conditional else _each(rows[0]):
-        trace = first + tally.simulated
-        tally.steps += steps
+def _counting(inquiry: Inquiry, columns: Sequence[int], options: Options) -> Counting:
+    question = inquiry.question
+    return Counting(
+        tuple(columns.index(column) for column in inquiry.columns),
+        inquiry.tally.room(),
+        question.is_reward,
+        question.can_be_late,
+        ratio_of(question, options) is not None,
+    )
+
+
+def _test(inquiry: Inquiry, rows: Rows, first: int, options: Options) -> None:
+    """Add traces up to the one after which the sequential test decides. `first` is the number of the first one."""
+    tally, question = inquiry.tally, inquiry.question
+    ratio, threshold = ratio_of(question, options), question.threshold
+    assert ratio is not None
+    assert threshold is not None
+    traces = tally.traces
+    good = tally.successes + (0 if threshold.is_lower else tally.undecided)
+    size = 0
+    for verdict in rows.verdicts:
+        size += 1
         if verdict == REJECTED:
-            tally.rejected += 1
             continue
-        tally.traces += 1
-        if verdict == TRUE:
-            tally.successes += 1
-            if question.is_reward:
-                tally.mean = tally.mean.add(reward)
-        elif verdict == UNKNOWN:
-            tally.undecided += 1
-        elif reason == End.TIME and question.can_be_late:
-            tally.late += 1
-        if activity == Activity.CLOSED:
-            tally.closed += 1
-        elif activity == Activity.IDLE:
-            tally.idle += 1
-        examples = tally.examples[verdict]
-        if len(examples) < MAX_KEPT_TRACES:
-            examples.append(StoredTrace(trace, steps))
-        if verdict not in tally.shortest or steps < tally.shortest[verdict].steps:
-            tally.shortest[verdict] = StoredTrace(trace, steps)
-        _add_end(tally, reason, StoredTrace(trace, steps))
-        if ratio is not None and question.threshold is not None:
-            good = tally.successes + (0 if question.threshold.is_lower else tally.undecided)
-            above = ratio.decision(good, tally.traces)
-            if above is not None:
-                tally.accepted = above is question.threshold.is_lower
-                return
-
-
-def _add_together(tally: Tally, rows: Rows, question: Question, first: int) -> None:
-    """Add traces whose order has no influence. The loops over all traces are those of Python itself, because the
-    traces of a model with few states take less time than a loop here."""
-    start = first + tally.simulated
-    tally.traces += len(rows.verdicts)
-    tally.steps += sum(rows.steps)
-    kinds = Counter(zip(rows.verdicts, rows.ends, rows.activities, strict=True))
-    for (verdict, reason, activity), count in kinds.items():
-        if verdict == TRUE:
-            tally.successes += count
-        elif verdict == UNKNOWN:
-            tally.undecided += count
-        elif reason == End.TIME and question.can_be_late:
-            tally.late += count
-        if activity == Activity.CLOSED:
-            tally.closed += count
-        elif activity == Activity.IDLE:
-            tally.idle += count
-    for verdict in sorted(set(rows.verdicts), key=rows.verdicts.index):
-        chosen = _chosen(rows.verdicts, verdict)
-        examples = tally.examples[verdict]
-        room = MAX_KEPT_TRACES - len(examples)
-        traces = compress(zip(count_from(start), rows.steps, strict=False), chosen)
-        examples += [StoredTrace(*trace) for trace in islice(traces, room)]
-        shortest = _shortest(rows.steps, chosen, start)
-        if verdict not in tally.shortest or shortest.steps < tally.shortest[verdict].steps:
-            tally.shortest[verdict] = shortest
-    for reason in sorted(set(rows.ends), key=rows.ends.index):
-        chosen = _chosen(rows.ends, reason)
-        _add_end(tally, reason, _shortest(rows.steps, chosen, start), sum(chosen))
-
-
-def _chosen(values: bytes, value: int) -> bytes:
-    """For each of the values, 1 if it is equal to `value`, else 0."""
-    return values.translate(bytes(int(other == value) for other in range(256)))
-
-
-def _shortest(steps: Ints, chosen: bytes, start: int) -> StoredTrace:
-    """The first one of the shortest chosen traces."""
-    length, trace = min(compress(zip(steps, count_from(start), strict=False), chosen))
-    return StoredTrace(trace, length)
-
-
-def _each(rows: Rows) -> Iterator[tuple[int, int, int, int, float]]:
-    return zip(rows.verdicts, rows.ends, rows.steps, rows.activities, rows.rewards, strict=True)
-
-
-def _given(both: Sequence[Rows]) -> Iterator[tuple[int, int, int, int, float]]:
-    """The traces for a question with assumptions. Traces that violate the assumptions are rejected; traces for which
-    the assumptions are undecided are undecided."""
-    rows, assumptions = both
-    for row, assumed, end, steps in zip(
-        _each(rows), assumptions.verdicts, assumptions.ends, assumptions.steps, strict=True
-    ):
-        if assumed == TRUE:
-            yield row
-        else:
-            yield (REJECTED if assumed == FALSE else UNKNOWN), end, steps, row[3], 0.0
-
-
-def _add_end(tally: Tally, reason: int, seen: StoredTrace, count: int = 1) -> None:
-    """Add traces that ended for a reason. `seen` is the first one of the shortest."""
-    ended = tally.ends.get(reason)  # type: ignore[call-overload]
-    if ended is None:
-        tally.ends[End(reason)] = Ended(count, seen)
-        return
-    ended.count += count
-    if seen.steps < ended.shortest.steps:
-        ended.shortest = seen
+        traces += 1
+        good += verdict == TRUE or (verdict == UNKNOWN and not threshold.is_lower)
+        above = ratio.decision(good, traces)
+        if above is not None:
+            tally.accepted = above is threshold.is_lower
+            break
+    tally.add(rows.tally(_counting(inquiry, inquiry.columns, options), first, size))
 
 
 def ratio_of(question: Question, options: Options) -> Ratio | None:

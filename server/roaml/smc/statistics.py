@@ -159,6 +159,15 @@ class Mean(NamedTuple):
         mean = self.mean + step / number
         return Mean(number, mean, self.squares + step * (value - mean))
 
+    def joined(self, other: Mean) -> Mean:
+        """The mean of the rewards of both (Chan, Golub and LeVeque 1983)."""
+        if self.number == 0 or other.number == 0:
+            return other if self.number == 0 else self
+        number = self.number + other.number
+        step = other.mean - self.mean
+        share = other.number / number
+        return Mean(number, self.mean + step * share, self.squares + other.squares + step * step * self.number * share)
+
     def bounds(self, confidence: float) -> Bounds:
         """The interval for the expected value, by Student's t."""
         if self.number < 2:

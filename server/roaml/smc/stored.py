@@ -9,7 +9,8 @@ from typing import Any
 
 from roaml.smc.goal import Question
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
-from roaml.smc.run import MAX_KEPT_TRACES, EstimationMethod, Options, StoredTrace, Tally
+from roaml.smc.run import EstimationMethod, Options
+from roaml.smc.tally import MAX_KEPT_TRACES, StoredTrace, Tally
 
 _MAX_COUNT = 1 << 62
 """A limit that no counter reaches."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from roaml.record import Record
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
 from roaml.smc.record import VERDICTS, TraceVerdict
-from roaml.smc.run import StoredTrace
+from roaml.smc.tally import StoredTrace
 from roaml.text import Location
 from roaml.verification.results import Result
 from roaml.verification.target import VerificationTarget

@@ -19,7 +19,8 @@ from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Alone, Pulse
 from roaml.smc.record import Recorder, Recording
-from roaml.smc.run import Answer, EstimationMethod, Options, StoredTrace, Tally
+from roaml.smc.run import Answer, EstimationMethod, Options
+from roaml.smc.tally import StoredTrace, Tally
 from roaml.verification.target import VerificationTarget
 
 if TYPE_CHECKING:

@@ -16,7 +16,8 @@ from roaml.smc.goal import STUCK_PROPERTY, CompiledProperty, with_threshold
 from roaml.smc.lss import Search, Side, described, sampling_options
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool, Pulse
-from roaml.smc.run import Answer, EstimationMethod, Options, Tally, Watch, summary
+from roaml.smc.run import Answer, EstimationMethod, Options, Watch, summary
+from roaml.smc.tally import Tally
 from roaml.suggest import alternatives, close_names
 from roaml.verification import stuck
 from roaml.verification.exhaustive import UndecidedError, check_exactly, exact_values
