@@ -89,7 +89,7 @@ def test_members_of_structs_are_separated_by_dots() -> None:
         pass
     changes = [line.strip() for line in as_text(session.story(), lambda _: "").splitlines() if "→" in line]
     assert any(line.startswith("recv_point.x: 0 → ") for line in changes)
-    assert any(line.startswith("recv_polygons.polygons.points.y: → ") for line in changes)
+    assert any(line.startswith("recv_polygons.polygons.points.y: [] → ") for line in changes)
     header = next(csv_lines(session, session.position))
     timeline = Timeline(session)
     timeline.follow(session)

@@ -13,10 +13,12 @@ from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.model_arguments import fault_text, line_of
 from as2fm_lsp.cli.output import flush, print_text
 from roaml.model.parameters import duration
+from roaml.scxml.names import BLACKBOARD
 from roaml.simulation import Choice, Session
 from roaml.smc.fault import FaultError
-from roaml.smc.record import RecordedVariable
+from roaml.smc.record import Plain, RecordedVariable
 from roaml.verification.target import VerificationTarget
+from roaml.views.arrays import ArrayReader, without_lengths
 from roaml.views.event_words import event_phrase
 from roaml.views.observed import observer_phrase
 from roaml.views.values import shown_parameters, shown_value
@@ -157,13 +159,14 @@ class Terminal:
         session = self._session
         if session.position <= before:
             return
-        for step in session.steps[before : session.position][-MAX_STEPS_SHOWN:]:
+        arrays = ArrayReader(session.automata_of_model, session.start)
+        for step in session.steps[: session.position]:
             changes = ", ".join(
                 f"{self._name(change.variable)}: {shown_value(change.before)} → {shown_value(change.after)}"
-                for change in step.changes
+                for change in arrays.read(step)
                 if change.variable.instance >= 0 and session.is_machine(change.variable.instance)
             )
-            if changes:
+            if changes and step.number > max(before, session.position - MAX_STEPS_SHOWN):
                 print_text(f"  {step.number:>6}  {changes}\n")
 
     def _name(self, variable: RecordedVariable) -> str:
@@ -193,9 +196,13 @@ class Terminal:
     def _state(self) -> Iterator[str]:
         session = self._session
         state = session.state()
+        stored: dict[str, dict[str, Plain]] = {}
+        for (instance, name), value in session.values():
+            stored.setdefault(session.automata[instance] if instance >= 0 else "", {})[name] = value
+        shown = {automaton: without_lengths(values) for automaton, values in stored.items()}
         for machine in state.machines:
-            phrases = session.phrases(machine.automaton)
-            values = shown_parameters({phrases.get(name, name): value for name, value in machine.variables.items()})
+            phrases, own = session.phrases(machine.automaton), shown.get(machine.automaton, {})
+            values = shown_parameters({phrases.get(name, name): value for name, value in own.items()})
             handled = event_phrase(machine.event, session.automata, taken=True) if machine.event else ""
             handles = f", handles {handled}" if handled else ""
             yield f"{machine.name}: {machine.state}{handles}{f' ({values})' if values else ''}"
@@ -205,8 +212,9 @@ class Terminal:
             values = shown_parameters(event.parameters)
             waiting = ", not received yet" if event.is_waiting else ""
             yield f"{event.text}{f' ({values})' if values else ''}, step {event.step}{waiting}"
-        for name, value in {**state.blackboard, **state.shared}.items():
-            yield f"{observer_phrase(name, session.automata) or name}: {shown_value(value)}"
+        common = {**shown.get(BLACKBOARD, {}), **shown.get("", {})}
+        for name in {**state.blackboard, **state.shared}:
+            yield f"{observer_phrase(name, session.automata) or name}: {shown_value(common[name])}"
 
 
 MAX_STEPS_SHOWN = 40

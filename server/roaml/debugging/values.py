@@ -8,11 +8,11 @@ bound and a length (docs/spec/jani.md#array-storage).
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TypeAlias
+from typing import TypeAlias, cast
 
 from roaml.expr.types import Array, ScalarKind, Struct, Type, is_kind
-from roaml.scxml.names import is_length
 from roaml.smc.record import Plain
+from roaml.views.arrays import cut, element_at, length_of, without_lengths
 
 Value: TypeAlias = "bool | int | float | str | list[Value] | dict[str, Value]"
 
@@ -31,9 +31,7 @@ def typed_value(name: str, type_: Type | None, stored: Mapping[str, Plain]) -> V
 
 def untyped_values(stored: Mapping[str, Plain]) -> dict[str, Value]:
     """The values of variables without declared types. Arrays are cut to their length."""
-    return {
-        name: value for name in stored if not is_length(name) and (value := _built(name, None, stored, ())) is not None
-    }
+    return cast("dict[str, Value]", without_lengths(stored))
 
 
 def nested(values: Mapping[str, Value]) -> dict[str, Value]:
@@ -57,29 +55,19 @@ def _built(name: str, type_: Type | None, stored: Mapping[str, Plain], index: tu
         members = ((m, _built(f"{name}{SEPARATOR}{m}", inner, stored, index)) for m, inner in type_.members)
         return {member: value for member, value in members if value is not None}
     if isinstance(type_, Array):
-        length = _length(_first_leaf(name, type_), stored, index)
+        length = length_of(_first_leaf(name, type_), stored, index)
         if length is not None:
             elements = (_built(name, type_.element, stored, (*index, i)) for i in range(length))
             return [element for element in elements if element is not None]
     if name not in stored:
         return None
-    value = _at(stored[name], index)
+    value = element_at(stored[name], index)
     if not isinstance(value, list):
         return value
     if type_ is not None and is_kind(type_, ScalarKind.STRING):
-        length = _length(name, stored, index)
+        length = length_of(name, stored, index)
         return _text(value[:length])
-    return _cut(name, value, stored, index)
-
-
-def _cut(name: str, value: list[Plain], stored: Mapping[str, Plain], index: tuple[int, ...]) -> list[Value]:
-    """An array without declared type, cut to its length."""
-    length = _length(name, stored, index)
-    elements: list[Value] = []
-    for number, element in enumerate(value[:length]):
-        is_array = isinstance(element, list)
-        elements.append(_cut(name, element, stored, (*index, number)) if is_array else element)  # type: ignore[arg-type]
-    return elements
+    return cast(Value, cut(name, value, stored, index))
 
 
 def _first_leaf(name: str, type_: Type) -> str:
@@ -91,20 +79,6 @@ def _first_leaf(name: str, type_: Type) -> str:
             name = f"{name}{SEPARATOR}{member}"
         else:
             return name
-
-
-def _length(name: str, stored: Mapping[str, Plain], index: tuple[int, ...]) -> int | None:
-    lengths = stored.get(f"{name}.d{len(index) + 1}_len")
-    length = None if lengths is None else _at(lengths, index)
-    return length if isinstance(length, int) else None
-
-
-def _at(value: Plain, index: tuple[int, ...]) -> Plain:
-    for number in index:
-        if not isinstance(value, list) or number >= len(value):
-            break
-        value = value[number]
-    return value
 
 
 def _text(characters: list[Plain]) -> str:

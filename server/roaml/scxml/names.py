@@ -391,9 +391,20 @@ def assumptions_of(property_: str) -> str:
     return f"{property_}__assumptions"
 
 
+def length_name(array: str, dimension: int) -> str:
+    """The variable with the length of an array in a dimension, from 1 on (docs/spec/jani.md#array-storage)."""
+    return f"{array}.d{dimension}_len"
+
+
 def is_length(variable: str) -> bool:
     """Whether a variable is the length of an array (docs/spec/jani.md#array-storage)."""
     return _LENGTH.search(variable) is not None
+
+
+def array_of(length: str) -> str:
+    """The array whose length a variable is; "" if the variable is not the length of an array."""
+    match = _LENGTH.search(length)
+    return length[: match.start()] if match else ""
 
 
 _LENGTH = re.compile(r"\.d[0-9]+_len\Z")

@@ -22,7 +22,6 @@ from roaml.scxml.names import (
     CLOCK,
     CLOCK_ACTION,
     automaton_role,
-    is_length,
     is_observer,
     is_timer,
     received_by,
@@ -33,6 +32,7 @@ from roaml.simulation.words import resting, tree_text, who
 from roaml.smc.compile import Legend
 from roaml.smc.fault import FaultError
 from roaml.smc.record import Plain, RecordedVariable
+from roaml.views.arrays import without_lengths
 from roaml.views.event_words import event_phrase
 from roaml.views.events import EventReader
 from roaml.views.locations import states_of
@@ -200,8 +200,8 @@ def _consequences(
     name = who(automaton.name)
     visited: set[str] = set()
     while True:
-        for variable, value in _assigned(destination, after).items():
-            if not events.carries_event(variable) and not is_length(variable):
+        for variable, value in without_lengths(_assigned(destination, after)).items():
+            if not events.carries_event(variable):
                 yield f"{phrases.get(variable, variable)} := {shown_value(value)}"
         location = destination.location
         following = [edge for edge in automaton.edges if edge.source == location]

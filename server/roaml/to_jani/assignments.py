@@ -10,7 +10,8 @@ from roaml.expr.tree import Expr, Member
 from roaml.jani import expressions as jani
 from roaml.jani.expressions import Expression, Integer, LValue
 from roaml.jani.operators import BinaryOperator
-from roaml.to_jani.shapes import ArrayShape, length_name
+from roaml.scxml.names import length_name
+from roaml.to_jani.shapes import ArrayShape
 from roaml.to_jani.values import JaniScope, Listed, Stored, at, elements_as, lengths_as
 
 Write = tuple[LValue, Expression]

@@ -15,6 +15,7 @@ from roaml.jani.expressions import ArrayConstructor, ArrayValue, Boolean, Expres
 from roaml.jani.types import BOOL, INT, REAL, ArrayType, BasicType
 from roaml.jani.types import Type as JaniType
 from roaml.record import Record
+from roaml.scxml.names import length_name
 
 _KINDS = {ScalarKind.BOOL: BOOL, ScalarKind.INT: INT, ScalarKind.REAL: REAL, ScalarKind.STRING: INT}
 _ZEROS: dict[BasicType, Expression] = {BOOL: Boolean(False), INT: Integer(0), REAL: Real(0.0)}
@@ -44,10 +45,6 @@ class ArrayShape(Record, frozen=True):
 
 
 SCALAR_INT = ArrayShape(INT)
-
-
-def length_name(array: str, dimension: int) -> str:
-    return f"{array}.d{dimension}_len"
 
 
 def shape_of(type_: Type, max_array_size: int, sent: bool = False) -> ArrayShape:

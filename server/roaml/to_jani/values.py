@@ -31,7 +31,8 @@ from roaml.jani.operators import BinaryOperator, NumberConstant
 from roaml.jani.operators import UnaryOperator as JaniUnary
 from roaml.jani.types import REAL
 from roaml.record import Record
-from roaml.to_jani.shapes import SCALAR_INT, ArrayShape, length_name, zero
+from roaml.scxml.names import length_name
+from roaml.to_jani.shapes import SCALAR_INT, ArrayShape, zero
 
 BINARY_OPERATORS = {
     Operator.OR: BinaryOperator.OR,

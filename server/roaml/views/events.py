@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from roaml.jani.model import Automaton
 from roaml.scxml.names import FIELD_PREFIX, client_of, flagged_by, is_length, received_by, sent_by, without_client
 from roaml.smc.record import AutomatonStep, Plain, TraceStep
+from roaml.views.arrays import cut
 
 
 class EventReader:
@@ -59,9 +60,12 @@ class EventReader:
         return variable in self._of_events
 
     def parameters(self, event: str) -> dict[str, Plain]:
-        """The parameters with which an event was last sent, by their names in the interface."""
+        """The parameters with which an event was last sent, by their names in the interface. Arrays are cut to their
+        lengths."""
         return {
-            variable.removeprefix(f"{event}__").removeprefix(FIELD_PREFIX): self._values[variable]
+            variable.removeprefix(f"{event}__").removeprefix(FIELD_PREFIX): cut(
+                variable, self._values[variable], self._values
+            )
             for variable in self._parameters.get(event, ())
         }
 

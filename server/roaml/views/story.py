@@ -294,9 +294,7 @@ def _change(change: VariableChange, turn: Turn) -> str:
 
 
 def _shown(before: Plain, after: Plain) -> str:
-    if isinstance(before, list) and isinstance(after, list):
-        return f"→ {_short(shown_value(after))}"
-    return f"{shown_value(before)} → {shown_value(after)}"
+    return f"{_short(shown_value(before))} → {_short(shown_value(after))}"
 
 
 def _short(text: str) -> str:

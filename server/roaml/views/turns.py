@@ -9,7 +9,7 @@ relevant turn sends. Turns that only pass an event on are omitted.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
@@ -23,7 +23,6 @@ from roaml.scxml.names import (
     VIOLATED,
     TreeEventKind,
     is_generated,
-    is_length,
     is_observer,
     observer_automaton,
     observer_prefix,
@@ -35,6 +34,7 @@ from roaml.scxml.names import (
 from roaml.smc.record import AutomatonStep, Plain, TraceStep, VariableChange
 from roaml.smc.story import Story
 from roaml.views.actors import actor, message_phrase
+from roaml.views.arrays import ArrayReader
 from roaml.views.events import EventReader
 from roaml.views.locations import states_of
 from roaml.views.observed import effects, observation, observed_property
@@ -231,6 +231,7 @@ class _Reader:
         observers = filter(is_observer, self._automata)
         self._observer_prefixes = tuple(f"{prefix_of_observer(name)}__" for name in observers)
         self._events = EventReader(story.automata, story.start)
+        self._arrays = ArrayReader(story.automata, story.start)
         self.inner = frozenset(n for n, automaton in enumerate(story.automata) if is_inner(automaton))
         self._known_phrases: dict[int, Mapping[str, str]] = {}
         self._known_states: dict[int, Mapping[str, str]] = {}
@@ -242,6 +243,7 @@ class _Reader:
     def read(self, index: int) -> None:
         step = self._story.steps[index]
         self._events.read(step)
+        changes = self._arrays.read(step)
         actors = self._events.actors(step)
         heard = self._heard(step)
         last = next((part for part in reversed(actors) if not is_observer(part.automaton)), None)
@@ -259,7 +261,7 @@ class _Reader:
             turn.parts.append(part)
             turn.last = step.number
             if part.instance not in self.inner:
-                turn.changes += self._changes(step, part, is_last=part is last)
+                turn.changes += self._changes(changes, part, is_last=part is last)
             turn.matters |= index in self._relevant
             turn.ends |= index == len(self._story.steps) - 1
         event = sent_by(step.action or "")
@@ -291,15 +293,17 @@ class _Reader:
             self._names[event] = message_phrase(event, self._automata)
         return self._names[event]
 
-    def _changes(self, step: TraceStep, part: AutomatonStep, *, is_last: bool) -> Iterator[VariableChange]:
+    def _changes(
+        self, changes: Sequence[VariableChange], part: AutomatonStep, *, is_last: bool
+    ) -> Iterator[VariableChange]:
         """The changes of the variables of an automaton, and of variables of the model that do not belong to an event.
         A change of a variable of the model is included once: at the observer to which the variable belongs, or at the
         last automaton that takes part and is not an observer."""
         own = f"{prefix_of_observer(part.automaton)}__" if is_observer(part.automaton) else ""
-        for change in step.changes:
+        for change in changes:
             instance, name = change.variable
             is_lasting = instance < 0 and (name.startswith(own) if own else is_last and not self._is_others(name))
-            if (instance == part.instance or is_lasting) and not is_length(name):
+            if instance == part.instance or is_lasting:
                 yield change
 
     def _is_others(self, name: str) -> bool:

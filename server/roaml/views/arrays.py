@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Arrays as the models declare them: cut to their lengths, which are separate variables of the translation
+(docs/spec/jani.md#array-storage)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from roaml.jani.expressions import Expression
+from roaml.jani.model import Automaton
+from roaml.jani.semantics import EvaluationError, Value, evaluate
+from roaml.scxml.names import array_of, length_name
+from roaml.smc.record import Plain, RecordedVariable, TraceStep, VariableChange
+
+
+def cut(name: str, value: Plain, stored: Mapping[str, Plain], index: tuple[int, ...] = ()) -> Plain:
+    """A value without the unused elements of arrays.
+
+    Args:
+        name, index: the variable, and the indices of the value in it.
+        stored: variables of the same automaton or of the network; the lengths of the array are among them. An array
+            without length is not cut.
+    """
+    if not isinstance(value, list):
+        return value
+    used = value[: length_of(name, stored, index)]
+    return [cut(name, inner, stored, (*index, number)) for number, inner in enumerate(used)]
+
+
+def without_lengths(stored: Mapping[str, Plain]) -> dict[str, Plain]:
+    """The variables except lengths. Arrays are cut to their lengths."""
+    return {name: cut(name, value, stored) for name, value in stored.items() if not array_of(name)}
+
+
+def length_of(name: str, stored: Mapping[str, Plain], index: Sequence[int]) -> int | None:
+    """The length of an array, or of the element of it at `index`; `None` if it is not stored."""
+    lengths = stored.get(length_name(name, len(index) + 1))
+    value = None if lengths is None else element_at(lengths, index)
+    return value if isinstance(value, int) else None
+
+
+def element_at(value: Plain, index: Iterable[int]) -> Plain:
+    """The element of an array at `index`; if there is none, the innermost value around it."""
+    for number in index:
+        if not isinstance(value, list) or number >= len(value):
+            break
+        value = value[number]
+    return value
+
+
+class ArrayReader:
+    """Reads the changes of the steps of a trace, in their order.
+
+    Args:
+        automata: the automaton of each instance.
+        start: the variables of the model before the first step.
+    """
+
+    def __init__(self, automata: Sequence[Automaton], start: Mapping[str, Plain]) -> None:
+        self._automata = automata
+        self._stored: dict[int, dict[str, Plain]] = {-1: dict(start)}
+
+    def read(self, step: TraceStep) -> list[VariableChange]:
+        """The changes of a step. Arrays are cut to their lengths, and a change of a length is one of its array."""
+        changed = dict.fromkeys(
+            RecordedVariable(change.variable.instance, array_of(change.variable.name) or change.variable.name)
+            for change in step.changes
+        )
+        for change in step.changes:
+            self._of(change.variable.instance).setdefault(change.variable.name, change.before)
+        before = [self._value(variable) for variable in changed]
+        for change in step.changes:
+            self._of(change.variable.instance)[change.variable.name] = change.after
+        changes = (
+            VariableChange(variable, value, self._value(variable))
+            for variable, value in zip(changed, before, strict=True)
+        )
+        return [change for change in changes if change.before != change.after]
+
+    def _value(self, variable: RecordedVariable) -> Plain:
+        stored = self._of(variable.instance)
+        return cut(variable.name, stored.get(variable.name, []), stored)
+
+    def _of(self, instance: int) -> dict[str, Plain]:
+        """The stored variables of an instance. At first, these are its arrays and their lengths."""
+        if instance not in self._stored:
+            variables = self._automata[instance].variables
+            arrays = {array_of(variable.name) for variable in variables} - {""}
+            self._stored[instance] = {
+                variable.name: value
+                for variable in variables
+                if (variable.name in arrays or array_of(variable.name))
+                and variable.initial_value is not None
+                and (value := _constant(variable.initial_value)) is not None
+            }
+        return self._stored[instance]
+
+
+def _constant(expression: Expression) -> Plain | None:
+    """The value of an expression; `None` if it is not a constant."""
+    try:
+        return _plain(evaluate(expression, {}))
+    except EvaluationError:
+        return None
+
+
+def _plain(value: Value) -> Plain | None:
+    match value:
+        case bool() | int() | float():
+            return value
+        case tuple():
+            elements = [_plain(inner) for inner in value]
+            return [inner for inner in elements if inner is not None]
+        case _:
+            return None
