@@ -146,6 +146,28 @@ def test_names_of_messages_overlap_no_name_and_no_mark(path: Path, axis: Axis) -
     assert named
 
 
+@pytest.mark.parametrize("width", [60.0, 120.0])
+def test_messages_that_are_close_to_each_other_have_one_mark(width: float) -> None:
+    session = api.session(api.load(str(DELIVERY)), seed=3)
+    session.until_decided(2_000)
+    timeline = timeline_of(session)
+    end = extent(timeline, Axis.TIME)
+    drawing = draw_timeline(timeline, View(Axis.TIME, 0.0, end, width))
+    groups = [group for group in drawing.groups if group.role == "event"]
+    marks = [next(item.box for item in group.items if isinstance(item, Shape)) for group in groups]
+    assert all(mark.right + 2.0 < following.x for mark, following in itertools.pairwise(marks))
+    places = [timeline.times[message.received] / end * width for message in timeline.messages]
+    marked = [sum(mark.x <= place <= mark.right for place in places) for mark in marks]
+    assert sum(marked) == len(places)
+    assert max(marked) > 1
+    for group, count in zip(groups, marked, strict=True):
+        if count > 1:
+            assert group.hint.startswith(f"{count} messages from step ")
+            assert group.step is None
+        else:
+            assert group.step is not None
+
+
 def _texts(drawing: Drawing) -> list[TextItem]:
     return [item for _, item in drawing.walk() if isinstance(item, TextItem)]
 

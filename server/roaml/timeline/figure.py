@@ -21,11 +21,12 @@ from roaml.timeline.record import Lane, LaneKind, Plot, SentMessage, Timeline
 LANE, PLOT, AXIS, MESSAGES = 26.0, 54.0, 24.0, 22.0
 """The heights of a lane, a plot, the axis, and the row with the names of messages, in pixels."""
 _SPAN, _MARGIN = 20.0, 8.0
-_LEAST = 3.0
-"""The minimum width of a state, in pixels. Adjacent states that are narrower are drawn as one."""
+_LEAST = 5.0
+"""The minimum width of a state, in pixels. Adjacent states that are narrower are drawn as one, and so are messages
+without arrows whose distance is smaller."""
 _SAMPLE = 50
 """The number of states drawn as one that are examined for a common color."""
-_ARROW_DISTANCE = 6.0
+_ARROW_DISTANCE = 10.0
 """The minimum average distance of messages that are drawn with arrows, in pixels."""
 _MACHINE_TONES = (Tone.ROS, Tone.TREE, Tone.BLACKBOARD, Tone.ACTION, Tone.CHANCE)
 _STATUS_TONES: Mapping[str, Tone] = {
@@ -222,8 +223,8 @@ class _Painter:
     # ------------------------------------------------------------ messages
 
     def _messages(self) -> Iterator[Group]:
-        """A mark for each message, with its name if there is space. Messages have arrows unless there are too many of
-        them."""
+        """Marks for the messages, with their names if there is space. If there are too many messages, they have no
+        arrows, and those that are close to each other have one mark."""
         messages = self._timeline.messages
         first = bisect_left(messages, self._first_step(0.0), key=_received)
         last = bisect_right(messages, self._first_step(self._view.width + 1.0), key=_received)
@@ -231,31 +232,53 @@ class _Painter:
         free_from = -math.inf
         number = first
         while number < last:
-            message = messages[number]
-            x = self._x(message.received)
+            following = number + 1 if has_arrows else self._behind_mark(number, last)
+            marked = messages[number:following]
+            number = following
+            x, end = self._x(marked[0].received), self._x(marked[-1].received)
             if x > self._view.width:
                 return
-            following = bisect_left(messages, self._first_step(x + 1.0), number + 1, last, key=_received)
-            items: list[Item] = [Shape(Box(x - 1.0, AXIS + 2.0, 2.0, MESSAGES - 4.0), Outline.RECTANGLE, "pulse")]
+            box = Box(x - 1.0, AXIS + 2.0, min(end, self._view.width) - x + 2.0, MESSAGES - 4.0)
+            items: list[Item] = [Shape(box, Outline.RECTANGLE, "pulse")]
+            following = bisect_left(messages, self._first_step(end + 1.0), following, last, key=_received)
             beside = self._x(messages[following].received) if following < last else min(self._view.width, self._end)
-            left, text = _beside(message.name, x, free_from, beside)
+            name = ", ".join(dict.fromkeys(message.name for message in marked[:_SAMPLE]))
+            left, text = _beside(name, x, end, free_from, beside)
             if text:
                 items.append(TextItem(text, left, AXIS + MESSAGES / 2 + SMALL * 0.35, SMALL, "text"))
-            free_from = max(free_from, (left + text_width(text, SMALL) if text else x) + 6.0, x + 6.0)
+            free_from = max(free_from, left + text_width(text, SMALL) + 6.0 if text else 0.0, end + 6.0)
             if has_arrows:
-                start = Point(self._x(message.sent), _middle(message.sender))
-                items += (
-                    Polyline((start, Point(x, _middle(receiver))), True, "message", is_round=False)
-                    for receiver in message.receivers
-                    if receiver != message.sender
-                )
-            names = ", ".join(self._timeline.lanes[receiver].name for receiver in message.receivers)
-            hint = f"{message.name}: {self._timeline.lanes[message.sender].name} → {names}"
-            hint += f", {self._when(message.received)}"
-            yield Group("event", Tone.PLAIN, tuple(items), hint=hint, step=message.received)
-            number += 1
-            if not has_arrows:  # without those in the same pixel
-                number = max(number, following)
+                items += self._arrows(marked[0])
+            step = marked[0].received if len(marked) == 1 else None
+            yield Group("event", Tone.PLAIN, tuple(items), hint=self._message_hint(name, marked), step=step)
+
+    def _behind_mark(self, number: int, last: int) -> int:
+        """The number of the first message after the mark that begins with a message."""
+        messages = self._timeline.messages
+        x = self._x(messages[number].received)
+        following = number + 1
+        while following < last and (beside := self._x(messages[following].received)) - x < _LEAST:
+            # Skip the messages in the same pixel.
+            following = max(
+                following + 1,
+                bisect_left(messages, self._first_step(beside + 1.0), following, last, key=_received),
+            )
+            x = self._x(messages[following - 1].received)
+        return following
+
+    def _arrows(self, message: SentMessage) -> Iterator[Polyline]:
+        start = Point(self._x(message.sent), _middle(message.sender))
+        for receiver in message.receivers:
+            if receiver != message.sender:
+                end = Point(self._x(message.received), _middle(receiver))
+                yield Polyline((start, end), True, "message", is_round=False)
+
+    def _message_hint(self, name: str, marked: Sequence[SentMessage]) -> str:
+        first = marked[0]
+        if len(marked) > 1:
+            return f"{len(marked):,} messages from step {first.received:,}: {name}"
+        names = ", ".join(self._timeline.lanes[receiver].name for receiver in first.receivers)
+        return f"{name}: {self._timeline.lanes[first.sender].name} → {names}, {self._when(first.received)}"
 
     # ------------------------------------------------------------ plots
 
@@ -301,13 +324,13 @@ class _Painter:
         return Group("variable", Tone.ROS, tuple(items), hint=plot.name)
 
 
-def _beside(name: str, x: float, free_from: float, beside: float) -> tuple[float, str]:
-    """The left end of the text beside a mark at `x`, and the text. It is right of the mark if it ends before `beside`,
-    otherwise left of it if it begins after `free_from`, otherwise shortened and right of the mark."""
+def _beside(name: str, x: float, end: float, free_from: float, beside: float) -> tuple[float, str]:
+    """The left end of the text beside a mark from `x` to `end`, and the text. It is right of the mark if it ends before
+    `beside`, otherwise left of it if it begins after `free_from`, otherwise shortened and right of the mark."""
     width = text_width(name, SMALL)
-    if x + 3.0 + width > beside - 3.0 and x - 3.0 - width >= max(free_from, 0.0):
+    if end + 3.0 + width > beside - 3.0 and x - 3.0 - width >= max(free_from, 0.0):
         return x - 3.0 - width, name
-    return x + 3.0, _fitting(name, beside - x - 6.0) if x >= free_from - 6.0 else ""
+    return end + 3.0, _fitting(name, beside - end - 6.0) if end >= free_from - 6.0 else ""
 
 
 def _received(message: SentMessage) -> int:

@@ -30,21 +30,26 @@ export function reveal(stretch: Stretch, position: number, extent: number): Stre
     return pan(stretch, position - (stretch.from + stretch.to) / 2, extent);
 }
 
-/** The part that is asked for: what is visible, and as much on each side. */
-export function withMargins({ from, to }: Stretch, width: number): Stretch & { width: number } {
+/** The part that is asked for: what is visible, and `margin` times as much on each side. */
+export function withMargins({ from, to }: Stretch, margin: number, width: number): Stretch & { width: number } {
     const span = to - from;
-    const start = Math.max(0, from - span);
-    const end = to + span;
-    return { from: start, to: end, width: span > 0 ? (width * (end - start)) / span : width };
+    const part = grown({ from, to }, margin);
+    return { ...part, width: span > 0 ? (width * (part.to - part.from)) / span : width };
 }
 
-/** Whether a tile has all that is visible, in about the right size. */
-export function covers(tile: Pick<Tile, "from" | "to" | "width">, { from, to }: Stretch, width: number): boolean {
-    const scale = width / (to - from) / (tile.width / (tile.to - tile.from));
-    return contains(tile, { from, to }) && Math.abs(scale - 1) < 0.01;
-}
-
-/** Whether a tile has all that is visible, in any size. */
-export function contains(tile: Stretch, { from, to }: Stretch): boolean {
+/** Whether a tile has all that is visible, and `margin` times as much on each side. */
+export function contains(tile: Stretch, visible: Stretch, margin: number): boolean {
+    const { from, to } = grown(visible, margin);
     return tile.from <= from && to <= tile.to;
+}
+
+/** Whether a tile has the scale of the view, so that it is not stretched. */
+export function isSharp(tile: Pick<Tile, "from" | "to" | "width">, { from, to }: Stretch, width: number): boolean {
+    const scale = width / (to - from) / (tile.width / (tile.to - tile.from));
+    return Math.abs(scale - 1) < 0.01;
+}
+
+function grown({ from, to }: Stretch, margin: number): Stretch {
+    const by = margin * (to - from);
+    return { from: Math.max(0, from - by), to: to + by };
 }
