@@ -20,6 +20,13 @@ function robot(attributes: object): string {
     return folder;
 }
 
+/** A tree that belongs to no system, with a file of mocks. F5 needs no `launch.json`. */
+function loneTree(): string {
+    const folder = temporaryFolder("tree");
+    fs.cpSync(path.join(ROOT, "examples/fetch_tree"), folder, { recursive: true });
+    return folder;
+}
+
 /** The delivery robot; its tree writes the number of parcels on the blackboard. */
 function withBlackboard(): string {
     const asInteger = (text: string) => text.replace('type="uint8"', 'type="int32"');
@@ -88,6 +95,24 @@ export function debugging(stage: Stage): void {
         await page.locator(".debug-call-stack").getByText("Paused on exception").first().waitFor();
         await choices.locator(".monaco-list-row").first().waitFor({ state: "detached" });
         await window.screenshot("debugging-choice");
+        await stop(window);
+    });
+
+    stage.test("F5 on a tree without a system runs it with the mocks beside it", loneTree, async (window) => {
+        const { page } = window;
+        await window.openFile("fetch.xml");
+        await window.running();
+        await window.goBehind("fetch.xml", "<FollowPath");
+        await page.keyboard.press("F9");
+        await page.locator(".codicon-debug-breakpoint, .codicon-debug-breakpoint-unverified").first().waitFor();
+        await page.keyboard.press("F5");
+        await choicesOf(window).getByText("step 0, 0.000 s").first().waitFor();
+        await makeSpace(window);
+        await page.keyboard.press("F5");
+        const stack = page.locator(".debug-call-stack .monaco-list-row");
+        await stack.filter({ hasText: "FollowPath (bt_1005): TICKED" }).first().waitFor();
+        await choicesOf(window).getByText("FollowPath (bt_1005) is ticked").first().waitFor();
+        await window.screenshot("debugging-tree");
         await stop(window);
     });
 

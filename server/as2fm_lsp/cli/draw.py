@@ -11,8 +11,7 @@ from collections.abc import Sequence
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.exit_status import CLEAN, USAGE
-from as2fm_lsp.cli.mock_arguments import mocks_in
-from as2fm_lsp.cli.mock_options import add_mocks
+from as2fm_lsp.cli.mock_options import add_mocks, declared_mocks
 from as2fm_lsp.cli.output import complain, print_text
 from roaml import api
 from roaml.figures.layout import LayoutDirection
@@ -62,7 +61,7 @@ def run(arguments: Sequence[str]) -> int:
             return _fail(_unknown_machine(options.machine, machines, options.file))
         drawn = machines[options.machine]
     try:
-        mocks = mocks_in(options)
+        mocks = declared_mocks(options).mocks()
     except (MockError, OSError) as error:
         return _fail(str(error))
     if mocks and kind is not DiagramKind.TREE:

@@ -7,12 +7,13 @@ from __future__ import annotations
 import argparse
 from fractions import Fraction
 
-from roaml.disk import UnreadableReason, read
-from roaml.model.kinds import FileKind, kind_of
-from roaml.text import decode
+from as2fm_lsp.cli.formats.report import shown_path
+from as2fm_lsp.cli.output import complain
+from as2fm_lsp.mocked_models import MAX_RATE, MockDeclarations, MockMessages, read_rate
+from roaml.mocks.mock import MockError
 
-MAX_RATE = 10_000
-"""The maximum tick rate, in Hz."""
+MESSAGES = MockMessages(complain, shown_path, '--mock "*: 0.9 in 1 s"')
+"""Messages about mocks are written to standard error."""
 
 
 def add_mock_options(parser: argparse.ArgumentParser) -> None:
@@ -36,25 +37,28 @@ def add_mocks(parser: argparse.ArgumentParser) -> argparse._ArgumentGroup:
     return group
 
 
-def has_mock_options(options: argparse.Namespace) -> bool:
-    return bool(options.mock or options.mocks or options.entry or options.tick_rate)
+def declared_mocks(options: argparse.Namespace) -> MockDeclarations:
+    """The mocks that the options of `add_mocks` declare."""
+    return MockDeclarations(tuple(options.mock), options.mocks)
 
 
-def names_tree(path: str) -> bool:
-    """Whether a path names a file with behavior trees."""
-    if path.endswith(".jani"):
-        return False
-    data = read(path)
-    if isinstance(data, UnreadableReason):
-        return False  # reported where the file is read
-    return kind_of(path, decode(path, data).text) is FileKind.TREE
+def declarations_in(options: argparse.Namespace) -> MockDeclarations:
+    """The declarations in the options of `add_mock_options`.
+
+    Raises:
+        MockError: an entry is not written as `NAME=VALUE`.
+    """
+    entries = {}
+    for text in options.entry:
+        name, equals, value = text.partition("=")
+        if not equals or not name.strip():
+            raise MockError(f"`{text}` does not set an entry; write it as NAME=VALUE")
+        entries[name.strip()] = value.strip()
+    return MockDeclarations(tuple(options.mock), options.mocks, entries, options.tick_rate)
 
 
 def _rate(text: str) -> Fraction:
-    try:
-        rate = Fraction(text)
-    except (ValueError, ZeroDivisionError):
-        rate = Fraction(0)
-    if not 0 < rate <= MAX_RATE:
+    rate = read_rate(text)
+    if rate is None:
         raise argparse.ArgumentTypeError(f"expected a number of Hz, greater than 0 and at most {MAX_RATE}")
     return rate

@@ -11,9 +11,10 @@ from collections.abc import Callable, Iterable
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.formats import CheckReport
 from as2fm_lsp.cli.formats.report import entry, shown_path
-from as2fm_lsp.cli.mock_options import add_mock_options, has_mock_options, names_tree
+from as2fm_lsp.cli.mock_options import MESSAGES, add_mock_options, declarations_in
 from as2fm_lsp.cli.output import takes_color
 from as2fm_lsp.cli.times import time_of
+from as2fm_lsp.mocked_models import check_declarations, load_mocked_tree, mocked_system_texts, names_tree
 from roaml import api
 from roaml.diagnostics import Diagnostic
 from roaml.jani.node import Origin
@@ -64,10 +65,10 @@ def check_model_arguments(options: argparse.Namespace) -> None:
             raise UsageError("--max-time needs a system; a JANI model has no such parameter")
     elif options.constant:
         raise UsageError("--constant needs a JANI model; a system has no constants")
-    if options.main.endswith(".jani") and has_mock_options(options):
-        raise UsageError("mocks, entries and a tick rate are for behavior trees; a JANI model has none")
-    if (options.entry or options.tick_rate) and not names_tree(options.main):
-        raise UsageError("entries and a tick rate are for files of behavior trees; a system declares them in its files")
+    try:
+        check_declarations(options.main, declarations_in(options))
+    except MockError as error:
+        raise UsageError(str(error)) from None
 
 
 def read_target(options: argparse.Namespace, settings: Settings) -> VerificationTarget:
@@ -77,22 +78,16 @@ def read_target(options: argparse.Namespace, settings: Settings) -> Verification
         api.PathError, api.ConstantError, api.ModelError, api.JaniError: as `api.target`.
         UsageError: leaves of a tree have no mock, or mocks are not valid.
     """
-    if names_tree(options.main):
-        from as2fm_lsp.cli.tree_subject import load_subject  # noqa: PLC0415 - systems start faster without it
-
-        try:
-            return load_subject(options, settings, counts=False).target
-        except MockError as error:
-            raise UsageError(str(error)) from None
-    overrides = Overrides(options.max_time, None)
     texts = None
-    if has_mock_options(options):
-        from as2fm_lsp.cli.mocked_system import mocked_texts  # noqa: PLC0415 - systems start faster without it
-
-        try:
-            texts = mocked_texts(options, settings)
-        except MockError as error:
-            raise UsageError(str(error)) from None
+    try:
+        declared = declarations_in(options)
+        if names_tree(options.main):
+            return load_mocked_tree(options.main, declared, options.max_time, settings, MESSAGES, counts=False).target
+        if not declared.is_empty:
+            texts = mocked_system_texts(options.main, declared, options.ros_path, settings, MESSAGES)
+    except MockError as error:
+        raise UsageError(str(error)) from None
+    overrides = Overrides(options.max_time, None)
     return api.target(options.main, options.ros_path, settings, texts, overrides, options.constant)
 
 

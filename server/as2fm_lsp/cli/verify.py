@@ -17,7 +17,7 @@ from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
 from as2fm_lsp.cli.formats import CheckReport, Format, render
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
-from as2fm_lsp.cli.mock_options import names_tree
+from as2fm_lsp.cli.mock_options import MESSAGES, declarations_in
 from as2fm_lsp.cli.model_arguments import (
     UsageError,
     check_model_arguments,
@@ -37,6 +37,7 @@ from as2fm_lsp.cli.verify_arguments import (
     limits_in,
     parser,
 )
+from as2fm_lsp.mocked_models import load_mocked_tree, names_tree
 from as2fm_lsp.verification import stuck_report
 from as2fm_lsp.verification.node_names import explained
 from as2fm_lsp.verification.report import as_json, as_text
@@ -127,8 +128,11 @@ def _run(options: argparse.Namespace) -> int:
 
 def _run_tree(options: argparse.Namespace, expectations: list[Expectation], limits: Options, settings: Settings) -> int:
     """Verify a tree without a system, with mocks (docs/spec/mocks.md)."""
-    from as2fm_lsp.cli.tree_subject import load_subject  # noqa: PLC0415 - systems start faster without these
-    from roaml.verification.tree_outcome import SUCCEEDS, TRACES, measure  # noqa: PLC0415
+    from roaml.verification.tree_outcome import (  # noqa: PLC0415 - systems start faster without it
+        SUCCEEDS,
+        TRACES,
+        measure,
+    )
 
     if limits.method is EstimationMethod.ADAPTIVE:  # the number is fixed, because all measurements use the same traces
         epsilon = WIDTH_OF_TREES if limits.epsilon == Options().epsilon else limits.epsilon
@@ -138,7 +142,9 @@ def _run_tree(options: argparse.Namespace, expectations: list[Expectation], limi
     try:
         with StatusLine() as status:
             status.stage("reading and translating")
-            tree = load_subject(options, settings, counts=not options.exhaustive)
+            counts = not options.exhaustive
+            declared = declarations_in(options)
+            tree = load_mocked_tree(options.main, declared, options.max_time, settings, MESSAGES, counts=counts)
             status.stage("compiling")
             names = options.property or [SUCCEEDS]
             verifier = api.verifier(tree.target, names, limits, expectations, only_uniform=True)

@@ -4,16 +4,27 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from as2fm_lsp.debug.arguments import Arguments, RequestError
+from as2fm_lsp.mocked_models import (
+    MAX_RATE,
+    MockDeclarations,
+    MockMessages,
+    check_declarations,
+    load_mocked_tree,
+    mocked_system_texts,
+    names_tree,
+    read_rate,
+)
 from roaml import api
 from roaml.debugging.debugger import Debugger, Log
 from roaml.debugging.sources import Sources
 from roaml.debugging.start import Start, StartError, Watch, start
 from roaml.diagnostics import Diagnostic
-from roaml.disk import NotReadableError, required
+from roaml.disk import NotReadableError, is_valid_path, required
 from roaml.language.grammar import XML_GRAMMARS
+from roaml.mocks.mock import MockError
 from roaml.model.parameters import Overrides, duration
 from roaml.project.configuration import find_settings
 from roaml.project.settings import ament_prefixes
@@ -31,10 +42,11 @@ class Launch(Record, frozen=True):
     """The arguments of `launch`.
 
     Attributes:
-        program: the system file, or a JANI model.
+        program: the system file, a file of behavior trees, or a JANI model.
         stops_on_entry: whether the run stops at its start.
         max_time: overrides the time limit of the system, in ns.
         constants: `NAME=VALUE` for constants of a JANI model.
+        mocks: the mocks of leaves without a plugin, and the parameters of a tree without a system.
     """
 
     program: str
@@ -43,6 +55,7 @@ class Launch(Record, frozen=True):
     max_time: int | None
     constants: tuple[str, ...]
     ros_paths: tuple[str, ...]
+    mocks: MockDeclarations
 
 
 def warm_up() -> None:
@@ -76,19 +89,39 @@ def launch_of(arguments: Arguments) -> Launch:
         TraceVerdict.PASSED if in_favour else TraceVerdict.FAILED,
         _saved(os.path.join(os.path.dirname(program), saved)) if saved else None,
     )
-    constants = arguments.object("constants").members
     return Launch(
         program,
         begin,
         arguments.flag("stopOnEntry", not begin.nth),
         nanoseconds,
-        tuple(f"{name}={_constant(value)}" for name, value in constants.items()),
+        tuple(f"{name}={value}" for name, value in _values(arguments, "constants").items()),
         tuple(arguments.texts("rosPath")),
+        _mocks(arguments, os.path.dirname(program)),
     )
 
 
-def _constant(value: object) -> str:
-    return str(value).lower() if isinstance(value, bool) else str(value)
+def _mocks(arguments: Arguments, folder: str) -> MockDeclarations:
+    file, rate = arguments.text("mocksFile"), None
+    if not is_valid_path(file):
+        raise RequestError("`mocksFile` is not a path")
+    if arguments.has("tickRate"):
+        rate = read_rate(str(arguments.decimal("tickRate", 0)))
+        if rate is None:
+            raise RequestError(f"`tickRate` must be a number of Hz, greater than 0 and at most {MAX_RATE}")
+    return MockDeclarations(
+        tuple(arguments.texts("mocks")),
+        os.path.join(folder, file) if file else None,
+        _values(arguments, "entries"),
+        rate,
+    )
+
+
+def _values(arguments: Arguments, name: str) -> Mapping[str, str]:
+    """The members of an object with values, as texts; empty if it is missing."""
+    values = arguments.members.get(name) or {}
+    if not isinstance(values, dict):
+        raise RequestError(f"`{name}` must be an object")
+    return {key: str(value).lower() if isinstance(value, bool) else str(value) for key, value in values.items()}
 
 
 def _saved(path: str) -> SavedSession:
@@ -107,27 +140,35 @@ def load(launch: Launch, log: Log, watch: Watch) -> Debugger:
         RequestError: the model cannot be run, or the run does not exist.
     """
     try:
-        return start(_sources(launch), launch.start, log, watch)
+        return start(_sources(launch, log), launch.start, log, watch)
     except api.ModelError as error:
         raise RequestError(_first(error.result.diagnostics, error.result.source)) from None
     except api.JaniError as error:
         source = error.source
         raise RequestError(_first(error.diagnostics, lambda _: source)) from None
-    except (StartError, RunError, api.PathError, api.PropertyError, api.ConstantError) as error:
+    except OSError as error:
+        raise RequestError(f"{error.filename or launch.program}: {error.strerror or error}") from None
+    except (StartError, RunError, MockError, api.PathError, api.PropertyError, api.ConstantError) as error:
         raise RequestError(str(error)) from None
     except FaultError as fault:
         raise RequestError(f"the model cannot be run: {fault.message}") from None
 
 
-def _sources(launch: Launch) -> Sources:
-    path = launch.program
+def _sources(launch: Launch, log: Log) -> Sources:
+    path, mocks = launch.program, launch.mocks
     settings, problems = find_settings(path)
     if problems:
         raise RequestError(problems[0])
     settings = replace(settings, ament_prefixes=ament_prefixes())
+    check_declarations(path, mocks)
     if path.endswith(".jani"):
         return Sources(api.target(path, launch.ros_paths, settings, constants=launch.constants))
-    system = api.load(path, launch.ros_paths, settings, overrides=Overrides(launch.max_time, None))
+    messages = MockMessages(lambda text: log(text, None), str, '`"mocks": ["*: 0.9 in 1 s"]`')
+    if names_tree(path):
+        tree = load_mocked_tree(path, mocks, launch.max_time, settings, messages, counts=False)
+        return Sources(tree.target, tree=tree.mocked.tree)
+    texts = None if mocks.is_empty else mocked_system_texts(path, mocks, launch.ros_paths, settings, messages)
+    system = api.load(path, launch.ros_paths, settings, texts, Overrides(launch.max_time, None))
     return Sources(api.as_target(system), system.analysis)
 
 

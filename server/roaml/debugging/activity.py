@@ -48,12 +48,17 @@ class ActiveEdge(Record, frozen=True):
 
 
 def active_nodes(debugger: Debugger) -> Iterator[ActiveNode]:
-    """The active nodes of all pictures of the system; none for a JANI model."""
+    """The active nodes of all pictures of the system, or of the tree without a system; none for a JANI model."""
+    session, path = debugger.session, debugger.sources.target.path
+    state, nodes = debugger.state, debugger.sources.nodes
+    for tree_node in state.nodes:
+        if tree_node.number in nodes:
+            look = tree_node.status.value.lower()
+            yield ActiveNode(DiagramKind.TREE, path, nodes[tree_node.number].picture, look)
     analysis, system = _sources(debugger)
     if analysis is None or system is None:
         return
-    session, path = debugger.session, debugger.sources.target.path
-    state, upcoming = debugger.state, debugger.upcoming()
+    upcoming = debugger.upcoming()
     actors = {part.automaton for part in session.actors(upcoming)} if upcoming is not None else set()
     origins = {automaton.name: automaton.origin for automaton in session.automata_of_model}
     for machine in state.machines:
@@ -63,8 +68,6 @@ def active_nodes(debugger: Debugger) -> Iterator[ActiveNode]:
             node, look = state_id(chart, machine.state), NEXT if machine.automaton in actors else ACTIVE
             yield ActiveNode(DiagramKind.MACHINE, origin.path, node, look)
             yield ActiveNode(DiagramKind.SYSTEM, path, id_in_system(origin.path, node), look)
-    for tree_node in state.nodes:
-        yield ActiveNode(DiagramKind.TREE, path, str(tree_node.number), tree_node.status.value.lower())
     for channel in dict.fromkeys(channel for channel, _, _ in _in_flight(state, system)):
         yield ActiveNode(DiagramKind.ROS, path, channel, MESSAGE)
 

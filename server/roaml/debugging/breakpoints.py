@@ -164,9 +164,9 @@ class BreakpointPlaces:
             self.by_path.setdefault(line.path, []).append(line.line)
 
     def _find(self) -> None:
-        for number, origin in self._sources.node_origins.items():
-            if (line := self.line(origin)) is not None:
-                self.nodes.setdefault(line, []).append(number)
+        for node in self._sources.nodes.values():
+            if (line := self.line(node.origin)) is not None:
+                self.nodes.setdefault(line, []).append(node.number)
         for name, origin in self._sources.property_origins.items():
             for line in self._lines(origin):
                 self.properties.setdefault(line, []).append(name)
@@ -178,7 +178,7 @@ class BreakpointPlaces:
                 if (line := self.line(origin)) is not None:
                     self.states.setdefault(line, []).append((instance, name))
         for instance, automaton in enumerate(self._session.automata_of_model):
-            if self._session.is_machine(instance):
+            if self._session.is_machine(instance) and not self._sources.is_library_node(automaton):
                 for edge in automaton.edges:
                     for destination in edge.destinations:
                         part = AutomatonStep(instance, automaton.name, edge.source, edge, destination)
@@ -334,5 +334,5 @@ def nodes_named(sources: Sources, name: str) -> list[int]:
     return [
         number
         for number, node in sources.nodes.items()
-        if name in (node.plugin, node.name, f"bt_{number}", f"{node.plugin} (bt_{number})")
+        if name in (node.type, node.name, f"bt_{number}", f"{node.type} (bt_{number})")
     ]

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping
 from enum import Enum
 
 from roaml.debugging.sources import Sources
+from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
 from roaml.record import Record
 from roaml.scxml.names import NODE_AUTOMATON, received_by
@@ -140,20 +141,23 @@ class Stacks:
         statuses = {node.number: node for node in self._state.nodes}
         active = self._active_node(statuses)
         instance = self._instances.get(self._sources.nodes[active].automaton, -1) if active else -1
-        if instance >= 0 and self._session.is_machine(instance):
-            machine = self._machines[self._sources.nodes[active].automaton]
+        automaton = self._session.automata_of_model[instance] if instance >= 0 else None
+        if automaton is not None and self._executes_machine(instance, automaton):
+            machine = self._machines[automaton.name]
             if instance in self._parts or not self._session.is_resting(instance, self._locations[instance]):
                 yield from self._machine_frames(thread, machine, instance, active)
         number: int | None = active
         while number:
             node = self._sources.nodes[number]
             status = statuses[number].status.value if number in statuses else NodeStatus.IDLE.value
-            name = f"{node.name} (bt_{number})" if node.name == node.plugin else f"{node.name} : {node.plugin}"
-            origin = self._sources.node_origins.get(number)
-            yield Frame(
-                thread, f"{name}: {status}", origin, self._instances.get(node.automaton, -1), number, FrameRole.NODE
-            )
+            name = f"{node.name} (bt_{number})" if node.name == node.type else f"{node.name} : {node.type}"
+            instance = self._instances.get(node.automaton, -1)
+            yield Frame(thread, f"{name}: {status}", node.origin, instance, number, FrameRole.NODE)
             number = node.parent
+
+    def _executes_machine(self, instance: int, automaton: Automaton) -> bool:
+        """Whether a node of the tree executes a machine that the user has written."""
+        return self._session.is_machine(instance) and not self._sources.is_library_node(automaton)
 
     def _active_node(self, statuses: Mapping[int, NodeState]) -> int:
         """The node that executes the next step; if none does, the innermost node that is being ticked, or the root."""

@@ -11,7 +11,6 @@ from roaml.debugging.frames import Frame
 from roaml.debugging.sources import Sources
 from roaml.debugging.values import SEPARATOR, Value, nested, type_of, typed_value, untyped_values
 from roaml.exhaustive import Vocabulary
-from roaml.model.expand import PortConstant
 from roaml.record import Record, replace
 from roaml.scxml.names import (
     BLACKBOARD,
@@ -132,13 +131,12 @@ class Values:
             yield ScopeEntry(phrases.get(name, name), value, type_of(value), name, WatchedVariable(instance, name))
 
     def _ports(self, node: int) -> Iterator[ScopeEntry]:
-        for key, port in self._sources.nodes[node].ports:
-            if isinstance(port, PortConstant):
-                yield ScopeEntry(key, port.text, "constant")
+        for port in self._sources.nodes[node].ports:
+            if not port.entry:
+                yield ScopeEntry(port.name, port.text, "constant")
             else:
-                value = self._blackboard_values().get(port.variable)
-                text = f"{{{port.variable}}}"
-                yield ScopeEntry(key, text if value is None else value, f"blackboard entry {port.variable}")
+                value = self._blackboard_values().get(port.entry)
+                yield ScopeEntry(port.name, port.text if value is None else value, f"blackboard entry {port.entry}")
 
     def _blackboard_values(self) -> dict[str, Value]:
         stored = self._stored.get(self._instances.get(BLACKBOARD, -2), {})

@@ -5,17 +5,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
+from typing import TYPE_CHECKING
 
+from roaml.debugging.tree_nodes import SourceNode, nodes_of_system, nodes_of_tree
 from roaml.expr.types import Type, leaves
 from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
-from roaml.model.expand import Instance, node_at
 from roaml.model.ros import InterfaceType
 from roaml.model.value_types import INTERFACE_KINDS
 from roaml.project.analysis import Analysis
 from roaml.record import Record
 from roaml.scxml.names import (
     FIELD_PREFIX,
+    NODE_AUTOMATON,
     InterfaceEvent,
     InterfaceEventKind,
     read_interface_event,
@@ -24,36 +26,44 @@ from roaml.scxml.names import (
 from roaml.text import Location
 from roaml.verification.target import LineColumn, VerificationTarget
 
+if TYPE_CHECKING:
+    from roaml.lower.programs.executed import ExecutedTree
+
 
 class Sources(Record, frozen=True, dict=True):
     """The sources of a model.
 
     Attributes:
-        analysis: the models of the system; `None` for a JANI file.
+        analysis: the models of the system; `None` for a JANI file and for a tree without a system.
+        tree: the tree without a system that is executed; `None` for other models.
     """
 
     target: VerificationTarget
     analysis: Analysis | None = None
+    tree: ExecutedTree | None = None
 
     def place(self, origin: Origin | None) -> LineColumn | None:
         return self.target.place(origin)
 
     @cached_property
-    def nodes(self) -> Mapping[int, Instance]:
+    def nodes(self) -> Mapping[int, SourceNode]:
         """The nodes of the tree, by their numbers."""
-        system = None if self.analysis is None else self.analysis.system(self.target.path)
-        return {} if system is None else {instance.number: instance for instance in system.instances}
+        if self.tree is not None:
+            nodes = nodes_of_tree(self.tree)
+        elif self.analysis is not None:
+            nodes = nodes_of_system(self.analysis, self.target.path)
+        else:
+            return {}
+        return {node.number: node for node in nodes}
 
-    @cached_property
-    def node_origins(self) -> Mapping[int, Origin]:
-        """The element of each node in the file of its tree."""
-        origins = {}
-        for number, instance in self.nodes.items():
-            file = None if self.analysis is None else self.analysis.tree(instance.source.path)
-            node = None if file is None else node_at(file, instance.source)
-            if node is not None:
-                origins[number] = Location(instance.source.path, node.element.span)
-        return origins
+    def is_library_node(self, automaton: Automaton) -> bool:
+        """Whether an automaton executes a node of the tree whose behaviour is that of a library or of a mock, so that
+        its states and statements are in no file."""
+        node = NODE_AUTOMATON.fullmatch(automaton.name)
+        if node is None or int(node[1]) not in self.nodes:
+            return False
+        path = "" if automaton.origin is None else automaton.origin.path
+        return self.analysis is None or self.analysis.machine(path) is None
 
     @cached_property
     def property_origins(self) -> Mapping[str, Origin]:

@@ -136,9 +136,9 @@ async function verify({ documents, server, tests }: Parts): Promise<void> {
     void vscode.window.showInformationMessage(vscode.l10n.t("{0} lists no properties that can be verified.", name));
 }
 
-async function debugSystem({ documents, debugging }: Parts): Promise<void> {
-    const system = await documents.system(vscode.window.activeTextEditor?.document);
-    if (system) await debugging.start(system, {});
+async function debugSystem({ debugging }: Parts): Promise<void> {
+    const program = await debugging.program(vscode.window.activeTextEditor?.document);
+    if (program) await debugging.start(program, {});
 }
 
 async function showOfSystem(

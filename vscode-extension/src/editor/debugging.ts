@@ -44,7 +44,7 @@ export class Debugging implements vscode.DebugConfigurationProvider, vscode.Debu
         await vscode.debug.startDebugging(folder, configuration);
     }
 
-    /** Without a launch.json, F5 debugs the system of the active file. */
+    /** Without a launch.json, F5 debugs the model of the active file. */
     async resolveDebugConfiguration(
         _folder: vscode.WorkspaceFolder | undefined,
         given: vscode.DebugConfiguration,
@@ -58,10 +58,16 @@ export class Debugging implements vscode.DebugConfigurationProvider, vscode.Debu
             configuration.name = vscode.l10n.t("Debug system");
         }
         if (typeof configuration["program"] === "string") return configuration;
-        const document = vscode.window.activeTextEditor?.document;
-        const kind = (await this.documents.about(document)).kind;
-        const program = kind === "model" ? document?.uri : await this.documents.system(document);
+        const program = await this.program(vscode.window.activeTextEditor?.document);
         return program && { ...configuration, program: program.fsPath };
+    }
+
+    /** The model that is debugged from a document: the document itself if it is a JANI model, or a tree that belongs to
+     * no system; otherwise its system. */
+    async program(document: vscode.TextDocument | undefined): Promise<vscode.Uri | undefined> {
+        const { kind, systems } = await this.documents.about(document);
+        const isAlone = kind === "model" || (kind === "tree" && systems.length === 0);
+        return isAlone ? document?.uri : this.documents.system(document);
     }
 
     createDebugAdapterDescriptor(): vscode.DebugAdapterDescriptor {

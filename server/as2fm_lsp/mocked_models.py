@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Models with mocks that the user declares: trees without a system, and systems with leaves that have no plugin
+(docs/spec/mocks.md)."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from roaml.disk import UnreadableReason, read
+from roaml.mocks.mock import Mock, MockError, read_mock, read_mocks, unused
+from roaml.model.kinds import FileKind, kind_of
+from roaml.project.settings import Settings
+from roaml.record import Record, field, replace
+from roaml.text import decode
+
+if TYPE_CHECKING:
+    from roaml.api.trees import LoadedTree
+
+MAX_RATE = 10_000
+"""The maximum tick rate, in Hz."""
+MAX_NAMES = 8
+"""The maximum number of types of leaves in a message."""
+
+
+class MockDeclarations(Record, frozen=True):
+    """The mocks that the user declares, and the parameters of a tree without a system.
+
+    Attributes:
+        texts: mocks such as `FollowPath: 0.9 in 2 s`.
+        file: the path of a file with further mocks; `None` if there is none.
+        entries: name of a blackboard entry -> its text at the start.
+        rate: the tick rate of the tree in Hz; `None` for the default.
+    """
+
+    texts: tuple[str, ...] = ()
+    file: str | None = None
+    entries: Mapping[str, str] = field(default_factory=dict)
+    rate: Fraction | None = None
+
+    @property
+    def has_mocks(self) -> bool:
+        return bool(self.texts) or self.file is not None
+
+    @property
+    def is_empty(self) -> bool:
+        return not (self.has_mocks or self.entries or self.rate)
+
+    def mocks(self) -> tuple[Mock, ...]:
+        """The declared mocks, followed by those in the file.
+
+        Raises:
+            MockError: a mock is not valid, or the file is not valid UTF-8.
+            OSError: the file cannot be read.
+        """
+        mocks = tuple(read_mock(text) for text in self.texts)
+        return mocks if self.file is None else mocks + _mocks_of(self.file)
+
+
+class MockMessages(Record, frozen=True):
+    """How messages about mocks reach the user.
+
+    Attributes:
+        write: receives notes on the mocks that are used.
+        shown: a path -> its text in messages.
+        example: how the user declares a mock.
+    """
+
+    write: Callable[[str], None]
+    shown: Callable[[str], str]
+    example: str
+
+
+def read_rate(text: str) -> Fraction | None:
+    """The tick rate in Hz that a text contains; `None` if it is not greater than 0 and at most `MAX_RATE`."""
+    try:
+        rate = Fraction(text)
+    except (ValueError, ZeroDivisionError):
+        return None
+    return rate if 0 < rate <= MAX_RATE else None
+
+
+def names_tree(path: str) -> bool:
+    """Whether a path names a file with behavior trees."""
+    if path.endswith(".jani"):
+        return False
+    data = read(path)
+    if isinstance(data, UnreadableReason):
+        return False  # reported where the file is read
+    return kind_of(path, decode(path, data).text) is FileKind.TREE
+
+
+def check_declarations(path: str, declared: MockDeclarations) -> None:
+    """Check that declarations fit the kind of a model.
+
+    Raises:
+        MockError: they do not.
+    """
+    if path.endswith(".jani") and not declared.is_empty:
+        raise MockError("mocks, entries and a tick rate are for behavior trees; a JANI model has none")
+    if (declared.entries or declared.rate) and not names_tree(path):
+        raise MockError("entries and a tick rate are for files of behavior trees; a system declares them in its files")
+
+
+def load_mocked_tree(
+    path: str,
+    declared: MockDeclarations,
+    max_time: int | None,
+    settings: Settings,
+    messages: MockMessages,
+    *,
+    counts: bool,
+) -> LoadedTree:
+    """A tree without a system, with the declared mocks; if there are none, with those in the file beside the tree. The
+    file with mocks is one of the files of the target.
+
+    Args:
+        max_time: the limit of the simulated time in ns; `None` for the default.
+        counts: whether mocks count their answers, for measurements.
+
+    Raises:
+        MockError: a mock is not valid, or leaves have no mock.
+        OSError: the file with mocks cannot be read.
+        PathError, ModelError: as `load_tree`.
+    """
+    from roaml.api.trees import load_tree  # noqa: PLC0415 - systems start faster without these
+    from roaml.mocks.network import (  # noqa: PLC0415
+        DEFAULT_MAX_TIME,
+        DEFAULT_RATE,
+        MissingMocksError,
+        MockOptions,
+    )
+    from roaml.project.mock_files import mocks_path  # noqa: PLC0415
+
+    if not declared.has_mocks and Path(beside := mocks_path(path)).is_file():
+        messages.write(f"with the mocks of {messages.shown(beside)}")
+        declared = replace(declared, file=beside)
+    mocks = declared.mocks()
+    rate, limit = declared.rate or DEFAULT_RATE, max_time or DEFAULT_MAX_TIME
+    try:
+        tree = load_tree(path, MockOptions(mocks, declared.entries, rate, limit, counts), settings)
+    except MissingMocksError as missing:
+        raise _missing_mocks(path, [leaf.type for leaf in missing.leaves], messages) from None
+    _report_unused(unused(mocks, [(node.name, node.type) for node in tree.mocked.tree.nodes]), messages)
+    if declared.file is None:
+        return tree
+    return replace(tree, target=replace(tree.target, files=(*tree.target.files, os.path.abspath(declared.file))))
+
+
+def mocked_system_texts(
+    path: str, declared: MockDeclarations, ros_paths: Iterable[str], settings: Settings, messages: MockMessages
+) -> Mapping[str, str]:
+    """The texts of a system's files with the declared mocks.
+
+    Raises:
+        MockError: a mock is not valid, or leaves have none.
+        OSError: the file with mocks cannot be read.
+        PathError: the path is not a system file.
+    """
+    from roaml.api.mocked_systems import mock_system  # noqa: PLC0415 - systems without mocks start faster
+
+    mocked = mock_system(path, declared.mocks(), ros_paths, settings)
+    if mocked.missing:
+        raise _missing_mocks(path, mocked.missing, messages)
+    _report_unused(mocked.unused, messages)
+    leaves = len(mocked.planned)
+    parts = [f"{leaves} {'type' if leaves == 1 else 'types'} of leaves"]
+    if mocked.events:
+        parts.append(f"{mocked.events} {'node' if mocked.events == 1 else 'nodes'} that depend on random events")
+    messages.write(f"with mocks for {' and '.join(parts)}")
+    return mocked.texts
+
+
+def _mocks_of(path: str) -> tuple[Mock, ...]:
+    try:
+        return read_mocks(Path(path).read_text(encoding="utf-8"))
+    except UnicodeDecodeError:
+        raise MockError(f"{path}: not valid UTF-8; fix the encoding") from None
+
+
+def _missing_mocks(path: str, types: Iterable[str], messages: MockMessages) -> MockError:
+    names = list(dict.fromkeys(types))
+    listed = ", ".join(names[:MAX_NAMES]) + (", …" if len(names) > MAX_NAMES else "")
+    return MockError(f"{messages.shown(path)}: these leaves need mocks: {listed}; for example {messages.example}")
+
+
+def _report_unused(mocks: Iterable[Mock], messages: MockMessages) -> None:
+    for mock in mocks:
+        messages.write(f"the mock `{mock.pattern}` matches no node of the tree")

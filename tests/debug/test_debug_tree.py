@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The debugger runs a behavior tree without a system, with mocks of its leaves."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from dap_client import Client
+
+from as2fm_lsp.cli.main import run
+from roaml import api
+from roaml.ide.diagrams import DiagramKind, picture_of
+
+ROOT = Path(__file__).resolve().parents[2]
+FETCH = ROOT / "examples" / "fetch_tree" / "fetch.xml"
+BUG = ROOT / "examples" / "assembly_robot" / "main_with_bug.xml"
+TREE = """<root BTCPP_format="4" main_tree_to_execute="Main">
+    <BehaviorTree ID="Main">
+        <Sequence>
+            <Drive goal="{shelf}" />
+            <ScriptCondition code="load > 3" />
+            <Grasp name="grasp box" />
+        </Sequence>
+    </BehaviorTree>
+</root>
+"""
+GRASP = 6
+
+
+@pytest.fixture
+def client() -> Iterator[Client]:
+    with Client() as client:
+        yield client
+
+
+@pytest.fixture
+def tree(tmp_path: Path) -> Path:
+    path = tmp_path / "tree.xml"
+    path.write_text(TREE, encoding="utf-8")
+    return path
+
+
+def _line(path: Path, text: str) -> int:
+    lines = path.read_text(encoding="utf-8").splitlines()
+    return next(number for number, line in enumerate(lines, 1) if text in line)
+
+
+def _break(client: Client, path: Path, *lines: int) -> list[dict[str, Any]]:
+    breakpoints = [{"line": line} for line in lines]
+    return list(client.ask("setBreakpoints", source={"path": str(path)}, breakpoints=breakpoints)["breakpoints"])
+
+
+def _outputs(client: Client) -> str:
+    return "".join(event["body"]["output"] for event in client.events if event["event"] == "output")
+
+
+def test_a_tree_runs_with_the_mocks_beside_it(client: Client) -> None:
+    assert client.begin(FETCH)["reason"] == "entry"
+    assert "with the mocks of" in _outputs(client)
+    assert "fetch.mocks" in _outputs(client)
+    assert client.ask("threads")["threads"] == [{"id": 1, "name": "tree"}]
+    follow = _line(FETCH, "<FollowPath")
+    (set_,) = _break(client, FETCH, follow)
+    assert (set_["verified"], set_["line"]) == (True, follow)
+    assert client.move()["hitBreakpointIds"] == [set_["id"]]
+    frames = [(frame["name"], frame["line"]) for frame in client.stack(1)]
+    assert frames == [
+        ("FollowPath (bt_1005): TICKED", follow),
+        ("PipelineSequence (bt_1002): TICKED", _line(FETCH, "<PipelineSequence")),
+        ("DriveToShelf : RecoveryNode: TICKED", _line(FETCH, "<RecoveryNode")),
+        ("Sequence (bt_1000): TICKED", _line(FETCH, "<Sequence>")),
+    ]
+    ports = client.scope(client.stack(1)[0]["id"], "Ports")
+    assert {name: port["value"] for name, port in ports.items()} == {
+        "path": "'{path}'",
+        "controller_id": "'FollowPath'",
+    }
+    # The breakpoint stops once in each tick of the node.
+    ticks = [client.ask("choices")["time"]]
+    for _ in range(3):
+        client.move()
+        ticks.append(client.ask("choices")["time"])
+    assert ticks == pytest.approx([0.4, 0.5, 0.6, 0.7])
+
+
+def test_breakpoints_in_a_subtree_and_statuses_in_the_picture(client: Client) -> None:
+    client.launch(FETCH, mocks=["*: 1 in 200 ms"])
+    gripper = _line(FETCH, "<CloseGripper")
+    _break(client, FETCH, gripper)
+    client.ask("configurationDone")
+    client.event("stopped")
+    client.move()
+    stack = client.stack(1)
+    assert [frame["line"] for frame in stack[:2]] == [gripper, _line(FETCH, "<Timeout")]
+    assert any(frame["name"] == "Grasp : SubTree: TICKED" for frame in stack)
+    picture = picture_of(DiagramKind.TREE, api.check([str(FETCH)]).snapshot.analysis, str(FETCH))
+    assert picture is not None
+    labels = {node.id: node.label for node in picture.nodes}
+    active = {node["node"]: node for node in client.ask("pictures")["nodes"]}
+    assert {node["source"]["path"] for node in active.values()} == {str(FETCH)}
+    assert active.keys() == {name for name in labels if not name.startswith("{")}
+    ticked = {labels[name] for name, node in active.items() if node["look"] == "ticked"}
+    path = ("Sequence", "Grasp", "RetryUntilSuccessful", "Timeout", "CloseGripper")
+    assert ticked == set(path)
+    assert "Script" in {labels[name] for name, node in active.items() if node["look"] == "success"}
+
+
+def test_the_attributes_of_launch_declare_the_mocks(client: Client, tree: Path) -> None:
+    (tree.parent / "slow.mocks").write_text("Drive: 1 in 2 s  # slow\n", encoding="utf-8")
+    attributes = {"mocks": ["grasp*: 1", "Unused: 0"], "mocksFile": "slow.mocks", "entries": {"load": 5}}
+    client.launch(tree, tickRate=2.5, maxTime="10 s", **attributes)
+    assert "the mock `Unused` matches no node of the tree" in _outputs(client)
+    client.ask("setExceptionBreakpoints", filters=["satisfied", "end"])
+    client.ask("configurationDone")
+    client.event("stopped")
+    assert client.move()["text"] == "satisfied: succeeds"
+    steps, time = client.step(), client.ask("choices")["time"]
+    # The first tick is at 0.4 s. Drive ends 2 s later, and an action without a duration at the next tick.
+    assert time == pytest.approx(2.8)
+    output = tree.parent / "run.json"
+    options = ["--mock", "grasp*: 1", "--mocks", str(tree.parent / "slow.mocks"), "--entry", "load=5"]
+    assert run(["simulate", str(tree), *options, "--tick-rate", "2.5", "--json", str(output)]) == 0
+    assert len(json.loads(output.read_text(encoding="utf-8"))["steps"]) == steps
+    (tree.parent / "slow.mocks").write_text("Drive: 0\n", encoding="utf-8")
+    client.move("stepBack")
+    assert "slow.mocks has changed since it was read" in _outputs(client)
+    client.ask("restart")
+    client.event("stopped")
+    assert client.move()["text"] == "satisfied: fails"
+    assert client.ask("choices")["verdicts"]["fails"] == "passed"
+
+
+def test_wrong_declarations_are_refused(client: Client, tree: Path) -> None:
+    client.ask("initialize", adapterID="as2fm", clientID="test")
+
+    def refusal(path: Path = tree, **attributes: Any) -> str:
+        return client.refusal("launch", program=str(path), **attributes)
+
+    missing = refusal(entries={"load": 5})
+    assert missing == f'{tree}: these leaves need mocks: Drive, Grasp; for example `"mocks": ["*: 0.9 in 1 s"]`'
+    assert "`Drive 1` is not a mock" in refusal(mocks=["Drive 1"])
+    assert "nothing sets the entry `load`" in refusal(mocks=["*: 1"])
+    assert refusal(mocksFile="none.mocks") == f"{tree.parent / 'none.mocks'}: No such file or directory"
+    assert refusal(mocksFile="a\0b") == "`mocksFile` is not a path"
+    assert "`tickRate` must be a number of Hz" in refusal(tickRate=0)
+    assert "a system declares them in its files" in refusal(BUG, tickRate=5)
+    model = tree.parent / "model.jani"
+    model.write_text("{}", encoding="utf-8")
+    assert "a JANI model has none" in refusal(model, mocks=["*: 1"])
+
+
+def test_mocks_replace_missing_plugins_of_a_system(client: Client, tmp_path: Path) -> None:
+    robot = tmp_path / "robot"
+    shutil.copytree(BUG.parent, robot)
+    main = robot / BUG.name
+    listed = re.sub(r'\s*<input[^>]*src="plugins/holds_block.ascxml"[^>]*/>', "", main.read_text(encoding="utf-8"))
+    main.write_text(listed, encoding="utf-8")
+    client.begin(main, mocks=["HoldsBlock: 1"])
+    assert "with mocks for 1 type of leaves" in _outputs(client)
+    client.ask("setFunctionBreakpoints", breakpoints=[{"name": "HoldsBlock"}])
+    assert client.move()["text"] == "HoldsBlock"
+
+
+def test_the_schema_of_launch_lists_what_the_adapter_reads(client: Client, tree: Path) -> None:
+    """The adapter refuses a value of a wrong type for each attribute of the schema. The document lists the same
+    attributes."""
+    package = json.loads((ROOT / "vscode-extension" / "package.json").read_text(encoding="utf-8"))
+    (debugger,) = package["contributes"]["debuggers"]
+    schema = debugger["configurationAttributes"]["launch"]["properties"]
+    client.ask("initialize", adapterID="as2fm", clientID="test")
+    for name in schema:
+        wrong = {"program": str(tree), name: [{"wrong": 1}]}
+        assert f"`{name}`" in client.refusal("launch", **wrong), name
+    document = (ROOT / "docs" / "debugging.md").read_text(encoding="utf-8")
+    table = document.partition("| attribute of `launch` | meaning |")[2].partition("\n\n")[0]
+    rows = [row.split("|")[1] for row in table.splitlines() if "|" in row]
+    assert {name for row in rows for name in re.findall(r"`(\w+)`", row)} == set(schema)
+    texts = json.loads((ROOT / "vscode-extension" / "package.nls.json").read_text(encoding="utf-8"))
+    assert all(attribute["description"].strip("%") in texts for attribute in schema.values())
