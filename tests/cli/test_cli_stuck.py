@@ -47,7 +47,7 @@ def test_a_stuck_system_is_reported_prominently(command: Command, ward: Path) ->
         lines[1],
     )
     assert lines[2].startswith("    the clock waits at 2 s for the tree")
-    assert lines[6].startswith("    help: a tick must return a status before time passes")
+    assert lines[6].startswith("    help: a tick must end before the next one is due")
     assert lines[6].endswith(" [answer-needs-time]")
     assert re.fullmatch(r"  ends: goal decided [\d,]+, stuck [\d,]+", lines[7])
     assert done.out.count("the clock waits") == 1
@@ -190,7 +190,7 @@ def test_explained_to_the_end(command: Command, ward: Path) -> None:
         story = command("verify", "main.xml", *options, "--explain").out
         assert re.search(r": trace \d+ gets stuck after \d+ steps; \d+ turns matter", story)
         *last, advice, legend = story.rstrip().splitlines()[-6:]
-        assert advice.startswith("  help: a tick must return a status")
+        assert advice.startswith("  help: a tick must end")
         assert "bt_1002 is Fetch (tree.xml:5)" in legend
         assert [re.sub(r" {2,}", "  ", text).split("  ")[2] for text in last] == [
             "the clock",

@@ -44,7 +44,7 @@ the clock waits at 2 s for the tree to take its next tick (tree.xml:3)
 the tree waits for Fetch (bt_1002) to return a status (tree.xml:5)
 Fetch (bt_1002) waits in `asked` for the response of the service `/ward/prepare` (fetch.ascxml:12)
 Pharmacy waits in `busy` for its timer `dispense`, which ticks when the clock advances (pharmacy.ascxml:8)
-help: a tick must return a status before time passes; let Fetch (bt_1002) return RUNNING, and the result at a later tick
+help: a tick must end before the next one is due; let Fetch (bt_1002) return RUNNING, and the result at a later tick
 [answer-needs-time]
 """
     )
@@ -93,7 +93,7 @@ the clock waits at 2 s for the tree to take its next tick (tree.xml:3)
 the tree waits for Move (bt_1001) to return a status (tree.xml:3)
 Move (bt_1001) waits in `going` for the result of the action `/arm/move` (Move.ascxml:10)
 Arm waits in `busy` for its timer `step`, which ticks when the clock advances (Arm.ascxml:11)
-help: a tick must return a status before time passes; let Move (bt_1001) return RUNNING, and the result at a later tick
+help: a tick must end before the next one is due; let Move (bt_1001) return RUNNING, and the result at a later tick
 [answer-needs-time]
 """
     )
@@ -137,7 +137,7 @@ the tree waits for Ask (bt_1002) to return a status (tree.xml:3)
 Ask (bt_1002) waits in `asked` for the response of the service `/s` (Ask.ascxml:6)
 Server waits in `busy` for a message on the topic `/go` from Publisher (Server.ascxml:6)
 Publisher waits in `s` for its timer `t`, which ticks when the clock advances (Publisher.ascxml:5)
-help: a tick must return a status before time passes; let Ask (bt_1002) return RUNNING, and the result at a later tick
+help: a tick must end before the next one is due; let Ask (bt_1002) return RUNNING, and the result at a later tick
 [answer-needs-time]
 """
     )
@@ -203,7 +203,7 @@ def test_a_halt_that_is_not_answered_in_time(tmp_path: Path) -> None:
         "the tree waits for Slow (bt_1002) to halt (tree.xml:3)",
         "Slow (bt_1002) waits in `stopping` for the response of the service `/s` (Slow.ascxml:8)",
         "Server waits in `busy` for its timer `t`, which ticks when the clock advances (Server.ascxml:5)",
-        "help: a halt must end before time passes; let Slow (bt_1002) confirm it at once",
+        "help: a halt must end before the next tick is due; let Slow (bt_1002) confirm it at once",
         "[answer-needs-time]",
     ]
 

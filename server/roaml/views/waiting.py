@@ -110,9 +110,9 @@ def advice(waiting: Sequence[Wait]) -> str:
     if late is None or not any(wait.role is Role.CLOCK for wait in waiting):
         return ""
     if late.unanswered is TreeEventKind.HALT:
-        return f"a halt must end before time passes; let {late.whom} confirm it at once"
+        return f"a halt must end before the next tick is due; let {late.whom} confirm it at once"
     what = f"let {late.whom} return RUNNING, and the result at a later tick"
-    return f"a tick must return a status before time passes; {what}"
+    return f"a tick must end before the next one is due; {what}"
 
 
 def help_line(waiting: Sequence[Wait]) -> str:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The events that can occur in a system without the passing of time, and those that need time
+"""The events that certainly occur during a tick of the behavior tree, and those that need time
 (docs/spec/semantics.md#time).
 
-No time passes during a tick of the behavior tree: the clock waits for the next tick, which waits for the answer to the
-current tick. So during a tick a plugin receives only events that it causes itself, for example by its request, or by
-the requests that the server then sends.
+During a tick, the clock stops when the next tick is due, which waits for the answer to the current tick. In some traces
+this is so from the start. So during a tick a plugin certainly receives only events that it causes itself, for example
+by its request, or by the requests that the server then sends.
 
 An event is assumed to arrive at once if an unreadable part of the system might send it, or if its sender is a machine
 with an unreadable part that handles or sends events.

@@ -95,7 +95,7 @@ def _finding(
     advice = "return RUNNING here, and the status at a later tick" if duty is TICK else "confirm the halt here"
     if _not_taken(delay):
         advice = "handle the request in that state as well"
-    message += f"; the clock waits until the {duty.kind.value} ends, so both wait for ever; {advice}"
+    message += f"; the clock stops when the next tick is due, so both may wait for ever; {advice}"
     fixes = rewritten(context, handler) if duty is TICK and not _not_taken(delay) else ()
     return RULE.at(place(handler), message, *fixes, related=_related(delay))
 
@@ -179,6 +179,6 @@ def _related(delay: EventDelay) -> Iterator[Related]:
 RULE = Rule(
     "answer-needs-time",
     Severity.WARNING,
-    "A tick or halt does not end before time passes, which stops the clock for ever.",
+    "A tick or halt ends only after time has passed, which can stop the clock for ever.",
     machine=check,
 )
