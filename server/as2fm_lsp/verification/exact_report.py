@@ -25,11 +25,14 @@ _OVER_INITIAL_STATES = {
 }
 
 
-def lines(name: str, exact: Exact, seconds: float, *, only_uniform: bool = False) -> list[str]:
+def lines(
+    name: str, exact: Exact, seconds: float, *, only_uniform: bool = False, uniform_estimate: str = ""
+) -> list[str]:
     """The lines of the report for users: the values and the shortest traces.
 
     Args:
         only_uniform: whether only the value under uniform choices is of interest.
+        uniform_estimate: the estimate of the value under uniform choices, if it is not known exactly.
     """
     states = "1 state" if exact.states == 1 else f"{exact.states:,} states"
     end = f"{states}{' after reductions' if exact.is_reduced else ''}, {seconds:.1f} s"
@@ -44,7 +47,9 @@ def lines(name: str, exact: Exact, seconds: float, *, only_uniform: bool = False
         if exact.uniform is not None:
             both += f", {_number(exact.uniform)} under uniform choices"
         shown.append(f"{name}: {both}, {quality}, {end}")
-        if exact.uniform is None:
+        if exact.uniform is None and uniform_estimate:
+            shown.append(f"  under uniform choices: {uniform_estimate}")
+        elif exact.uniform is None:
             shown.append("  not computed: the value under uniform choices; use --no-reductions")
     if exact.initial_states > 1:
         shown.append(f"  {_OVER_INITIAL_STATES[exact.fold].format(exact.initial_states)}")
@@ -86,13 +91,27 @@ def row(exact: Exact) -> dict[str, Any]:
 
 
 def estimate_row(result: Result) -> dict[str, Any]:
-    """The members for JSON that replace the estimate of the example traces."""
+    """The members for JSON that replace the estimate of the traces. If the value under uniform choices is not known
+    exactly, `uniform` contains its estimate."""
     asked = result.asked_value()
     assert asked is not None
     assert result.answer is not None
     bounds, value = asked
+    answer = result.answer
+    uniform = {}
+    if result.has_uniform_estimate:
+        uniform = {
+            "probability": _finite(answer.value),
+            "lower": _finite(answer.bounds.lower),
+            "upper": _finite(answer.bounds.upper),
+            "complete": answer.is_complete,
+            "interval": answer.interval,
+            "confidence": answer.options.confidence,
+            "epsilon": answer.options.epsilon,
+            "method": answer.options.method.value,
+        }
     return {
-        "expected_value" if result.answer.question.is_reward else "probability": _finite(value),
+        "expected_value" if answer.question.is_reward else "probability": _finite(value),
         "lower": _finite(bounds.lower),
         "upper": _finite(bounds.upper),
         "complete": True,
@@ -100,6 +119,7 @@ def estimate_row(result: Result) -> dict[str, Any]:
         "confidence": 1,
         "epsilon": EXACT_WIDTH,
         "method": EXACT,
+        **({"uniform": uniform} if uniform else {}),
     }
 
 

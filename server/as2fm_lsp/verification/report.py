@@ -70,9 +70,14 @@ def _block(result: Result, place_of: PlaceOf, level: StuckLevel, shown: str, *, 
         lines.append(f"{result.name}: undecided: {result.undecided}, {result.seconds:.1f} s")
     if result.exact is not None:
         name = f"{result.name} ({PROBABILITY})" if result.includes_stuck else result.name
-        lines += exact_report.lines(name, result.exact, result.seconds, only_uniform=result.is_uniform)
-    if result.exact is not None and result.answer is not None:
-        lines += [f"  {remark}" for remark in _example_remarks(result.answer)]
+        estimate = _estimate(result.answer) if result.answer is not None and result.has_uniform_estimate else ""
+        lines += exact_report.lines(
+            name, result.exact, result.seconds, only_uniform=result.is_uniform, uniform_estimate=estimate
+        )
+        if result.answer is not None:
+            lines += _remarks(result.answer) if estimate else [f"  {line}" for line in _example_remarks(result.answer)]
+            if estimate and not result.answer.is_complete:
+                lines.append("  the interval is wider than requested (--epsilon)")
     for sampled in result.sampled:
         lines.append(f"{result.name}: {sampled.side} probability found {_estimate(sampled.answer)}")
         lines.append(f"  by {sampled.words}")

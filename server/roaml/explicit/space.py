@@ -11,7 +11,7 @@ from roaml.explicit import search as engine
 from roaml.explicit.independence import independence_of
 from roaml.explicit.liveness import all_live, liveness_of
 from roaml.explicit.memory import available
-from roaml.explicit.tables import tables_of
+from roaml.explicit.tables import Tables, tables_of
 from roaml.record import Record
 from roaml.smc import kernel
 from roaml.smc.batch import TraceProblem
@@ -25,7 +25,7 @@ Watch: TypeAlias = Callable[[int, int], None]
 
 STRIDE = 16_384
 """The number of states that are expanded between two calls of a watch."""
-SHORT_STRIDE = 64
+SHORT_STRIDE = 16
 """The number of states that are expanded between two calls of a watch if the number of transitions is limited."""
 MAX_STATES = 0x7FFFFFF0
 """The maximum number of states that a search can number."""
@@ -41,8 +41,8 @@ class StateLimits(Record, frozen=True):
         bytes: the maximum memory in bytes; `None` for half of the free memory.
         combinations: the maximum number of combinations of edges and destinations in one state. With n automata of k
             edges on one action there are kⁿ.
-        transitions: the number of transitions; if it is exceeded, the search ends at its next check. `None` if there is
-            no limit.
+        transitions: the number of transitions, including those from states that are not stored; if it is exceeded, the
+            search ends at its next check. `None` if there is no limit.
         work: the maximum number of additions for each value that a property asks for; `None` for the limit of the
             solver.
         reduces: whether dead variables are reset, and whether choices may be left out where that keeps the minimum and
@@ -114,10 +114,12 @@ def explore(
     modules: Any = None,
     *,
     is_reduced: bool = False,
+    tables: Tables | None = None,
 ) -> Space:
     """All states that can be reached before the goal is decided.
 
     Args:
+        tables: the result of `search_tables`, if it has been computed before.
         is_reduced: whether choices and states are left out (`independence.can_be_reduced` must be true for the goal).
         modules: the modules of the kernel and of the search, for tests.
 
@@ -133,13 +135,10 @@ def explore(
     goal = compiled.goal
     program = compiled.program
     steps, lower, depth = _bounds(goal)
-    transient = _transient(checker)
-    observed = checker.observed(property_)
-    liveness = liveness_of(checker.legend, observed, transient) if limits.reduces else all_live(checker.legend)
     simulator = kernel_module.Kernel(program, goal)
     search = search_module.StateSearch(
         simulator,
-        tables_of(program, goal, checker.legend, transient, liveness),
+        tables or search_tables(checker, property_, limits),
         steps,
         lower,
         depth,
@@ -148,15 +147,16 @@ def explore(
         limits.combinations,
     )
     if is_reduced:
-        tables = independence_of(program, goal, checker.legend)
-        search.leave_out(_ample_module(search_module).AmpleSets(simulator, tables))
+        independence = independence_of(program, goal, checker.legend)
+        search.leave_out(_ample_module(search_module).AmpleSets(simulator, independence))
     stride = STRIDE if limits.transitions is None else SHORT_STRIDE
     while True:
         status = search.run(stride)
+        transitions = search.transitions + search.passed
         if watch is not None:
             watch(search.count, search.expanded)
         match status:
-            case codes.PART if limits.transitions is not None and search.transitions > limits.transitions:
+            case codes.PART if limits.transitions is not None and transitions > limits.transitions:
                 raise LimitError(search.count, f"there are more than {limits.transitions:,} transitions")
             case codes.PART:
                 continue
@@ -173,6 +173,14 @@ def explore(
             case _:
                 many = f"one of them has more than {limits.combinations:,} combinations of edges"
                 raise LimitError(search.count, many)
+
+
+def search_tables(checker: ModelChecker, property_: CompiledProperty, limits: StateLimits) -> Tables:
+    """The tables that a search needs. They are the same with and without choices that are left out."""
+    legend, transient = checker.legend, _transient(checker)
+    observed = checker.observed(property_)
+    liveness = liveness_of(legend, observed, transient) if limits.reduces else all_live(legend)
+    return tables_of(checker.program, property_.goal, legend, transient, liveness)
 
 
 def _bounds(goal: Goal) -> tuple[int, int, int]:

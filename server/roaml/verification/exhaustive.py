@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from roaml.explicit.independence import can_be_reduced
 from roaml.explicit.path import shortest
-from roaml.explicit.space import LimitError, Space, StateLimits, Watch, explore
+from roaml.explicit.space import LimitError, Space, StateLimits, Watch, explore, search_tables
 from roaml.explicit.values import GoalValues, NoValueError, values_of
 from roaml.jani.operators import BinaryOperator
 from roaml.record import replace
@@ -53,25 +53,30 @@ def exact_values(
     """
     if property_.question.is_conditional:
         raise UndecidedError(f"a minimum or maximum given assumptions cannot be computed from all states; {_ESTIMATE}")
-    reduced = checker.reduced(property_)
-    if reduced is not checker:
-        checker, property_ = reduced, reduced.compiled_properties[0]
+    checker, property_ = alone(checker, property_)
     try:
-        compiled = checker.compiled(property_)
-        if limits.reduces and can_be_reduced(compiled.program, compiled.goal):
+        if limits.reduces and can_be_reduced(checker.program, property_.goal):
             return _partly(checker, property_, limits, watch)
-        return _wholly(checker, property_, limits, watch)
+        return values_from(explore(checker, property_, limits, watch), limits)
     except LimitError as error:
         raise UndecidedError(f"{error}; {_ESTIMATE}") from None
 
 
+def alone(checker: ModelChecker, property_: CompiledProperty) -> tuple[ModelChecker, CompiledProperty]:
+    """A property with the parts of the model on which it depends."""
+    reduced = checker.reduced(property_)
+    return (checker, property_) if reduced is checker else (reduced, reduced.compiled_properties[0])
+
+
 def _partly(checker: ModelChecker, property_: CompiledProperty, limits: StateLimits, watch: Watch | None) -> Exact:
     """The exact values, from as few states as possible."""
+    tables = search_tables(checker, property_, limits)
 
     def wholly(states: int) -> Exact | None:
         """The values from all states; `None` if there are more than this number, and the limits allow more."""
         try:
-            return _wholly(checker, property_, replace(limits, states=min(states, limits.states)), watch)
+            most = replace(limits, states=min(states, limits.states))
+            return values_from(explore(checker, property_, most, watch, tables=tables), limits)
         except LimitError as error:
             if error.states < states or limits.states <= states:
                 raise
@@ -80,7 +85,7 @@ def _partly(checker: ModelChecker, property_: CompiledProperty, limits: StateLim
     exact = wholly(MAX_STATES_AT_FIRST)
     if exact is not None:
         return exact
-    exact = _exact(explore(checker, property_, limits, watch, is_reduced=True), limits)
+    exact = values_from(explore(checker, property_, limits, watch, is_reduced=True, tables=tables), limits)
     if exact.uniform is None and exact.states <= MAX_STATES_FOR_UNIFORM:
         try:
             return wholly(MAX_STATES_FOR_UNIFORM) or exact
@@ -89,12 +94,12 @@ def _partly(checker: ModelChecker, property_: CompiledProperty, limits: StateLim
     return exact
 
 
-def _wholly(checker: ModelChecker, property_: CompiledProperty, limits: StateLimits, watch: Watch | None) -> Exact:
-    return _exact(explore(checker, property_, limits, watch), limits)
+def values_from(space: Space, limits: StateLimits) -> Exact:
+    """The exact values from the states of a space.
 
-
-def _exact(space: Space, limits: StateLimits) -> Exact:
-    """The exact values from the states of a space."""
+    Raises:
+        UndecidedError, FaultError: see `exact_values`.
+    """
     if space.problem is not None:
         fault = space.checker.fault(space.problem)
         raise FaultError(f"{fault.message} (in a reachable state)", fault.origin, code=fault.code)

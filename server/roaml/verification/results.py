@@ -191,7 +191,8 @@ class Result(PartlyCompared, frozen=True):
 
     Attributes:
         answer: the answer of traces with uniform choices; `None` if only other schedulers or exact values were
-            requested. If the result also has exact values, the traces of the answer are examples.
+            requested. If the result also has exact values, the traces of the answer are examples, unless the value
+            under uniform choices is not one of them.
         verdicts: one for each expectation.
         seconds: the duration of the verification, in s.
         is_interrupted: whether the work was ended before the answer was complete.
@@ -246,6 +247,12 @@ class Result(PartlyCompared, frozen=True):
         if self.exact is None or self.answer is None:
             return None
         return self.exact.asked_value(self.answer.question, only_uniform=self.is_uniform)
+
+    @property
+    def has_uniform_estimate(self) -> bool:
+        """Whether the value under uniform choices is an estimate from traces, while the minimum and the maximum are
+        exact."""
+        return self.exact is not None and self.exact.uniform is None and self.answer is not None
 
     @property
     def epsilon(self) -> float:

@@ -1,34 +1,51 @@
 # SPDX-License-Identifier: Apache-2.0
 """Exact values of properties of models with few states, computed without a request of the user. All limits are numbers
 of states, bytes and operations, and not times, so the speed of the machine does not determine whether a property is
-answered exactly. At these limits, exploring the states of most systems takes less than a tenth of the time of the
-default number of traces.
+answered exactly. If all states exceed the limits, they are explored again without the choices that change neither the
+minimum nor the maximum (docs/spec/reductions.md#when).
 """
 
 from __future__ import annotations
 
-from roaml.explicit.space import StateLimits
+from roaml.explicit.independence import can_be_reduced
+from roaml.explicit.space import LimitError, StateLimits, explore, search_tables
+from roaml.record import replace
 from roaml.smc.choices import Choices, Extreme, ExtremeMethod
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty, InitialFold
 from roaml.smc.model import ModelChecker
-from roaml.verification.exhaustive import UndecidedError, exact_values
+from roaml.verification.exhaustive import UndecidedError, alone, values_from
 from roaml.verification.results import Exact
 
 MAX_SMALL_STATES = 20_000
 LIMITS = StateLimits(states=MAX_SMALL_STATES, bytes=4 << 30, combinations=4_096, transitions=200_000, work=30_000_000)
+MAX_REDUCED_TRANSITIONS = 100_000
+"""The maximum number of transitions of the search that leaves choices out. Each of them takes longer."""
 EXAMPLE_TRACES = 200
 """The number of traces that are generated as examples if the value is exact."""
 
 
-def values_if_small(checker: ModelChecker, property_: CompiledProperty) -> Exact | None:
+def values_if_small(checker: ModelChecker, property_: CompiledProperty, *, leaves_out: bool = True) -> Exact | None:
     """The exact values of a property; `None` if the model is too large, if an undefined operation is executed, or if
-    only traces can answer the property."""
+    only traces can answer the property.
+
+    Args:
+        leaves_out: whether choices may be left out if there are too many states.
+    """
     if property_.question.is_conditional:
         return None
+    checker, property_ = alone(checker, property_)
+    tables = search_tables(checker, property_, LIMITS)
     try:
-        exact = exact_values(checker, property_, LIMITS)
-    except (FaultError, UndecidedError):
+        try:
+            exact = values_from(explore(checker, property_, LIMITS, tables=tables), LIMITS)
+        except LimitError:
+            if not leaves_out or not can_be_reduced(checker.program, property_.goal):
+                return None
+            most = min(LIMITS.transitions or MAX_REDUCED_TRANSITIONS, MAX_REDUCED_TRANSITIONS)
+            limits = replace(LIMITS, transitions=most)
+            exact = values_from(explore(checker, property_, limits, is_reduced=True, tables=tables), limits)
+    except (FaultError, UndecidedError, LimitError):
         return None
     return exact if exact.is_precise else None
 
@@ -41,8 +58,11 @@ def choices_of(exact: Exact, agreement: str = "") -> Choices:
     """
     asks_for_extreme_state = exact.initial_states > 1 and exact.fold is not InitialFold.MEAN
     states = "1 state" if exact.states == 1 else f"{exact.states:,} states"
+    explored = f"all {states} were explored"
+    if exact.is_reduced:
+        explored = f"all states were explored, {states} after reductions"
     return Choices(
-        agreement or (f"all {states} were explored" if exact.agrees and not asks_for_extreme_state else ""),
+        agreement or (explored if exact.agrees and not asks_for_extreme_state else ""),
         Extreme(exact.least, exact.minimum, ExtremeMethod.EXPLORATION),
         Extreme(exact.greatest, exact.maximum, ExtremeMethod.EXPLORATION),
     )

@@ -316,16 +316,19 @@ class Verifier(Record, frozen=True):
         """The exact values of a property, for its result or to compare schedulers; `None` if neither needs them, or if
         the model is too large."""
         if self.exact_if_small or (self._considers_choices(property_) and not self.checker.is_deterministic):
-            return values_if_small(self.checker, property_)
+            return values_if_small(self.checker, property_, leaves_out=self.exact_if_small)
         return None
 
     def _shown(self, small: Exact | None) -> Exact | None:
         """The exact values that the result contains. If traces can get stuck, the result contains none, because the
-        value is doubtful and traces are needed as examples."""
-        return None if not self.exact_if_small or small is None or small.can_get_stuck else small
+        value is doubtful and traces are needed as examples. If only the value under uniform choices is of interest, the
+        result contains no exact values without it."""
+        if not self.exact_if_small or small is None or small.can_get_stuck:
+            return None
+        return None if self.only_uniform and small.uniform is None else small
 
     def _trace_options(self, exact: Exact | None) -> Options:
-        if exact is None or self.example_traces is None:
+        if exact is None or exact.uniform is None or self.example_traces is None:
             return self.options
         return replace(self.options, method=EstimationMethod.FIXED, max_traces=self.example_traces)
 

@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Models that are small only after reductions are answered exactly without `--exhaustive`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from loose_networks import networks
+from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
+
+from as2fm_lsp.cli.main import run
+from as2fm_lsp.verification.known_results import short
+from examples import examples
+from roaml import api
+from roaml.explicit.independence import can_be_reduced
+from roaml.explicit.space import LimitError, StateLimits, explore
+from roaml.explicit.values import NoValueError, values_of
+from roaml.record import replace
+from roaml.smc.fault import FaultError
+from roaml.smc.model import ModelChecker
+from roaml.smc.statistics import Bounds
+from roaml.verification import small
+from roaml.verification.exhaustive import alone
+from roaml.verification.small import LIMITS, choices_of, values_if_small
+from roaml.verification.suggestions import suggestions
+
+TOLERANCE = 2e-8
+
+
+def counters(choice: list[Json], parts: int = 7) -> Json:
+    """10ⁿ states for each state of an automaton with the edges `choice`, from which it goes to `m` or `n`. The
+    property asks whether x becomes 1."""
+    count = edge("l", way("l", own=op("+", "own", 1)), guard=op("<", "own", 9))
+    automata = [automaton(f"c{i}", "l", [count], [variable("own")]) for i in range(parts)]
+    automata.append(automaton("d", "l m n", choice))
+    return document(*automata, variables=[variable("x")], properties={"p": probability(op("F", op("=", "x", 1)))})
+
+
+TOSS = [edge("l", way("m", 0.5, x=1), way("n", 0.5))]
+CHOICE = [edge("l", way("m", x=1)), edge("l", "n")]
+
+
+def overlap(one: Bounds, other: Bounds) -> bool:
+    return max(one.lower, other.lower) <= min(one.upper, other.upper) + TOLERANCE
+
+
+def test_values_after_reductions_are_those_of_all_states() -> None:
+    known: list[bool] = []
+
+    @given(networks())
+    @settings(max_examples=examples(150), deadline=None)
+    def check(written: Json) -> None:
+        checker = ModelChecker(model(written))
+        if checker.refused:
+            return
+        property_ = checker.compiled_properties[0]
+        reduced_checker, reduced_property = alone(checker, property_)
+        if not can_be_reduced(reduced_checker.program, reduced_property.goal):
+            return
+        try:
+            whole = explore(reduced_checker, reduced_property, StateLimits(reduces=False))
+            merged = explore(reduced_checker, reduced_property, StateLimits())
+            reduced = explore(reduced_checker, reduced_property, StateLimits(), is_reduced=True)
+            expected = values_of(whole)
+        except (FaultError, LimitError, NoValueError):
+            return
+        if whole.problem is not None or merged.states <= reduced.states:
+            return
+        limits = small.LIMITS
+        small.LIMITS = replace(LIMITS, states=reduced.states)
+        try:
+            exact = values_if_small(checker, property_)
+        finally:
+            small.LIMITS = limits
+        assert exact is not None
+        assert (exact.is_reduced, exact.states) == (True, reduced.states)
+        assert overlap(exact.minimum, expected.minimum)
+        assert overlap(exact.maximum, expected.maximum)
+        if exact.uniform is not None:
+            assert expected.uniform is not None
+            assert overlap(exact.uniform, expected.uniform)
+            assert choices_of(exact).agreement.endswith(" after reductions")
+        else:
+            assert choices_of(exact).differ
+        known.append(exact.uniform is not None)
+
+    check()
+    assert any(known)
+    assert not all(known)
+
+
+def test_the_number_of_transitions_is_limited(monkeypatch: pytest.MonkeyPatch) -> None:
+    counts = edge("l", way("l", 0.5, n=op("+", "n", 1)), way("m", 0.5, x=1), guard=op("<", "n", 100))
+    written = counters([counts])
+    written["variables"].append(variable("n"))
+    checker = ModelChecker(model(written))
+    (property_,) = checker.compiled_properties
+    exact = values_if_small(checker, property_)
+    assert exact is not None
+    assert exact.is_reduced
+    assert exact.states > 100
+    monkeypatch.setattr(small, "MAX_REDUCED_TRANSITIONS", 50)
+    assert values_if_small(checker, property_) is None
+
+
+def test_properties_that_cannot_be_reduced_are_left_to_traces() -> None:
+    written = counters(TOSS)
+    bounded = {**op("F", op("=", "x", 1)), "step-bounds": {"upper": 10_000}}
+    written["properties"][0]["expression"] = probability(bounded)
+    checker = ModelChecker(model(written))
+    assert values_if_small(checker, checker.compiled_properties[0]) is None
+
+
+# ------------------------------------------------------------------ reports
+
+
+def write(folder: Path, written: Json) -> str:
+    file = folder / "model.jani"
+    file.write_text(json.dumps(written), encoding="utf-8")
+    return str(file)
+
+
+def text_of(capsys: pytest.CaptureFixture[str], *arguments: str, status: int = 0) -> str:
+    assert run(["verify", *arguments]) == status
+    return capsys.readouterr().out
+
+
+def row_of(capsys: pytest.CaptureFixture[str], *arguments: str, status: int = 0) -> dict[str, Any]:
+    (row,) = json.loads(text_of(capsys, *arguments, "--format", "json", status=status))["results"]
+    return dict(row)
+
+
+def test_equal_extremes_are_the_value_for_all_schedulers(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    file = write(tmp_path, counters(TOSS))
+    lines = text_of(capsys, file, "--expect", "p = 0.5").splitlines()
+    assert lines[0].startswith("p: = 0.5 for all schedulers, exact, 4 states after reductions, ")
+    assert lines[2].startswith("  ends of 200 random traces: ")
+    assert lines[3] == "  expected = 0.5: met"
+    assert lines[4:] == [
+        "exact values: computed for all reachable states, over all schedulers and for uniform choices "
+        "(--method adaptive: estimates from traces); choices that change no result were left out"
+    ]
+    row = row_of(capsys, file)
+    assert (row["method"], row["probability"], row["traces"]) == ("exact", 0.5, 200)
+    assert (row["exact"]["uniform"], row["exact"]["reduced"]) == (0.5, True)
+    assert "uniform" not in row
+    uniform = text_of(capsys, file, "--scheduler", "uniform")
+    assert uniform.startswith("p: = 0.5 for all schedulers, exact, ")
+
+
+def test_traces_estimate_the_uniform_value_between_different_extremes(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    file = write(tmp_path, counters(CHOICE))
+    out = text_of(capsys, file, "--expect", "p >= 0.2", "--explain", status=1)
+    lines = out.splitlines()
+    assert lines[0].startswith("p: minimum 0, maximum 1, exact, 4 states after reductions, ")
+    assert lines[1].startswith("  under uniform choices: 0.50")
+    assert "] from 1" in lines[1]
+    assert lines[3].startswith("  ends: goal decided ")
+    assert lines[4] == "  expected ≥ 0.2: NOT MET by the least value, which is 0"
+    assert "over all schedulers (--method adaptive: estimates from traces); choices that change no result" in out
+    assert "\nestimates: 0.95 confidence, seed 0; " in out
+    assert "p failed in a trace after " in out
+    assert "may differ" not in out
+    row = row_of(capsys, file)
+    assert (row["method"], row["probability"], row["exact"]["uniform"]) == ("exact", 0, None)
+    assert row["traces"] > 1000
+    estimate = row["uniform"]
+    assert estimate["lower"] < 0.5 < estimate["upper"]
+    assert (estimate["method"], estimate["interval"], estimate["complete"]) == ("adaptive", "Clopper-Pearson", True)
+    assert row["minimum"]["found"] == row["maximum"]["found"] == "all states"
+
+
+def test_only_uniform_choices_are_estimated(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    file = write(tmp_path, counters(CHOICE))
+    row = row_of(capsys, file, "--scheduler", "uniform")
+    assert (row["method"], row["complete"]) == ("adaptive", True)
+    assert "exact" not in row
+
+
+def test_options_about_traces_still_return_estimates(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """They do not pay for a second search."""
+    for choice in (CHOICE, TOSS):
+        row = row_of(capsys, write(tmp_path, counters(choice)), "--seed", "3")
+        assert (row["method"], row["seed"]) == ("adaptive", 3)
+        assert "exact" not in row
+        assert row["schedulers"]["tried"] > 0
+
+
+def test_the_editor_shows_the_extreme_that_is_asked_for() -> None:
+    (result,) = api.verify(model(counters(CHOICE)), exact_if_small=True)
+    assert result.has_uniform_estimate
+    assert short(result) == "0, exact"
+    assert result.answer is not None
+    assert result.answer.is_complete
+    assert suggestions(result) == ("<= 0",)
