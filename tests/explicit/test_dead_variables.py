@@ -12,11 +12,12 @@ from hypothesis import strategies as st
 from smc_models import Json, at, automaton, document, edge, model, op, probability, variable, way, ways
 from smc_random import networks
 
-from roaml.explicit.liveness import bits, liveness_of
+from roaml.explicit.liveness import liveness_of
 from roaml.explicit.path import PathRecorder, shortest
 from roaml.explicit.plain import plain_kernel, plain_search
 from roaml.explicit.space import Space, StateLimits, _bounds, _transient, explore
 from roaml.explicit.tables import _cells
+from roaml.explicit.uses import bits
 from roaml.explicit.values import NoValueError, values_of
 from roaml.jani.model import Model
 from roaml.smc.end import End

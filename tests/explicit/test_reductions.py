@@ -282,6 +282,30 @@ def test_benchmarks(path: Path) -> None:
             check(*spaces)
 
 
+@pytest.mark.parametrize(
+    ("value", "is_independent"), [("z", True), (op("max", "z", 0), True), (op("-", "z", 0), False)]
+)
+def test_only_guards_that_can_be_undefined_are_reads_of_other_steps(value: Any, is_independent: bool) -> None:
+    """Between the rounds of `a`, `b` counts in the variable of a guard, for a step that waits for `c`."""
+    wait = edge("l", "l", action="go", guard=op("=", value, 7))
+    turn = edge("l", way("m", own=op("%", op("+", "own", 1), 5)))
+    parts = [
+        automaton("a", "l m", [wait, turn, edge("m", way("l", 0.5, x=1), way("l", 0.5))], [variable("own")]),
+        automaton("b", "l", [edge("l", way("l", z=op("%", op("+", "z", 1), 6)))]),
+        automaton("c", "l m", [edge("m", "l", action="go")]),
+    ]
+    written = document(
+        *parts,
+        variables=[variable("x"), variable("z")],
+        syncs=[["go", None, "go"]],
+        properties={"p": probability(op("F", op("=", "x", 1)))},
+    )
+    spaces = both(*question_of(written))
+    assert spaces is not None
+    check(*spaces)
+    assert is_smaller(*spaces) == is_independent
+
+
 def test_steps_that_change_nothing_can_avoid_an_end() -> None:
     """They can be taken for ever, but not at the end. So `stuck` has a smaller minimum than after reductions."""
     idle = automaton("i", "l", [edge("l", way("l", 0.5), way("l", 0.5))])

@@ -10,31 +10,17 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Iterable
+from typing import NamedTuple
 
-from roaml.jani.expressions import Binary, Boolean, Expression, Integer, Name, Real, Unary, walk
-from roaml.jani.operators import BinaryOperator, UnaryOperator
+from roaml.explicit.uses import Uses, bits
 from roaml.record import Record
 from roaml.smc.compile import Legend
 from roaml.smc.goal import DEADLOCK, NO_DEADLOCK, STUCK
-from roaml.smc.names import Storage, StorageNames, read_by, variables_in
-from roaml.smc.network import EdgeStep, root
+from roaml.smc.network import EdgeStep
 from roaml.smc.program import AT_END, Goal, Ints, Program
 
 MAX_DEPENDENT_VECTORS = 64
 """The maximum number of vectors of other instances that depend on the edges of a location for a reduction there."""
-_TOTAL = {
-    UnaryOperator.NOT,
-    BinaryOperator.AND,
-    BinaryOperator.OR,
-    BinaryOperator.IMPLIES,
-    BinaryOperator.EQUAL,
-    BinaryOperator.NOT_EQUAL,
-    BinaryOperator.LESS,
-    BinaryOperator.LESS_EQUAL,
-    BinaryOperator.GREATER,
-    BinaryOperator.GREATER_EQUAL,
-}
-"""Operators that are defined for all values."""
 
 
 class Independence(Record, frozen=True, eq=False):
@@ -94,80 +80,86 @@ def independence_of(program: Program, goal: Goal, legend: Legend) -> Independenc
     return _Analysis(program, goal, legend).tables()
 
 
-class _Use(Record):
-    """The variables that edges read and write, as `id` of their storage."""
+class _Group(NamedTuple):
+    """The variables that the edges of a group use. `fragile` are those in guards that can be undefined."""
 
-    reads: set[int]
-    writes: set[int]
+    reads: int
+    writes: int
+    guards: int
+    fragile: int
 
 
 class _Analysis:
+    """Sets of vectors are integers, as the sets of variables of `uses`."""
+
     def __init__(self, program: Program, goal: Goal, legend: Legend) -> None:
         self.program = program
         self.goal = goal
         self.legend = legend
-        self.slot_uses = [_Use(set(), set()) for _ in legend.slots]
-        self.groups: list[_Use] = []
-        self.guards: list[set[int]] = []
-        self.fragile: list[set[int]] = []
+        self.uses = Uses(legend)
+        reads, writes = [0] * len(legend.slots), [0] * len(legend.slots)
+        self.groups: list[_Group] = []
         for location in range(len(legend.locations)):
-            for group in range(program.group_start[location], program.group_start[location + 1]):
-                self._read_group(program.group_slot[group], location)
-        self.vectors_of_instance: list[set[int]] = [set() for _ in range(program.instances)]
-        self.readers: dict[int, set[int]] = {}
-        self.writers: dict[int, set[int]] = {}
+            for slot in program.group_slot[program.group_start[location] : program.group_start[location + 1]]:
+                group = self._group(legend.slots[slot].instance, legend.slots[slot].steps[location])
+                self.groups.append(group)
+                reads[slot] |= group.reads
+                writes[slot] |= group.writes
+        self.vectors_of_instance = [0] * program.instances
+        self.readers: dict[int, int] = {}
+        self.writers: dict[int, int] = {}
         for vector, (slots, _) in enumerate(legend.vectors):
             for slot in slots:
-                self.vectors_of_instance[legend.slots[slot].instance].add(vector)
-                for variable in self.slot_uses[slot].reads:
-                    self.readers.setdefault(variable, set()).add(vector)
-                for variable in self.slot_uses[slot].writes:
-                    self.writers.setdefault(variable, set()).add(vector)
+                self.vectors_of_instance[legend.slots[slot].instance] |= 1 << vector
+                for users, variables in ((self.readers, reads[slot]), (self.writers, writes[slot])):
+                    for variable in bits(variables):
+                        users[variable] = users.get(variable, 0) | 1 << vector
 
-    def _read_group(self, number: int, location: int) -> None:
-        slot = self.legend.slots[number]
-        names = self.legend.layout.instances[slot.instance].names
-        use, guards, fragile = _Use(set(), set()), set[int](), set[int]()
-        for step in slot.steps[location]:
+    def _group(self, instance: int, steps: Iterable[EdgeStep]) -> _Group:
+        reads = writes = guards = fragile = 0
+        for step in steps:
             if step.guard is not None:
-                read = set(_variables(variables_in(step.guard, names.functions), names))
+                read = self.uses.read_in(step.guard, instance)
                 guards |= read
-                if not _is_total(step.guard):
+                if read and self.uses.can_fail(step.guard, instance):
                     fragile |= read
-            _read_ways(step, names, use)
-        use.reads.update(guards)
-        self.groups.append(use)
-        self.guards.append(guards)
-        self.fragile.append(fragile)
-        self.slot_uses[number].reads.update(use.reads)
-        self.slot_uses[number].writes.update(use.writes)
+            for way in step.ways:
+                if way.probability is None and way.destination.probability is not None:
+                    reads |= self.uses.read_in(way.destination.probability.exp, instance)
+                for assignment in way.destination.assignments:
+                    reads |= self.uses.read_by(assignment, instance)
+                    writes |= self.uses.written_by(assignment, instance)
+        return _Group(reads | guards, writes, guards, fragile)
 
     def tables(self) -> Independence:
         program, goal = self.program, self.goal
-        visible = {
-            id(storage)
+        visible = self.uses.of(
+            storage
             for storage in self.legend.layout.storages
             if storage.watch >= 0 and goal.seen_start[storage.watch] < goal.seen_start[storage.watch + 1]
-        }
+        )
         hidden: list[int] = []
-        dependent_lists: list[list[int]] = []
-        guard_lists: list[list[int]] = []
+        dependent_lists: list[Iterable[int]] = []
+        guard_lists: list[Iterable[int]] = []
         open_guards = [0] * len(self.legend.slots)
         for location, (instance, _) in enumerate(self.legend.locations):
             own = self.vectors_of_instance[instance]
-            groups = range(program.group_start[location], program.group_start[location + 1])
-            fragile: set[int] = set().union(*(self.fragile[group] for group in groups))
-            for group in groups:
-                use = self.groups[group]
-                dependent = self._union(self.writers, use.reads | use.writes | fragile)
-                dependent |= self._union(self.readers, use.writes)
-                dependent -= own
-                is_hidden = not use.writes & visible and len(dependent) <= MAX_DEPENDENT_VECTORS
+            numbers = range(program.group_start[location], program.group_start[location + 1])
+            fragile = 0
+            for number in numbers:
+                fragile |= self.groups[number].fragile
+            for number in numbers:
+                group = self.groups[number]
+                dependent = _union(self.writers, group.reads | group.writes | fragile)
+                dependent |= _union(self.readers, group.writes)
+                dependent &= ~own
+                is_hidden = not group.writes & visible and dependent.bit_count() <= MAX_DEPENDENT_VECTORS
                 hidden.append(int(is_hidden))
-                dependent_lists.append(sorted(dependent) if is_hidden else [])
-                guard_lists.append(sorted(self._union(self.writers, self.guards[group]) - own))
-                if guard_lists[-1]:
-                    open_guards[program.group_slot[group]] = 1
+                dependent_lists.append(bits(dependent) if is_hidden else ())
+                writers = _union(self.writers, group.guards) & ~own
+                guard_lists.append(bits(writers))
+                if writers:
+                    open_guards[program.group_slot[number]] = 1
         return Independence(
             *_ranges(slot.vectors for slot in self.legend.slots),
             array("i", hidden),
@@ -177,39 +169,13 @@ class _Analysis:
             is_fleeting=AT_END not in goal.lower,
         )
 
-    @staticmethod
-    def _union(vectors: dict[int, set[int]], variables: Iterable[int]) -> set[int]:
-        return set().union(*(vectors.get(variable, ()) for variable in variables))
 
-
-def _read_ways(step: EdgeStep, names: StorageNames, use: _Use) -> None:
-    for way in step.ways:
-        if way.probability is None and way.destination.probability is not None:
-            chance = way.destination.probability.exp
-            use.reads.update(_variables(variables_in(chance, names.functions), names))
-        for assignment in way.destination.assignments:
-            use.reads.update(_variables(read_by(assignment, names.functions), names))
-            use.writes.update(_variables((root(assignment),), names))
-
-
-def _variables(identifiers: Iterable[str], names: StorageNames) -> Iterable[int]:
-    for identifier in identifiers:
-        storage = names.values.get(identifier)
-        if isinstance(storage, Storage) and not storage.is_constant:
-            yield id(storage)
-
-
-def _is_total(guard: Expression) -> bool:
-    """Whether the evaluation of a guard is defined in each state."""
-    for node in walk(guard):
-        match node:
-            case Boolean() | Integer() | Real() | Name():
-                continue
-            case Unary() | Binary() if node.operator in _TOTAL:
-                continue
-            case _:
-                return False
-    return True
+def _union(vectors: dict[int, int], variables: int) -> int:
+    """The vectors that one of the variables has in a dictionary."""
+    found = 0
+    for variable in bits(variables):
+        found |= vectors.get(variable, 0)
+    return found
 
 
 def _ranges(lists: Iterable[Iterable[int]]) -> tuple[Ints, Ints]:

@@ -1,56 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which variables are dead in which locations: their values have no influence on what a goal observes.
 
-The definitions and the proof are in docs/spec/reductions.md#dead-variables. A set of variables is an integer; its bits
-are the variables in the order of their registers.
+The definitions and the proof are in docs/spec/reductions.md#dead-variables. Sets of variables are those of `uses`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from functools import reduce
-from itertools import groupby
-from operator import and_, attrgetter
+from itertools import accumulate, groupby
+from operator import attrgetter
 from typing import NamedTuple
 
-from roaml.jani.expressions import (
-    ArrayAccess,
-    ArrayValue,
-    Binary,
-    Boolean,
-    Conditional,
-    Expression,
-    Integer,
-    Name,
-    NamedNumber,
-    Real,
-    Unary,
-    walk,
-)
-from roaml.jani.model import Assignment, Destination
-from roaml.jani.operators import BinaryOperator, UnaryOperator
+from roaml.explicit.uses import Uses, bits
+from roaml.jani.expressions import ArrayAccess, Name
+from roaml.jani.model import Destination
 from roaml.record import Record
 from roaml.smc.compile import Legend
-from roaml.smc.names import Storage, StorageNames
-from roaml.smc.network import EdgeStep, root
-
-_TOTAL = frozenset(
-    (
-        BinaryOperator.OR,
-        BinaryOperator.AND,
-        BinaryOperator.IMPLIES,
-        BinaryOperator.EQUAL,
-        BinaryOperator.NOT_EQUAL,
-        BinaryOperator.LESS,
-        BinaryOperator.LESS_EQUAL,
-        BinaryOperator.GREATER,
-        BinaryOperator.GREATER_EQUAL,
-        BinaryOperator.MINIMUM,
-        BinaryOperator.MAXIMUM,
-    )
-)
-"""The operators that have a value for all operands. Integers are limited to 64 bits, so sums are not among them."""
-_ATOMS = (Integer, Boolean, Real, NamedNumber, Name, Conditional, ArrayValue)
+from roaml.smc.names import Storage
+from roaml.smc.network import EdgeStep
 
 
 class Liveness(Record, frozen=True):
@@ -123,13 +91,8 @@ class _Part(NamedTuple):
 class _Analysis:
     def __init__(self, legend: Legend, observed: frozenset[str], transient: Iterable[Storage]) -> None:
         self.legend = legend
-        self.reads = legend.reads
+        self.uses = Uses(legend)
         self.instances = legend.layout.instances
-        bits = {id(storage): 1 << number for number, storage in enumerate(legend.layout.storages)}
-        shared = {storage.name: bits[id(storage)] for storage in legend.layout.shared}
-        self.scopes = [
-            {**shared, **{storage.name: bits[id(storage)] for storage in instance.own}} for instance in self.instances
-        ]
         self.locations: list[list[int]] = [[] for _ in self.instances]
         for location, (number, _) in enumerate(legend.locations):
             self.locations[number].append(location)
@@ -137,8 +100,8 @@ class _Analysis:
         for number, slot in enumerate(legend.slots):
             self.slots[slot.instance].append(number)
         self.location_of = {key: number for number, key in enumerate(legend.locations)}
-        self.transient = sum(bits[id(storage)] for storage in transient)
-        self.observed = sum(bits[id(storage)] for storage in legend.layout.shared if storage.name in observed)
+        self.transient = self.uses.of(transient)
+        self.observed = self.uses.of(storage for storage in legend.layout.shared if storage.name in observed)
         self.observed |= self._in_locations()
         self.late = self._late()
         self.written = 0
@@ -152,6 +115,7 @@ class _Analysis:
             for slot in legend.slots
         ]
         self.parts = [_part([edge for several in edges.values() for edge in several]) for edges in self.edges]
+        self.others: dict[int, dict[int, _Part]] = {}
 
     def liveness(self) -> Liveness:
         unobserved = self._unobserved()
@@ -165,21 +129,15 @@ class _Analysis:
 
     # ------------------------------------------------------------ what a step reads and writes
 
-    def _mask(self, names: Iterable[str], instance: int) -> int:
-        scope, mask = self.scopes[instance], 0
-        for name in names:
-            mask |= scope.get(name, 0)
-        return mask
-
     def _in_locations(self) -> int:
         """The variables on which the values of transient variables in locations depend."""
         mask = 0
         for number, instance in enumerate(self.instances):
             for location in instance.automaton.locations:
                 for value in location.transient_values:
-                    mask |= self._mask(self.reads.names_in(value.value, instance.names), number)
+                    mask |= self.uses.read_in(value.value, number)
                     if isinstance(value.target, ArrayAccess):
-                        mask |= self._mask(self.reads.names_in(value.target, instance.names), number)
+                        mask |= self.uses.read_in(value.target, number)
         return mask
 
     def _late(self) -> int:
@@ -198,20 +156,19 @@ class _Analysis:
         for number, destination in ways:
             for assignment in destination.assignments:
                 if assignment.index > first:
-                    mask |= self._mask(self.reads.by(assignment, self.instances[number].names), number)
+                    mask |= self.uses.read_by(assignment, number)
         return mask
 
     def _edge(self, number: int, source: int, step: EdgeStep) -> _Edge:
-        names = self.instances[number].names
         reads, kept, ways = 0, -1, []
         if step.guard is not None:
-            reads = self._mask(self.reads.names_in(step.guard, names), number)
-            if reads and _can_fail(step.guard, names):
+            reads = self.uses.read_in(step.guard, number)
+            if reads and self.uses.can_fail(step.guard, number):
                 self.fragile[number] |= reads
         for weighted in step.ways:
             destination = weighted.destination
             if weighted.probability is None and destination.probability is not None:
-                reads |= self._mask(self.reads.names_in(destination.probability.exp, names), number)
+                reads |= self.uses.read_in(destination.probability.exp, number)
             target = self.location_of[number, destination.location]
             way, written = self._way(number, target, destination)
             self.written |= written
@@ -222,20 +179,19 @@ class _Analysis:
 
     def _way(self, number: int, target: int, destination: Destination) -> tuple[_Way, int]:
         """A destination, and all variables that it writes."""
-        scope, names = self.scopes[number], self.instances[number].names
         always, whole, written = 0, 0, 0
         values: list[tuple[int, int]] = []
         for _, group in groupby(sorted(destination.assignments, key=_INDEX), _INDEX):
             replaced = whole
             for assignment in group:
-                variable = scope[root(assignment)]
+                variable = self.uses.written_by(assignment, number)
                 written |= variable
                 if isinstance(assignment.target, Name):
                     whole |= variable
-                read = self._mask(self.reads.by(assignment, names), number) & ~replaced
+                read = self.uses.read_by(assignment, number) & ~replaced
                 if not read:
                     continue
-                if variable & (self.observed | self.late) or _assignment_can_fail(assignment, names):
+                if variable & (self.observed | self.late) or self.uses.can_assignment_fail(assignment, number):
                     always |= read
                 elif not variable & self.transient:
                     values.append((variable, read))
@@ -286,7 +242,7 @@ class _Analysis:
 
     def _read(self, slots: list[int], unobserved: int) -> int:
         """The variables that may be read in the steps of a vector."""
-        part = _joined([self.parts[number] for number in slots])
+        part = reduce(_together, (self.parts[number] for number in slots))
         mask = part.always | max(part.kept, 0)
         for variable, read in part.values.items():
             if not variable & unobserved:
@@ -295,47 +251,79 @@ class _Analysis:
 
     # ------------------------------------------------------------ data flow
 
+    def _others(self, vector: int) -> dict[int, _Part]:
+        """For each slot of a vector, the contribution of all other slots."""
+        others = self.others.get(vector)
+        if others is None:
+            slots = self.legend.vectors[vector][0]
+            parts = [self.parts[number] for number in slots]
+            before = accumulate(parts[:-1], _together, initial=_NOTHING)
+            after = [*accumulate(parts[:0:-1], _together, initial=_NOTHING)][::-1]
+            others = dict(zip(slots, map(_together, before, after), strict=True))
+            self.others[vector] = others
+        return others
+
     def _live(self, instance: int, owned: int) -> dict[int, int]:
         """For each location of an instance, those of its variables that are live there."""
-        steps: dict[int, list[tuple[_Edge, list[_Part]]]] = {}
-        for number in self.slots[instance]:
-            others = [
-                _joined([self.parts[other] for other in self.legend.vectors[vector][0] if other != number])
-                for vector in self.legend.slots[number].vectors
-            ]
-            for location, edges in self.edges[number].items():
-                steps.setdefault(location, []).extend((edge, others) for edge in edges)
         live = dict.fromkeys(self.locations[instance], 0)
+        flows: dict[int, dict[_Flow, None]] = {location: {} for location in live}
+        for number in self.slots[instance]:
+            for vector in self.legend.slots[number].vectors:
+                other = self._others(vector)[number]
+                read_by_other, copied_by_other = _split(other.values.items(), owned)
+                for location, edges in self.edges[number].items():
+                    for edge in edges:
+                        read = edge.reads | other.always | read_by_other
+                        if edge.kept >= 0 and other.kept >= 0:
+                            read |= edge.kept | other.kept
+                        for way in edge.ways:
+                            read_by_way, copied = _split(way.values, owned)
+                            read |= way.always | read_by_way
+                            keeps = owned & ~(way.whole | other.whole)
+                            flows[location][_Flow(way.target, keeps, copied + copied_by_other)] = None
+                        live[location] |= read & owned
         is_growing = True
         while is_growing:
             is_growing = False
             for location in reversed(live):
                 before = live[location]
-                for edge, others in steps.get(location, ()):
-                    for other in others:
-                        before |= self._before(edge, other, live, owned)
-                before &= owned
+                for target, keeps, copied in flows[location]:
+                    after = live[target]
+                    before |= after & keeps
+                    for variable, read in copied:
+                        if variable & after:
+                            before |= read
                 if before != live[location]:
                     live[location] = before
                     is_growing = True
         return live
 
-    def _before(self, edge: _Edge, other: _Part, live: dict[int, int], owned: int) -> int:
-        """The variables that are live before a step of `edge` with `other`, given those that are live afterwards."""
-        mask = edge.reads | other.always
-        if edge.kept >= 0 and other.kept >= 0:
-            mask |= edge.kept | other.kept
-        for way in edge.ways:
-            after = live[way.target]
-            mask |= way.always | after & ~(way.whole | other.whole)
-            dead = owned & ~after
-            for variable, read in way.values:
-                if not variable & dead:
-                    mask |= read
-            for variable, read in other.values.items():
-                if not variable & dead:
-                    mask |= read
-        return mask
+
+class _Flow(NamedTuple):
+    """The variables of an instance that are live before a step because they are live after it.
+
+    Attributes:
+        keeps: the variables that may keep their values.
+        copied: pairs of a variable that is written, and the variables on which its new value depends.
+    """
+
+    target: int
+    keeps: int
+    copied: tuple[tuple[int, int], ...]
+
+
+def _split(values: Iterable[tuple[int, int]], owned: int) -> tuple[int, tuple[tuple[int, int], ...]]:
+    """Of pairs of a variable that is written and of what its new value depends on: the `owned` variables on which the
+    other ones depend, and the pairs of two of the `owned` ones."""
+    always, copied = 0, []
+    for variable, read in values:
+        if not read & owned:
+            continue
+        if variable & owned:
+            copied.append((variable, read & owned))
+        else:
+            always |= read
+    return always, tuple(copied)
 
 
 _INDEX = attrgetter("index")
@@ -343,64 +331,31 @@ _INDEX = attrgetter("index")
 
 def _part(edges: list[_Edge]) -> _Part:
     """One of several edges, whichever it is."""
-    ways = [way for edge in edges for way in edge.ways]
-    always, kept = 0, -1
+    always, whole, kept = 0, -1, -1
     values: dict[int, int] = {}
     for edge in edges:
         always |= edge.reads
         if edge.kept >= 0:
             kept = max(kept, 0) | edge.kept
-    for way in ways:
-        always |= way.always
-        for variable, read in way.values:
-            values[variable] = values.get(variable, 0) | read
-    return _Part(always, values, reduce(and_, (way.whole for way in ways)) if ways else 0, kept)
+        for way in edge.ways:
+            always |= way.always
+            whole &= way.whole
+            for variable, read in way.values:
+                values[variable] = values.get(variable, 0) | read
+    return _Part(always, values, max(whole, 0), kept)
 
 
-def _joined(parts: list[_Part]) -> _Part:
-    """All of several parts, at the same time."""
-    if len(parts) == 1:
-        return parts[0]
-    always, whole, kept = 0, 0, 0
-    values: dict[int, int] = {}
-    for part in parts:
-        always |= part.always
-        whole |= part.whole
-        kept = kept | part.kept if kept >= 0 and part.kept >= 0 else -1
-        for variable, read in part.values.items():
-            values[variable] = values.get(variable, 0) | read
-    return _Part(always, values, whole, kept)
+def _together(one: _Part, other: _Part) -> _Part:
+    """Both parts at the same time."""
+    if one is _NOTHING:
+        return other
+    values = other.values
+    if one.values:
+        values = {**one.values, **values}
+        for variable in one.values.keys() & other.values.keys():
+            values[variable] |= one.values[variable]
+    kept = one.kept | other.kept if one.kept >= 0 and other.kept >= 0 else -1
+    return _Part(one.always | other.always, values, one.whole | other.whole, kept)
 
 
-def bits(mask: int) -> Iterator[int]:
-    """The numbers of the elements of a set, in ascending order."""
-    while mask:
-        bit = mask & -mask
-        yield bit.bit_length() - 1
-        mask ^= bit
-
-
-def _assignment_can_fail(assignment: Assignment, names: StorageNames) -> bool:
-    """Whether an assignment is an undefined operation in some states."""
-    meaning = names.values[root(assignment)]
-    assert isinstance(meaning, Storage)
-    if meaning.bounds != (None, None):
-        return True
-    return _can_fail(assignment.value, names) or _can_fail(assignment.target, names)
-
-
-def _can_fail(expression: Expression, names: StorageNames) -> bool:
-    """Whether an expression has no value in some states. In doubt, it can fail."""
-    for node in walk(expression):
-        match node:
-            case Unary(UnaryOperator.NOT):
-                pass
-            case Binary(operator) if operator in _TOTAL:
-                pass
-            case ArrayAccess(Name(name), Integer(index)):
-                meaning = names.values.get(name)
-                if not isinstance(meaning, Storage) or not meaning.shape or not 0 <= index < meaning.shape[0]:
-                    return True
-            case _ if not isinstance(node, _ATOMS):
-                return True
-    return False
+_NOTHING = _Part(0, {}, 0, 0)

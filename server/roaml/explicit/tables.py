@@ -11,7 +11,8 @@ from __future__ import annotations
 from array import array
 from collections.abc import Iterable
 
-from roaml.explicit.liveness import Liveness, bits
+from roaml.explicit.liveness import Liveness
+from roaml.explicit.uses import bits
 from roaml.record import Record
 from roaml.smc.compile import Legend
 from roaml.smc.names import Storage
