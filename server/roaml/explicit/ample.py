@@ -81,9 +81,9 @@ class AmpleSets:
     def _group(self, slot: int) -> int:
         """The group of a slot at the current location of its instance; -1 if there is none."""
         place = self.kernel.place[self.kernel.slot_instance[slot]]
-        for group in range(self.kernel.group_start[place], self.kernel.group_start[place + 1]):
-            if self.kernel.group_slot[group] == slot:
-                return group
+        group = self.kernel.slot_group[slot]  # that of the last location at which there was one
+        if self.kernel.group_start[place] <= group < self.kernel.group_start[place + 1]:
+            return group if self.kernel.group_slot[group] == slot else -1
         return -1
 
     def _is_alone(self, vector: int) -> int:
