@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from hypothesis import given, settings
+from hypothesis import strategies as st
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 from smc_random import networks
 
@@ -68,6 +69,32 @@ def test_both_searches_and_solvers_do_the_same(written: Json) -> None:
     assert keys(ours) == keys(plain)
     assert choices(ours) == choices(plain)
     assert values_of(ours, solver) == values_of(plain, plain_solver())
+
+
+def everything(space: Space) -> Any:
+    search, known = space.search, range(space.search.expanded)
+    parents, labels = [search.parent_of(state) for state in range(space.states)], [search.label_of(s) for s in known]
+    return keys(space), choices(space), parents, labels, search.depth, space.fault_at, space.problem
+
+
+@given(networks(), st.sampled_from([1, 2, 7]), st.integers(1, 40))
+@settings(max_examples=60, deadline=None, derandomize=True)
+def test_states_have_the_same_numbers_however_many_are_looked_up_together(
+    written: Json, waiting: int, most: int
+) -> None:
+    expected = space_of(written)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(plain_search(), "MAX_WAITING", waiting)
+        assert everything(plainly(written)) == everything(expected)
+        ends = []
+        for modules in (None, (plain_kernel(), plain_search())):
+            try:
+                space = space_of(written, StateLimits(states=most), modules)
+            except LimitError as error:
+                ends.append(str(error))
+            else:
+                ends.append(str(space.problem))
+        assert ends[0] == ends[1]
 
 
 class _Direct(plain_solver().Solver):  # type: ignore[misc, name-defined]

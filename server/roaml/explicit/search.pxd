@@ -12,7 +12,7 @@ ctypedef long long i64
 cdef u64 UINT64_MASK, HASH_1, HASH_2, UINT32_MASK, MAX_INT64
 cdef i64 MAX_COUNTED_STATES, SPARE_BITS_FROM_STATES
 cdef int MAX_SPREAD_BITS
-cdef int SAMPLED_TRACES, SAMPLED_STEPS, MAX_PASSED
+cdef int SAMPLED_TRACES, SAMPLED_STEPS, MAX_PASSED, MAX_WAITING, WAITS
 cdef int FALSE, TRUE, UNKNOWN, FAULTY
 cdef int TIME, STUCK
 cdef int COMPLETE, PART, STATES, MEMORY, FAULT, CHOICES
@@ -59,6 +59,11 @@ cdef class StateSearch:
     cdef public int[::1] roots
     cdef i64 root_room
     cdef public u64 entered
+    cdef int waiting
+    cdef u64[::1] waiting_keys, waiting_tag, waiting_entry
+    cdef int[::1] waiting_parent
+    cdef i64[::1] waiting_code
+    cdef u64 peeked
 
     @cython.locals(most=u64, cell=int, state=i64, i=int)
     cdef void _enter_roots(self, i64 many) except *
@@ -98,10 +103,18 @@ cdef class StateSearch:
     cdef void _rehash(self) except *
     @cython.locals(old_table=u64[::1], size=u64, i=u64, entry=u64, at=u64)
     cdef void _double_table(self) except *
-    @cython.locals(value=u64, tag=u64, at=u64, entry=u64, first=i64, i=int, same=int)
     cdef u64 _look_up(self) noexcept
-    @cython.locals(at=u64, state=i64, first=i64, i=int)
+    @cython.locals(value=u64, i=int)
+    cdef u64 _tag(self) noexcept
+    @cython.locals(tag=u64, at=u64, entry=u64, first=i64, i=int, same=int)
+    cdef u64 _index(self) noexcept
     cdef int _find(self, i64 parent) except? -9
+    @cython.locals(state=i64, first=i64, i=int)
+    cdef int _stored(self, u64 at, i64 parent) except? -9
+    @cython.locals(first=int, i=int)
+    cdef void _wait(self, i64 state) except *
+    @cython.locals(waiting=int, k=int, i=int, entry=u64, status=int, state=i64)
+    cdef void _find_waiting(self) except *
     cdef i64 _used(self) noexcept
     cdef void _make_room(self) except *
     cdef int _emit(self, int word) except -1
@@ -136,6 +149,7 @@ cdef class StateSearch:
     cdef int _choose(self, int vector, int count, i64 state, double weight, double exit_reward) except? -9
     @cython.locals(j=int, i=int, cell=int, successor=i64)
     cdef int _successor(self, int vector, int count, i64 state) except? -9
+    cdef void _emit_successor(self, i64 successor, i64 state) except *
     @cython.locals(j=int)
     cdef void _execute_choice(self, int vector, int count) noexcept
     @cython.locals(i=int, j=int, k=int, way=int, cell=int, move=int)
