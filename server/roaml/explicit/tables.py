@@ -79,7 +79,7 @@ def _dropped(program: Program, legend: Legend, liveness: Liveness) -> tuple[Ints
     storages = legend.layout.storages
     moves = dict(zip(program.way_move, legend.moves, strict=True))
     starts, cells = [0], list[int]()
-    for move in range(len(program.move_start) - 1):
+    for move in range(max(program.way_move, default=-1) + 1):
         source, target = moves[move]
         dropped = liveness.dead[target] & ~liveness.dead[source]
         for number in bits(dropped):

@@ -223,23 +223,35 @@ class Compilation:
             self.cells.end()
 
     def _write_moves(self) -> None:
-        """Write the tables of the slots that have edges in the source or the target of each way."""
-        self.move_start, self.move_slot, self.move_group, self.move_count = [0], list[int](), list[int](), list[int]()
+        """Number the pairs of a source and a target location."""
         known: dict[tuple[int, int], int] = {}
         for source, target in zip(self.way_source, self.way_target, strict=True):
             if source == target:
                 self.way_move.append(-1)
                 continue
             if (source, target) not in known:
-                known[source, target] = len(self.move_start) - 1
-                before, after = self._groups(source), self._groups(target)
-                for slot in sorted(before.keys() | after.keys()):
-                    group = after.get(slot, -1)
-                    self.move_slot.append(slot)
-                    self.move_group.append(group)
-                    self.move_count.append(0 if group < 0 else self._count(group))
-                self.move_start.append(len(self.move_slot))
+                known[source, target] = len(known)
             self.way_move.append(known[source, target])
+
+    def _updates(self, slot_vector: list[int]) -> tuple[Ints, Ints]:
+        """`Program.way_update` and `Program.updates`."""
+        known: dict[int, int] = {-1: -1}
+        records = array("i")
+        for move, source, target in zip(self.way_move, self.way_source, self.way_target, strict=True):
+            if move not in known:
+                known[move] = len(records)
+                before, after = self._groups(source), self._groups(target)
+                left = sorted(before.keys() - after.keys())
+                entered = sorted(slot for slot in after.keys() - before.keys() if self._count(after[slot]) == 1)
+                others = sorted(after.keys() - set(entered))
+                records.extend((len(left), len(entered), len(others)))
+                for slot in left:
+                    records.extend((slot, slot_vector[slot]))
+                for slot in entered:
+                    records.extend((slot, slot_vector[slot], after[slot]))
+                for slot in others:
+                    records.extend((slot, after[slot], self._count(after[slot])))
+        return _ints(known[move] for move in self.way_move), records
 
     def _groups(self, location: int) -> dict[int, int]:
         """The slots of a location, with their groups."""
@@ -255,20 +267,24 @@ class Compilation:
     def program(self, marks: Marks) -> Program:
         """The program with all code that has been written so far."""
         gates: dict[tuple[int, ...], list[int]] = {}
-        for number, slot in enumerate(self.network.slots):
-            if slot.vectors:
-                gates.setdefault(tuple(slot.vectors), []).append(number)
-        slot_gate = [-1] * len(self.network.slots)
-        gate_start, gate_vector, gate_missing = [0], list[int](), list[int]()
+        slot_vector = [-1] * len(self.network.slots)
         vector_missing = [0] * len(self.network.vectors)
+        for number, slot in enumerate(self.network.slots):
+            if len(slot.vectors) == 1:
+                slot_vector[number] = slot.vectors[0]
+                vector_missing[slot.vectors[0]] += 1
+            elif slot.vectors:
+                gates.setdefault(tuple(slot.vectors), []).append(number)
+        gate_start, gate_vector, gate_missing = [0], list[int](), list[int]()
         for gate, (vectors, slots) in enumerate(gates.items()):
             for number in slots:
-                slot_gate[number] = gate
+                slot_vector[number] = -2 - gate
             gate_vector += vectors
             gate_start.append(len(gate_vector))
             gate_missing.append(len(slots))
             for vector in vectors:
                 vector_missing[vector] += 1
+        way_update, updates = self._updates(slot_vector)
         inert = [all(s.is_inert for steps in slot.steps.values() for s in steps) for slot in self.network.slots]
         active_start, active_slot = _ranges([[s for s in slots if not inert[s]] for slots, _ in self.network.vectors])
         all_start, all_slot = _ranges([slots for slots, _ in self.network.vectors])
@@ -311,12 +327,10 @@ class Compilation:
             way_sum=array("d", self.way_sum),
             way_chance=_ints(self.way_chance),
             way_move=_ints(self.way_move),
-            move_start=_ints(self.move_start),
-            move_slot=_ints(self.move_slot),
-            move_group=_ints(self.move_group),
-            move_count=_ints(self.move_count),
+            way_update=way_update,
+            updates=updates,
             slot_instance=_ints([slot.instance for slot in self.network.slots]),
-            slot_gate=_ints(slot_gate),
+            slot_vector=_ints(slot_vector),
             gate_start=_ints(gate_start),
             gate_vector=_ints(gate_vector),
             gate_missing=_ints(gate_missing),

@@ -32,8 +32,8 @@ cdef class Kernel:
     cdef public u64 roots
     cdef int[::1] group_start, group_slot, group_way, edge_start, guard, way_start, way_target, way_code, way_chance, way_move
     cdef double[::1] way_sum
-    cdef int[::1] move_start, move_slot, move_group, move_count
-    cdef int[::1] slot_instance, slot_gate, gate_start, gate_vector
+    cdef int[::1] way_update, updates
+    cdef int[::1] slot_instance, slot_vector, gate_start, gate_vector
     cdef int[::1] active_start, active_slot, all_start, all_slot, entangled
     cdef int[::1] phase_start, phase_index, phase_read, phase_write
     cdef int[::1] watch_start, watch_instance, watch_table, watched_start, watched_group, watched_index, watch_register
@@ -82,8 +82,12 @@ cdef class Kernel:
     @cython.locals(z=u64)
     cdef u64 _mixed(self, u64 value) noexcept
     cdef u64 _draw(self) noexcept
-    @cython.locals(old=int, gate=int, i=int, vector=int)
+    @cython.locals(old=int, vector=int)
     cdef void _set_ready(self, int slot, int count) noexcept
+    @cython.locals(gate=int, i=int, vector=int)
+    cdef void _add_to_gate(self, int number) noexcept
+    @cython.locals(gate=int, i=int, vector=int)
+    cdef void _remove_from_gate(self, int number) noexcept
     @cython.locals(at=int)
     cdef void _enable(self, int vector) noexcept
     @cython.locals(at=int, following=int, moved=int)
@@ -121,8 +125,10 @@ cdef class Kernel:
     cdef void _take(self, int vector, u64 rest, int apart) noexcept
     @cython.locals(i=int, slot=int, edge=int)
     cdef void _take_given(self, int vector, list picks, list ways) noexcept
-    @cython.locals(i=int, k=int, move=int, slot=int, group=int, count=int)
+    @cython.locals(i=int, update=int)
     cdef void _apply(self, int vector) noexcept
+    @cython.locals(at=int, end=int, slot=int, group=int, count=int, old=int, vector=int, missing=int)
+    cdef void _move(self, int update) noexcept
     @cython.locals(i=int)
     cdef void _execute_ways(self, int vector) noexcept
     @cython.locals(group=int, edge=int, i=int)

@@ -94,12 +94,10 @@ class Kernel:
         self.way_sum = program.way_sum
         self.way_chance = program.way_chance
         self.way_move = program.way_move
-        self.move_start = program.move_start
-        self.move_slot = program.move_slot
-        self.move_group = program.move_group
-        self.move_count = program.move_count
+        self.way_update = program.way_update
+        self.updates = program.updates
         self.slot_instance = program.slot_instance
-        self.slot_gate = program.slot_gate
+        self.slot_vector = program.slot_vector
         self.gate_start = program.gate_start
         self.gate_vector = program.gate_vector
         self.active_start = program.active_start
@@ -576,25 +574,47 @@ class Kernel:
             return
         self.ready[slot] = count
         self.plural += (count > 1) - (old > 1)
-        gate = self.slot_gate[slot]
+        vector = self.slot_vector[slot]
+        if old == 0:
+            if vector < 0:
+                self._add_to_gate(vector)
+            else:
+                self.vector_missing[vector] -= 1
+                if self.vector_missing[vector] == 0:
+                    self._enable(vector)
+        elif count == 0:
+            if vector < 0:
+                self._remove_from_gate(vector)
+            else:
+                self.vector_missing[vector] += 1
+                if self.vector_missing[vector] == 1:
+                    self._disable(vector)
+
+    def _add_to_gate(self, number: int) -> None:
+        """A slot has become ready that takes part in several vectors, or in none. `number`: see `slot_vector`."""
+        gate = -2 - number
         if gate < 0:
             return
-        if old == 0:
-            self.gate_missing[gate] -= 1
-            if self.gate_missing[gate] == 0:
-                for i in range(self.gate_start[gate], self.gate_start[gate + 1]):
-                    vector = self.gate_vector[i]
-                    self.vector_missing[vector] -= 1
-                    if self.vector_missing[vector] == 0:
-                        self._enable(vector)
-        elif count == 0:
-            self.gate_missing[gate] += 1
-            if self.gate_missing[gate] == 1:
-                for i in range(self.gate_start[gate], self.gate_start[gate + 1]):
-                    vector = self.gate_vector[i]
-                    self.vector_missing[vector] += 1
-                    if self.vector_missing[vector] == 1:
-                        self._disable(vector)
+        self.gate_missing[gate] -= 1
+        if self.gate_missing[gate] == 0:
+            for i in range(self.gate_start[gate], self.gate_start[gate + 1]):
+                vector = self.gate_vector[i]
+                self.vector_missing[vector] -= 1
+                if self.vector_missing[vector] == 0:
+                    self._enable(vector)
+
+    def _remove_from_gate(self, number: int) -> None:
+        """Such a slot is no longer ready."""
+        gate = -2 - number
+        if gate < 0:
+            return
+        self.gate_missing[gate] += 1
+        if self.gate_missing[gate] == 1:
+            for i in range(self.gate_start[gate], self.gate_start[gate + 1]):
+                vector = self.gate_vector[i]
+                self.vector_missing[vector] += 1
+                if self.vector_missing[vector] == 1:
+                    self._disable(vector)
 
     def _enable(self, vector: int) -> None:
         """Insert a vector into `enabled`."""
@@ -872,19 +892,58 @@ class Kernel:
         if self.fault != 0:
             return
         for i in range(self.parts):
-            move = self.way_move[self.part_way[i]]
-            if move >= 0:
-                self.moved = 1
-                for k in range(self.move_start[move], self.move_start[move + 1]):
-                    slot = self.move_slot[k]
-                    group = self.move_group[k]
-                    count = self.move_count[k]
-                    if count < 0:
-                        count = self._count(group)
-                    self.slot_group[slot] = group
-                    self._set_ready(slot, count)
+            update = self.way_update[self.part_way[i]]
+            if update >= 0:
+                self._move(update)
         if self.note_count != 0:
             self._look_around()
+
+    def _move(self, update: int) -> None:
+        """Update what is enabled when an instance goes from one location to another. `update`: an index in
+        `Program.updates`."""
+        self.moved = 1
+        at = update + 3
+        end = at + 2 * self.updates[update]
+        while at < end:
+            slot = self.updates[at]
+            old = self.ready[slot]
+            if old != 0:
+                self.ready[slot] = 0
+                if old > 1:
+                    self.plural -= 1
+                vector = self.updates[at + 1]
+                if vector < 0:
+                    self._remove_from_gate(vector)
+                else:
+                    missing = self.vector_missing[vector]
+                    self.vector_missing[vector] = missing + 1
+                    if missing == 0:
+                        self._disable(vector)
+            at += 2
+        end = at + 3 * self.updates[update + 1]
+        while at < end:
+            slot = self.updates[at]
+            self.ready[slot] = 1
+            self.slot_group[slot] = self.updates[at + 2]
+            vector = self.updates[at + 1]
+            if vector < 0:
+                self._add_to_gate(vector)
+            else:
+                missing = self.vector_missing[vector] - 1
+                self.vector_missing[vector] = missing
+                if missing == 0:
+                    self._enable(vector)
+            at += 3
+        end = at + 3 * self.updates[update + 2]
+        while at < end:
+            slot = self.updates[at]
+            group = self.updates[at + 1]
+            count = self.updates[at + 2]
+            if count < 0:
+                count = self._count(group)
+            self.slot_group[slot] = group
+            self._set_ready(slot, count)
+            at += 3
 
     def _execute_ways(self, vector: int) -> None:
         """Execute the assignments of the chosen ways, and change the locations."""

@@ -44,12 +44,17 @@ class Program(Record, frozen=True, eq=False):
         way_chance: code that returns the register of the probability of a way, if it depends on the state.
         way_move: the move of a way: the number of its pair of a source and a target location; -1 if both are equal.
         group_way: the way of a group that consists of one edge with one way; -1 for other groups.
-        move_slot: the slots that have edges in one of the two locations of a move.
-        move_group: for each of these slots, its group in the target location, -1 if there is none.
-        move_count: for each of these slots, the number of its enabled edges in the target location, -1 if it depends on
-            guards.
-        slot_gate: the gate of each slot (`roaml.smc.kernel` defines gates); gate_vector: the vectors of a gate.
-        gate_missing, vector_missing: the number of slots of each gate, and the number of gates of each vector.
+        way_update: for each way, the index in `updates` of the change of what is enabled; -1 if its source and its
+            target are equal.
+        updates: one record after the other. It contains the numbers of slots in its three parts, and these parts:
+            slots that have edges only in the source location, with their `slot_vector`; slots that have one edge
+            without a guard in the target location and none in the source location, with their `slot_vector` and their
+            group; and the other slots that have edges in the target location, with their group and the number of their
+            enabled edges, -1 if it depends on guards.
+        slot_vector: the vector of each slot; -1 if there is none; -2 - g if there are several, where g is the gate of
+            the slot (`roaml.smc.kernel` defines gates). gate_vector: the vectors of a gate.
+        gate_missing, vector_missing: the number of slots of each gate; for each vector, the number of its slots that
+            are in no other vector, plus the number of its gates.
         active_slot: the slots of a vector that have an effect; all_slot: all slots.
         entangled: whether assignments of several parts of a vector depend on one another.
         phase_index: for ways that take part in entangled vectors, the indices of their assignments, in ascending order.
@@ -97,12 +102,10 @@ class Program(Record, frozen=True, eq=False):
     way_sum: Reals
     way_chance: Ints
     way_move: Ints
-    move_start: Ints
-    move_slot: Ints
-    move_group: Ints
-    move_count: Ints
+    way_update: Ints
+    updates: Ints
     slot_instance: Ints
-    slot_gate: Ints
+    slot_vector: Ints
     gate_start: Ints
     gate_vector: Ints
     gate_missing: Ints
