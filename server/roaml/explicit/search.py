@@ -1033,7 +1033,11 @@ class StateSearch:
                 end = self.kernel.list_start[at + 1]
             for k in range(first, end):
                 edge = k if at < 0 else self.kernel.list_item[k]
-                guard = self.kernel.guard[edge]
+                if edge < 0:
+                    edge = -1 - edge
+                    guard = -1
+                else:
+                    guard = self.kernel.guard[edge]
                 if is_single == 0 and guard >= 0 and self.kernel._execute(guard) == 0:
                     continue
                 self.edges[edge_count] = edge

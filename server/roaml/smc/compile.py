@@ -17,7 +17,7 @@ from roaml.smc.assign import AssignmentAssembler
 from roaml.smc.cells import CellAssembler
 from roaml.smc.end import Marks
 from roaml.smc.fault import FaultError
-from roaml.smc.index import MIN_INDEXED, Indexes, dimensions_of, fixed_values
+from roaml.smc.index import MIN_INDEXED, Indexes, dimensions_of, fixed_values, is_fixed
 from roaml.smc.initial import MAX_INITIAL_STATES, Cells
 from roaml.smc.layout import MemoryLayout, lay_out
 from roaml.smc.names import Storage, StorageNames
@@ -481,23 +481,29 @@ class Compilation:
                 guards = {edge: self._fixed_values(self.guard[edge]) for edge in edges}
                 dimensions = dimensions_of(list(guards.values()))
                 if dimensions:
-                    numbers[group] = indexes.add(dimensions, guards, has_all=True)
+                    fixed = {edge for edge, values in guards.items() if self._is_fixed(edge, values)}
+                    numbers[group] = indexes.add(dimensions, guards, fixed, has_all=True)
         return numbers
 
     def _add_index(self, groups: list[int], indexes: Indexes) -> tuple[int, list[int]]:
         """Add an index of groups. Return its number, -1 if there is none; and the groups that are not in it."""
         if len(groups) < MIN_INDEXED:
             return -1, groups
-        fixed = {group: self._fixed_in_all(group) for group in groups}
-        dimensions = dimensions_of(list(fixed.values()))
+        guards = {group: self._fixed_in_all(group) for group in groups}
+        dimensions = dimensions_of(list(guards.values()))
         if not dimensions:
             return -1, groups
         keyed = {
             group: values
-            for group, values in fixed.items()
+            for group, values in guards.items()
             if all(dimension.register in values for dimension in dimensions)
         }
-        return indexes.add(dimensions, keyed, has_all=False), [group for group in groups if group not in keyed]
+        fixed = {
+            group
+            for group, values in keyed.items()
+            if len(self.group_steps[group]) == 1 and self._is_fixed(self.edge_start[group], values)
+        }
+        return indexes.add(dimensions, keyed, fixed, has_all=False), [group for group in groups if group not in keyed]
 
     def _fixed_in_all(self, group: int) -> dict[int, int]:
         """The values that registers must have for one of the edges of a group to be enabled."""
@@ -506,6 +512,9 @@ class Compilation:
         for edge in others:
             values = dict(values.items() & self._fixed_values(self.guard[edge]).items())
         return values
+
+    def _is_fixed(self, edge: int, values: Mapping[int, int]) -> bool:
+        return is_fixed(self.tape.code, self.guard[edge], self.tape.ints, self.int_count, self._constants, values)
 
     def _fixed_values(self, guard: int) -> dict[int, int]:
         values = self._fixed.get(guard)

@@ -42,16 +42,41 @@ def fixed_values(
     values: dict[int, int] = {}
     at = start
     while at >= 0:
-        op, a, b = code[at], code[at + 2], code[at + 3]
-        if op in (Op.FAIL_NE, Op.IS_EQ):
-            if b < int_count and a in constants:
-                a, b = b, a
-            if a < int_count and b in constants:
-                values.setdefault(a, ints[b])
-        if op not in _COMPARISONS:
+        for register, value in _equality(code, at, ints, int_count, constants):
+            values.setdefault(register, value)
+        if code[at] not in _COMPARISONS:
             break
         at += WIDTH
     return values
+
+
+def is_fixed(
+    code: Sequence[int], start: int, ints: Sequence[int], int_count: int, constants: Container[int], fixed: Fixed
+) -> bool:
+    """Whether a guard is true if the registers have its fixed values `fixed`, because it compares nothing else. The
+    other parameters are those of `fixed_values`."""
+    at = start
+    while at >= 0:
+        equal = _equality(code, at, ints, int_count, constants)
+        if not equal or any(fixed.get(register) != value for register, value in equal):
+            return False
+        if code[at] == Op.IS_EQ:
+            return True
+        at += WIDTH
+    return False
+
+
+def _equality(
+    code: Sequence[int], at: int, ints: Sequence[int], int_count: int, constants: Container[int]
+) -> list[tuple[int, int]]:
+    """The register of a variable and its value, if the instruction at `at` requires that they are equal."""
+    op, a, b = code[at], code[at + 2], code[at + 3]
+    if op in (Op.FAIL_NE, Op.IS_EQ):
+        if b < int_count and a in constants:
+            a, b = b, a
+        if a < int_count and b in constants:
+            return [(a, ints[b])]
+    return []
 
 
 class Dimension(Record, frozen=True):
@@ -66,7 +91,8 @@ class Indexes:
     """Indexes by the values of some registers. The index i has the dimensions from `dimension_start[i]` to
     `dimension_start[i + 1]`, and the lists from `first_list[i]` to `first_list[i + 1]`: one for each combination of
     values, in which the values of the last dimension change fastest, and a last one for all other values. The range
-    from `list_start[i]` to `list_start[i + 1]` of `items` contains list i."""
+    from `list_start[i]` to `list_start[i + 1]` of `items` contains list i. An item is a number n, or -1 - n if
+    the guard of n is true for these values and need not be evaluated."""
 
     def __init__(self) -> None:
         self.dimensions: list[Dimension] = []
@@ -74,24 +100,33 @@ class Indexes:
         self.first_list = [0]
         self.list_start = [0]
         self.items: list[int] = []
+        self._known: dict[tuple[tuple[Dimension, ...], tuple[int, ...]], int] = {}
 
-    def add(self, dimensions: Sequence[Dimension], guards: Mapping[int, Fixed], *, has_all: bool) -> int:
-        """Add an index; return its number.
+    def add(
+        self, dimensions: Sequence[Dimension], guards: Mapping[int, Fixed], fixed: Container[int], *, has_all: bool
+    ) -> int:
+        """Add an index, unless there is an equal one; return its number.
 
         Args:
             guards: a number -> the fixed values of its guard, in the order of the lists.
+            fixed: the numbers whose guards are true if the registers have these values.
             has_all: whether the lists also contain the guards that do not fix all registers.
         """
+        key = tuple(dimensions), (int(has_all), *guards)
+        if key in self._known:
+            return self._known[key]
+        self._known[key] = len(self.first_list) - 1
+        registers = {dimension.register for dimension in dimensions}
         count = 1
         for dimension in dimensions:
             count *= dimension.size
         lists: list[list[int]] = [[] for _ in range(count + 1)]
-        for number, fixed in guards.items():
-            if all(dimension.register in fixed for dimension in dimensions):
+        for number, values in guards.items():
+            if registers <= values.keys():
                 at = 0
                 for dimension in dimensions:
-                    at = at * dimension.size + fixed[dimension.register] - dimension.low
-                lists[at].append(number)
+                    at = at * dimension.size + values[dimension.register] - dimension.low
+                lists[at].append(-1 - number if number in fixed and registers == values.keys() else number)
             elif has_all:
                 for items in lists:
                     items.append(number)

@@ -38,12 +38,12 @@ cdef class Kernel:
     cdef int[::1] phase_start, phase_index, phase_read, phase_write
     cdef int[::1] watch_start, watch_instance, watch_table, watched_start, watched_group, watched_index, watch_register
     cdef int[::1] group_index, dimension_start, dimension_register, dimension_watch, dimension_size
-    cdef int[::1] first_list, list_start, list_item, location_code, location_mark
+    cdef int[::1] first_list, list_start, list_item, visited, visits, location_code, location_mark
     cdef int[::1] seen_start, seen_leaf, left, right, formula, formula_start, leaf_start, activity
     cdef int[::1] verdict, holds_left, holds_right, stale, stack, asked, known, known_end, known_activity
     cdef i64[::1] known_steps
     cdef i64[::1] lower, upper, dimension_low, value_before
-    cdef int leaves, questions, status, is_bounded, step_reward, exit_reward
+    cdef int visit_count, leaves, questions, status, is_bounded, step_reward, exit_reward
     cdef int[::1] sum_register, sum_watch, sum_step, sum_exit, kept_slot, kept_way
     cdef double[::1] sum_limit
     cdef int sums, lasts
@@ -141,10 +141,10 @@ cdef class Kernel:
     cdef list _chances(self, int edge)
     @cython.locals(index=i64, following=i64, i=int, k=int, way=int)
     cdef void _execute_phases(self) noexcept
-    @cython.locals(i=int, k=int, m=int, variable=int, instance=int, at=int, group=int)
+    @cython.locals(i=int, k=int, m=int, variable=int, instance=int, at=int, index=int, group=int)
     cdef void _look_around(self) noexcept
     @cython.locals(before=int, now=int, i=int, group=int)
-    cdef void _look_up(self, int at) noexcept
+    cdef void _look_up(self, int index) noexcept
     @cython.locals(code=int)
     cdef void _settle_location(self, int instance) noexcept
     @cython.locals(i=int, k=int, vector=int, slot=int, pick=int, edge=int, way=int)

@@ -4,11 +4,12 @@
 - Plain Python; Cython compiles it to an extension with the types in `kernel.pxd`. Both compute exactly the same traces.
 - A trace depends on its seed and its number only: the random number n of a trace is a hash of both and of n.
 - The set of enabled synchronisation vectors is updated incrementally. A *slot* is an automaton and one of its actions;
-  it is ready if an edge of the automaton for this action is enabled. Slots that take part in the same vectors share a
-  *gate*, which counts the slots that are not ready; a gate is open if all its slots are ready, and a vector counts its
-  gates that are not open. A step updates only the slots of the locations that it leaves and enters, and the guards that
-  read a variable that has changed. The enabled vectors are sorted by their numbers, so that what a random number
-  selects depends on the state only, not on the trace before it. Few of them are enabled at the same time.
+  it is ready if an edge of the automaton for this action is enabled. A vector counts its slots that are not ready.
+  Slots that take part in the same vectors, if these are several, share a *gate*, which counts the slots that are not
+  ready; it is open if all of them are ready, and a vector counts its gates that are not open. A step updates only the
+  slots of the locations that it leaves and enters, from a record that the compiler prepares for each pair of locations,
+  and the guards that read a variable that has changed. The enabled vectors are sorted by their numbers, so that what a
+  random number selects depends on the state only, not on the trace before it. Few of them are enabled at the same time.
 - A model with several initial states starts in one of them, which random number 0 of the trace selects.
 - A *way* is a destination of an edge. A *part* of a step is a slot with the way that it takes.
 - If a vector has too many combinations of edges to number them all, the edge of each automaton is drawn separately. The
@@ -126,6 +127,11 @@ class Kernel:
         self.list_start = program.list_start
         self.list_item = program.list_item
         self.value_before = program.zero_values[:]
+        self.visited = program.first_list[:]
+        self.visits = program.first_list[:]
+        for i in range(len(self.visited)):
+            self.visited[i] = 0
+        self.visit_count = 0
         self.settle = program.settle
         self.location_code = program.location_code
         self.location_mark = program.location_mark
@@ -649,7 +655,7 @@ class Kernel:
             at = self._list(self.group_index[group])
             for i in range(self.list_start[at], self.list_start[at + 1]):
                 edge = self.list_item[i]
-                if self.guard[edge] < 0 or self._execute(self.guard[edge]) != 0:
+                if edge < 0 or self.guard[edge] < 0 or self._execute(self.guard[edge]) != 0:
                     count += 1
             return count
         for edge in range(self.edge_start[group], self.edge_start[group + 1]):
@@ -980,9 +986,9 @@ class Kernel:
             i = self.list_start[self._list(self.group_index[group])]
             while True:
                 edge = self.list_item[i]
-                if self.guard[edge] < 0 or self._execute(self.guard[edge]) != 0:
+                if edge < 0 or self.guard[edge] < 0 or self._execute(self.guard[edge]) != 0:
                     if pick == 0:
-                        return edge
+                        return edge if edge >= 0 else -1 - edge
                     pick -= 1
                 i += 1
         while True:
@@ -1088,27 +1094,42 @@ class Kernel:
             for k in range(self.watch_start[variable], self.watch_start[variable + 1]):
                 instance = self.watch_instance[k]
                 at = self.watch_table[k] + self.place[instance] - self.first_location[instance]
-                if self.watched_index[at] >= 0:
-                    self._look_up(at)
+                index = self.watched_index[at]
+                if index >= 0 and self.visited[index] == 0:
+                    self._look_up(index)
                 for m in range(self.watched_start[at], self.watched_start[at + 1]):
                     group = self.watched_group[m]
                     self._set_ready(self.group_slot[group], self._count(group))
+        for i in range(self.note_count):
+            variable = self.notes[i]
             if self.watch_register[variable] >= 0:
                 self.value_before[variable] = self.ints[self.watch_register[variable]]
         self.note_count = 0
+        for i in range(self.visit_count):
+            self.visited[self.visits[i]] = 0
+        self.visit_count = 0
 
-    def _look_up(self, at: int) -> None:
-        """Evaluate the guards of a location that are in an index. Guards that are neither in the list for the previous
-        values nor in that for the current ones were false and stay false."""
-        before = self._list_before(self.watched_index[at])
-        now = self._list(self.watched_index[at])
+    def _look_up(self, index: int) -> None:
+        """Evaluate the guards of a location that are in an index, once in a step. Guards that are neither in the list
+        for the previous values nor in that for the current ones were false and stay false. The last vectors leave
+        `enabled` first, so that it is not moved."""
+        self.visited[index] = 1
+        self.visits[self.visit_count] = index
+        self.visit_count += 1
+        before = self._list_before(index)
+        now = self._list(index)
+        if before != now:
+            i = self.list_start[before + 1]
+            while i > self.list_start[before]:
+                i -= 1
+                group = self.list_item[i]
+                self._set_ready(self.group_slot[group if group >= 0 else -1 - group], 0)
         for i in range(self.list_start[now], self.list_start[now + 1]):
             group = self.list_item[i]
-            self._set_ready(self.group_slot[group], self._count(group))
-        if before == now:
-            return
-        for i in range(self.list_start[before], self.list_start[before + 1]):
-            self._set_ready(self.group_slot[self.list_item[i]], 0)
+            if group >= 0:
+                self._set_ready(self.group_slot[group], self._count(group))
+            elif before != now:
+                self._set_ready(self.group_slot[-1 - group], 1)
 
     def _settle_location(self, instance: int) -> None:
         """Give transient variables the values that they have in the current location of `instance`."""
