@@ -41,6 +41,8 @@ class GlobalVariable(Record, frozen=True):
     """A variable of the translated system.
 
     Attributes:
+        type: its type, in which a string is an array of bytes.
+        leaf: the type of the leaf of the parameter that it contains; that of a length is `type`.
         event: the event whose data it contains.
         parameter: the parameter of the event; `FLAG` for the flag.
         source: the part of the models that sends the event; `None` if it has no symbol.
@@ -48,6 +50,7 @@ class GlobalVariable(Record, frozen=True):
 
     name: str
     type: Type
+    leaf: Type
     event: str
     parameter: str
     source: Symbol | None
@@ -57,10 +60,10 @@ def global_variables(system: System, interface: FindInterface) -> dict[str, Glob
     """All global variables by name."""
     table: dict[str, GlobalVariable] = {}
     for event, source, params in _events(system, interface):
-        table.setdefault(flag_of(event), GlobalVariable(flag_of(event), BOOL, event, FLAG, source))
+        table.setdefault(flag_of(event), GlobalVariable(flag_of(event), BOOL, BOOL, event, FLAG, source))
         for name, type_ in params:
-            for variable, leaf in _flatten(f"{event}__{name}", type_):
-                table.setdefault(variable, GlobalVariable(variable, leaf, event, name, source))
+            for variable, stored, leaf in _flatten(f"{event}__{name}", type_):
+                table.setdefault(variable, GlobalVariable(variable, stored, leaf, event, name, source))
     return table
 
 
@@ -78,9 +81,9 @@ def event_parameters(system: System, interface: FindInterface) -> dict[str, dict
     return parameters
 
 
-def _flatten(name: str, type_: Type) -> Iterator[tuple[str, Type]]:
-    """The names and types of the variables of a parameter: its leaves, and the lengths of its arrays and strings
-    (docs/spec/types.md#leaves, docs/spec/jani.md#array-storage)."""
+def _flatten(name: str, type_: Type) -> Iterator[tuple[str, Type, Type]]:
+    """The names of the variables of a parameter, the types in which they are stored, and those of the models: its
+    leaves, and the lengths of its arrays and strings (docs/spec/types.md#leaves, docs/spec/jani.md#array-storage)."""
     for path, leaf in leaves(type_):
         full = "__".join((name, *path))
         inner, bounds = unwrap(leaf)
@@ -88,9 +91,10 @@ def _flatten(name: str, type_: Type) -> Iterator[tuple[str, Type]]:
             inner, bounds = INT, (*bounds, None)
         if is_kind(inner, ScalarKind.STRING):
             inner, bounds = INT, (*bounds, None)
-        yield full, wrap(inner, bounds)
+        yield full, wrap(inner, bounds), leaf
         for dimension in range(len(bounds)):
-            yield f"{full}.d{dimension + 1}_len", wrap(INT, bounds[:dimension])
+            lengths = wrap(INT, bounds[:dimension])
+            yield f"{full}.d{dimension + 1}_len", lengths, lengths
 
 
 _Params = Iterable[tuple[str, Type]]

@@ -330,7 +330,7 @@ class PortLinker:
         if flag_of(event) not in self.variables:
             return None
         names = (v for v in self.variables.values() if v.event == event and v.name.startswith(f"{event}__"))
-        return {v.name.removeprefix(f"{event}__"): v.type for v in names if "." not in v.name[len(event) :]}
+        return {v.name.removeprefix(f"{event}__"): v.leaf for v in names if "." not in v.name[len(event) :]}
 
     # ------------------------------------------------------------ variables
 
