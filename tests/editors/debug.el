@@ -13,8 +13,8 @@
 (add-hook 'dap-stopped-hook (lambda (_) (setq has-stopped t)))
 
 (defun wait-for (condition)
-  "Let Emacs go on until CONDITION gives something, and give that."
-  (let ((end (+ (float-time) 100)) (value nil))
+  "Let Emacs go on until CONDITION returns a value, and return it. The limit only prevents an endless wait."
+  (let ((end (+ (float-time) 500)) (value nil))
     (while (and (not (setq value (funcall condition))) (< (float-time) end))
       (accept-process-output nil 0.05))
     value))

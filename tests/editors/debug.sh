@@ -13,7 +13,7 @@ dpkg -s elpa-dap-mode >/dev/null 2>&1 || fail "dap-mode is missing: as root, 'ap
 prepare "[dev]"
 HOME=$(mktemp -d)
 export HOME
-output=$(PATH="$PWD/.venv/bin:$PATH" timeout 120 emacs -q --batch -f package-initialize \
+output=$(PATH="$PWD/.venv/bin:$PATH" timeout 580 emacs -q --batch -f package-initialize \
     -l tests/editors/debug.el examples/assembly_robot/main_with_bug.xml 2>&1) || true
 rm -rf "$HOME"
 echo "$output"

@@ -1,24 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
-import { setTimeout as wait } from "node:timers/promises";
-import * as fs from "node:fs";
-import * as path from "node:path";
-import { sample, type Stage } from "./support/stage";
-
-/** Waits until the kernel has been compiled or its compilation has failed. */
-async function kernelMark(home: string): Promise<void> {
-    const environments = path.join(home, "data/data/User/globalStorage/as2fm-lsp.as2fm/environments");
-    const isKnown = () =>
-        fs.readdirSync(environments).some((name) => fs.existsSync(path.join(environments, name, "kernel.json")));
-    const limit = Date.now() + 600_000;
-    while (!isKnown()) {
-        assert.ok(Date.now() < limit, "the kernel has not been compiled");
-        await wait(200);
-    }
-}
+import { kernel, sample, type Stage } from "./support/stage";
 
 export function firstStart(stage: Stage): void {
-    stage.use();
+    stage.use({}, { installs: false });
 
     stage.test("one click installs the server, and the error is shown", sample, async (window) => {
         await window.openFile("battery.ascxml");
@@ -45,6 +30,6 @@ export function firstStart(stage: Stage): void {
         await window.squiggles.first().waitFor();
         assert.equal(await window.page.locator(".notification-list-item").count(), 0);
         // The first start ended while the kernel of the model checker was being compiled.
-        await kernelMark(stage.workbench.home);
+        await kernel(stage.workbench.home);
     });
 }

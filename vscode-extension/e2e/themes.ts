@@ -68,6 +68,7 @@ export function themes(stage: Stage): void {
             await window.run("AS2FM: Show ROS Graph");
             const picture = await window.picture();
             await picture.locator('.node[data-label="/hand_over"]').waitFor();
+            await page.locator(".codelens-decoration a", { hasText: "Translate to JANI" }).waitFor();
             await window.screenshot(`graph-${theme}`, { x: 480, y: 35, width: 800, height: 700 });
             await page.locator(".tab", { hasText: "ROS Graph" }).locator(".codicon-close").click();
             await window.openFile("main.xml");

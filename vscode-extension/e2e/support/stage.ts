@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
+import assert from "node:assert/strict";
 import * as fs from "node:fs";
 import * as path from "node:path";
+import { setTimeout as wait } from "node:timers/promises";
 import { after, afterEach, before, test } from "node:test";
 import { isDeepStrictEqual } from "node:util";
 import type { Window } from "./window";
 import { EXTENSION } from "./paths";
 import { temporaryFolder, Workbench, type Options } from "./workbench";
 
-/** A workbench that the groups of tests share, with the server's environment that the first group has created. */
+/** The time limit for compiling the kernel, in ms. It only prevents an endless wait. */
+const KERNEL_TIMEOUT_MS = 600_000;
+
+/** A workbench that the groups of tests share. Its home folder contains the server's environment. */
 export class Stage {
     private running: Workbench | undefined;
     private options: Options = {};
@@ -19,21 +24,42 @@ export class Stage {
         });
     }
 
-    /** Prepares the workbench for a group of tests. It is started again only if the group needs different options. */
-    use(options: Options = {}): void {
+    /**
+     * Prepares the workbench for a group of tests. It is started again only if the group needs different options.
+     * Unless the group tests the installation, the server is installed and its kernel compiled, so that each test can
+     * run alone.
+     */
+    use(options: Options = {}, { installs = true } = {}): void {
         before(async () => {
-            if (this.running && isDeepStrictEqual(options, this.options)) return;
-            await this.running?.stop();
-            this.options = options;
-            this.running = await Workbench.start({
-                ...(this.home === undefined ? {} : { home: this.home }),
-                ...options,
-            });
-            this.home = this.running.home;
+            if (installs && !(this.home !== undefined && hasKernel(this.home))) await this.install();
+            await this.start(options);
         });
         afterEach(async () => {
             await this.running?.leave();
         });
+    }
+
+    private async start(options: Options): Promise<void> {
+        if (this.running && isDeepStrictEqual(options, this.options)) return;
+        await this.running?.stop();
+        this.options = options;
+        this.running = await Workbench.start({
+            ...(this.home === undefined ? {} : { home: this.home }),
+            ...options,
+        });
+        this.home = this.running.home;
+    }
+
+    private async install(): Promise<void> {
+        await this.start({});
+        const window = await this.workbench.open(sample());
+        await window.openFile("battery.ascxml");
+        const offer = window.notification("is not installed yet").getByRole("button", { name: "Install" });
+        await offer.or(window.squiggles).first().waitFor();
+        if (await offer.isVisible()) await offer.click();
+        await window.running();
+        await kernel(this.workbench.home);
+        await this.workbench.leave();
     }
 
     get workbench(): Workbench {
@@ -65,6 +91,21 @@ export class Stage {
             throw error;
         }
     }
+}
+
+/** Waits until the kernel of the model checker has been compiled or its compilation has failed. */
+export async function kernel(home: string): Promise<void> {
+    const limit = Date.now() + KERNEL_TIMEOUT_MS;
+    while (!hasKernel(home)) {
+        assert.ok(Date.now() < limit, "the kernel has not been compiled");
+        await wait(200);
+    }
+}
+
+function hasKernel(home: string): boolean {
+    const environments = path.join(home, "data/data/User/globalStorage/as2fm-lsp.as2fm/environments");
+    if (!fs.existsSync(environments)) return false;
+    return fs.readdirSync(environments).some((name) => fs.existsSync(path.join(environments, name, "kernel.json")));
 }
 
 /** The sample as the walkthrough writes it, with an error. */
