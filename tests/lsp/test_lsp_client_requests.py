@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from base64 import b64decode
 from pathlib import Path
 from typing import Any
 
@@ -137,6 +138,12 @@ async def test_picture_files(tmp_path: Path, capsys: pytest.CaptureFixture[str])
         arguments = (str(tmp_path / "nodes/battery.ascxml"), "--theme", theme, "--direction", direction)
         draw.run((*arguments, "-o", "-"))
         assert file["svg"] == capsys.readouterr().out
+        assert "pdf" not in file
+        (both,) = await asked(tmp_path, "as2fm/pictureFile", "nodes/battery.ascxml", **options, format="pdf")
+        draw.run((*arguments, "-o", str(tmp_path / "battery.pdf")))
+        capsys.readouterr()
+        assert both["svg"] == file["svg"]
+        assert b64decode(both["pdf"]) == (tmp_path / "battery.pdf").read_bytes()
     assert await asked(tmp_path, "as2fm/pictureFile", "main.xml", kind="machine") == [None]
 
 

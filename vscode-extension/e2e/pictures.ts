@@ -240,14 +240,14 @@ export function pictures(stage: Stage): void {
     );
 
     stage.test(
-        "a diagram is saved as SVG and as PNG",
+        "a diagram is saved as SVG, PNG and PDF",
         () => sample(MEND),
         async (window) => {
             await window.openFile("main.xml");
             await window.running();
             await window.run("AS2FM: Show ROS Graph");
             const picture = await window.picture();
-            for (const format of ["SVG", "PNG"]) {
+            for (const format of ["SVG", "PNG", "PDF"]) {
                 await picture.getByRole("button", { name: `Save as ${format}` }).click();
                 const file = path.join(window.folder, `main.ros.${format.toLowerCase()}`);
                 const input = window.page.locator(".quick-input-widget:visible input[type=text]").first();
@@ -263,7 +263,9 @@ export function pictures(stage: Stage): void {
             assert.doesNotMatch(svg, /var\(--/);
             const png = fs.readFileSync(path.join(window.folder, "main.ros.png"));
             assert.equal(png.subarray(1, 4).toString(), "PNG");
-            keep(window.folder, "main.ros.svg", "main.ros.png");
+            const pdf = fs.readFileSync(path.join(window.folder, "main.ros.pdf"));
+            assert.match(pdf.toString("latin1"), /^%PDF-1\.4[^]*%%EOF\n$/);
+            keep(window.folder, "main.ros.svg", "main.ros.png", "main.ros.pdf");
         },
     );
 }

@@ -3,7 +3,7 @@
 
 import type { DocumentSymbol, Range, TextDocumentIdentifier, WorkspaceEdit } from "vscode-languageserver-protocol";
 import { RequestType } from "vscode-languageserver-protocol";
-import type { Direction, Picture, PictureAction, PictureKind, Place, Theme } from "./pictures/contract";
+import type { Direction, Picture, PictureAction, PictureFormat, PictureKind, Place, Theme } from "./pictures/contract";
 
 export type FileKind = "machine" | "system" | "tree" | "structs" | "properties" | "interface" | "model" | "";
 
@@ -28,11 +28,13 @@ export interface PictureParams extends DocumentParams {
 export interface PictureFileParams extends PictureParams {
     readonly direction: Direction;
     readonly theme: Theme;
+    readonly format: PictureFormat;
 }
 
-/** The text of an SVG file. */
+/** The text of an SVG file, and on request the PDF file in base64. */
 export interface PictureFile {
     readonly svg: string;
+    readonly pdf?: string;
 }
 
 /** `range` is the place of a part, null for the whole file; `answers` are those of the previous questions. */

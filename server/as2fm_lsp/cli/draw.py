@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """`as2fm-lsp draw FILE`: draws a state machine, all state machines of a system, its behavior tree or its ROS graph as
-SVG."""
+SVG or PDF."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from as2fm_lsp.cli.mock_options import add_mocks, declared_mocks
 from as2fm_lsp.cli.output import complain, print_text
 from roaml import api
 from roaml.figures.layout import LayoutDirection
+from roaml.figures.pdf import pdf_file
 from roaml.figures.svg import svg_file
 from roaml.figures.themes import THEMES
 from roaml.ide.diagrams import PAGE, DiagramKind, draw, draw_for, picture_of, tree_picture
@@ -27,13 +28,14 @@ from roaml.record import replace
 from roaml.suggest import close_names, did_you_mean, listing
 
 STANDARD_OUTPUT = "-"
+PDF = ".pdf"
 
 EXAMPLES = """\
 examples:
   as2fm-lsp draw arm.ascxml                          write Arm.machine.svg
   as2fm-lsp draw main.xml                            the ROS graph of the system
   as2fm-lsp draw main.xml --machine Arm -o arm.svg
-  as2fm-lsp draw main.xml --machines -o machines.svg
+  as2fm-lsp draw main.xml --machines -o machines.pdf
   as2fm-lsp draw main.xml --tree --theme dark -o tree.svg
   as2fm-lsp draw tree.xml --mock "*: 0.9 in 1 s"     with the mocks of the leaves
   as2fm-lsp draw tree.xml --direction down -o - | rsvg-convert -o tree.png
@@ -78,7 +80,7 @@ def run(arguments: Sequence[str]) -> int:
         return CLEAN
     output = options.output or _default_output(options.file, picture.title, kind)
     try:
-        write_file(output, text)
+        write_file(output, pdf_file(text) if output.lower().endswith(PDF) else text)
     except OSError as error:
         return _fail(f"{output}: {error.strerror or error}")
     print_text(f"{output}: {drawing.size.width:.0f} x {drawing.size.height:.0f} pixels\n")
@@ -134,7 +136,8 @@ def _unknown_machine(name: str, machines: dict[str, str], file: str) -> str:
 def parser() -> ArgumentParser:
     result = ArgumentParser(
         prog="as2fm-lsp draw",
-        description="Draw state machines, the behavior tree or the ROS graph as SVG, as the editor shows it. "
+        description="Draw state machines, the behavior tree or the ROS graph as SVG or PDF, as the editor "
+        "shows it. "
         "Models with errors are drawn as far as possible.",
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -149,7 +152,8 @@ def parser() -> ArgumentParser:
         "-o",
         "--output",
         metavar="FILE",
-        help="the SVG file; - is standard output (default: named after the diagram, in the folder of the input)",
+        help="the file: SVG, or PDF if its name ends with .pdf; - is standard output (default: an SVG file named after "
+        "the diagram, in the folder of the input)",
     )
     result.add_argument("--theme", choices=tuple(THEMES), default="light", help="the colors (default: light)")
     result.add_argument(

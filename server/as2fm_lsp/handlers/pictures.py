@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+from base64 import b64encode
 from typing import Any
 
 from as2fm_lsp.context import Context
 from as2fm_lsp.handlers.parameters import document_uri, string, strings
 from roaml.figures.drawing import Drawing
 from roaml.figures.layout import LayoutDirection
+from roaml.figures.pdf import pdf_file
 from roaml.figures.svg import svg_file, svg_scene
 from roaml.figures.themes import THEMES
 from roaml.ide.diagrams import DiagramKind, Picture, collapsed, draw, picture_of
@@ -89,7 +91,8 @@ def register(context: Context) -> None:
 
     @context.feature(FILE_METHOD)
     def picture_file(params: Any) -> dict[str, object] | None:
-        """The text of an SVG file with the diagram, in the direction and the theme that the client shows."""
+        """The text of an SVG file with the diagram, in the direction and the theme that the client shows. If the
+        parameter `format` is `pdf`, also the PDF file, in base64."""
         shown = asked(params)
         if shown is None:
             return None
@@ -97,7 +100,10 @@ def register(context: Context) -> None:
         is_wide = string(params, "direction") == LayoutDirection.RIGHT.value
         theme = string(params, "theme")
         drawing = draw(kind, diagram, LayoutDirection.RIGHT if is_wide else LayoutDirection.DOWN)
-        return {"svg": svg_file(drawing, diagram.title, theme if theme in THEMES else "light")}
+        svg = svg_file(drawing, diagram.title, theme if theme in THEMES else "light")
+        if getattr(params, "format", None) != "pdf":
+            return {"svg": svg}
+        return {"svg": svg, "pdf": b64encode(pdf_file(svg)).decode("ascii")}
 
 
 def _drawing(drawing: Drawing) -> dict[str, object]:

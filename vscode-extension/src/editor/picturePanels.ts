@@ -2,7 +2,17 @@
 /** The panels with pictures: one for each kind, which follows the active document and the caret. */
 
 import * as vscode from "vscode";
-import type { FromView, Activity, Part, Picture, PictureKind, Place, ToView, Words } from "../pictures/contract";
+import type {
+    FromView,
+    Activity,
+    Part,
+    Picture,
+    PictureFormat,
+    PictureKind,
+    Place,
+    ToView,
+    Words,
+} from "../pictures/contract";
 import { partAt } from "../pictures/partAt";
 import { pictureFile, picture as pictureRequest, type Highlight } from "../protocol";
 import type { LanguageServer } from "./server";
@@ -280,24 +290,26 @@ class PicturePanel implements vscode.Disposable {
         }
     }
 
-    /** Request the file from the server. The view converts it to PNG. */
+    /** Request the file from the server. The view converts it to PNG, the server to PDF. */
     private async save({ format, direction, theme }: Extract<FromView, { type: "save" }>): Promise<void> {
         if (!this.uri) return;
         const textDocument = { uri: this.uri.toString() };
         const collapsed = [...this.collapsed];
-        const file = await this.server.ask(pictureFile, { kind: this.kind, textDocument, direction, theme, collapsed });
+        const options = { direction, theme, format, collapsed };
+        const file = await this.server.ask(pictureFile, { kind: this.kind, textDocument, ...options });
         if (!file) return;
-        if (format === "svg") await this.write("svg", Buffer.from(file.svg, "utf8"));
-        else this.post({ type: "rasterize", svg: file.svg });
+        if (format === "png") this.post({ type: "rasterize", svg: file.svg });
+        else if (file.pdf !== undefined) await this.write("pdf", Buffer.from(file.pdf, "base64"));
+        else await this.write("svg", Buffer.from(file.svg, "utf8"));
     }
 
-    private async write(format: "svg" | "png", data: Uint8Array): Promise<void> {
+    private async write(format: PictureFormat, data: Uint8Array): Promise<void> {
         const name = (this.picture?.title ?? this.kind).replace(/\.\w+$/, "").replace(/[^\w.-]+/g, "_");
         const folder = this.uri?.scheme === "file" ? vscode.Uri.joinPath(this.uri, "..") : undefined;
         const file = `${name}.${this.kind}.${format}`;
         const target = await vscode.window.showSaveDialog({
             ...(folder && { defaultUri: vscode.Uri.joinPath(folder, file) }),
-            filters: format === "svg" ? { SVG: ["svg"] } : { PNG: ["png"] },
+            filters: { [format.toUpperCase()]: [format] },
         });
         if (target) await vscode.workspace.fs.writeFile(target, data);
     }
@@ -351,6 +363,7 @@ function words(): Words {
         fit: vscode.l10n.t("Fit"),
         saveSvg: vscode.l10n.t("Save as SVG"),
         savePng: vscode.l10n.t("Save as PNG"),
+        savePdf: vscode.l10n.t("Save as PDF"),
         nothing: vscode.l10n.t("No results"),
         help: vscode.l10n.t(
             "Arrow keys move between nodes, Enter opens the source, Shift+F10 the menu, Space collapses a node of a tree, + and - zoom, 0 fits the diagram, / searches.",

@@ -166,6 +166,7 @@ export interface Words {
     readonly fit: string;
     readonly saveSvg: string;
     readonly savePng: string;
+    readonly savePdf: string;
     readonly nothing: string;
     readonly help: string;
     readonly kinds: Readonly<Record<NodeKind | EdgeKind, string>>;
@@ -177,6 +178,9 @@ export interface Activity {
     readonly nodes: Readonly<Record<string, string>>;
     readonly edges: readonly { readonly from: string; readonly to: string }[];
 }
+
+/** The formats of files with pictures. */
+export type PictureFormat = "svg" | "png" | "pdf";
 
 export type ToView =
     | { readonly type: "words"; readonly words: Words }
@@ -195,7 +199,7 @@ export type FromView =
     /** Hide the nodes below the node with an id, or show them again. */
     | { readonly type: "collapse"; readonly node: string }
     | { readonly type: "jump"; readonly place: Place; readonly beside: boolean }
-    | { readonly type: "save"; readonly format: "svg" | "png"; readonly direction: Direction; readonly theme: Theme }
+    | { readonly type: "save"; readonly format: PictureFormat; readonly direction: Direction; readonly theme: Theme }
     /** The answer to `rasterize`: the PNG file in base64. */
     | { readonly type: "png"; readonly data: string }
     /** Sent after the picture has been drawn. */

@@ -9,6 +9,7 @@ import {
     type Part,
     type Picture,
     type PictureEdge,
+    type PictureFormat,
     type PictureNode,
     type ToView,
     type Words,
@@ -472,10 +473,13 @@ class View {
             button("PNG", words.savePng, () => {
                 this.save("png");
             }),
+            button("PDF", words.savePdf, () => {
+                this.save("pdf");
+            }),
         );
     }
 
-    private save(format: "svg" | "png"): void {
+    private save(format: PictureFormat): void {
         const direction = DIRECTIONS[this.shown];
         if (this.picture && direction) editor.postMessage({ type: "save", format, direction, theme: theme() });
     }
