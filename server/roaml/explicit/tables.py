@@ -16,7 +16,6 @@ from roaml.explicit.uses import bits
 from roaml.record import Record
 from roaml.smc.compile import Legend
 from roaml.smc.names import Storage
-from roaml.smc.network import root
 from roaml.smc.program import Goal, Ints, Program
 from roaml.smc.registers import REAL, product
 
@@ -57,7 +56,7 @@ def tables_of(program: Program, goal: Goal, legend: Legend, transient: Iterable[
         names = legend.layout.instances[instance_of[program.way_target[way]]].names
         written: dict[int, None] = {}
         for assignment in destination.assignments:
-            storage = names.values[root(assignment)]
+            storage = names.values[assignment.variable]
             assert isinstance(storage, Storage)
             written.update(dict.fromkeys(_cells(storage, program)))
         way_cell += written

@@ -26,7 +26,6 @@ from roaml.jani.model import Assignment
 from roaml.jani.operators import BinaryOperator, UnaryOperator
 from roaml.smc.compile import Legend
 from roaml.smc.names import Storage
-from roaml.smc.network import root
 
 _TOTAL = frozenset(
     (
@@ -85,7 +84,7 @@ class Uses:
 
     def written_by(self, assignment: Assignment, instance: int) -> int:
         """The variable that an assignment writes."""
-        return self._scopes[instance][root(assignment)]
+        return self._scopes[instance][assignment.variable]
 
     def can_fail(self, expression: Expression, instance: int) -> bool:
         """Whether an expression has no value in some states. In doubt, it can fail."""
@@ -102,7 +101,7 @@ class Uses:
 
     def can_assignment_fail(self, assignment: Assignment, instance: int) -> bool:
         """Whether an assignment is an undefined operation in some states."""
-        meaning = self._instances[instance].names.values[root(assignment)]
+        meaning = self._instances[instance].names.values[assignment.variable]
         assert isinstance(meaning, Storage)
         return (
             meaning.bounds != (None, None)

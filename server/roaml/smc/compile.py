@@ -21,7 +21,7 @@ from roaml.smc.index import MIN_INDEXED, Indexes, dimensions_of, fixed_values, i
 from roaml.smc.initial import MAX_INITIAL_STATES, Cells
 from roaml.smc.layout import MemoryLayout, lay_out
 from roaml.smc.names import Storage, StorageNames
-from roaml.smc.network import CompiledNetwork, EdgeStep, Reads, Slot, root
+from roaml.smc.network import CompiledNetwork, EdgeStep, Reads, Slot
 from roaml.smc.program import Ints, Program
 from roaml.smc.registers import REAL, Tape, product
 
@@ -205,7 +205,7 @@ class Compilation:
         for assignment in group:
             if written & self.network.reads.by(assignment, names):
                 return True
-            written.add(root(assignment))
+            written.add(assignment.variable)
         return False
 
     def _write_phases(self, assignments: tuple[Assignment, ...], names: StorageNames, origin: Origin | None) -> None:

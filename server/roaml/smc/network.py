@@ -7,7 +7,7 @@
 
 from __future__ import annotations
 
-from roaml.jani.expressions import ArrayAccess, Binary, Boolean, Expression, Unary
+from roaml.jani.expressions import Binary, Boolean, Expression, Unary
 from roaml.jani.model import Assignment, Destination, Edge, Model
 from roaml.jani.node import Node
 from roaml.jani.operators import BinaryOperator, UnaryOperator
@@ -138,7 +138,7 @@ class CompiledNetwork:
                 for way in step.ways:
                     for assignment in way.destination.assignments:
                         slot.reads |= self.reads.by(assignment, instance.names)
-                        slot.writes.add(root(assignment))
+                        slot.writes.add(assignment.variable)
 
     def _slot(self, instance: int, action: str | None, count: int) -> Slot:
         key = (instance, action, count)
@@ -204,14 +204,6 @@ class CompiledNetwork:
                 for slot in slots:
                     self.slots[slot].vectors.append(len(self.vectors))
                 self.vectors.append((slots, result))
-
-
-def root(assignment: Assignment) -> str:
-    """The variable that an assignment changes."""
-    target: Expression = assignment.target
-    while isinstance(target, ArrayAccess):
-        target = target.array
-    return getattr(target, "identifier", "")
 
 
 def _accepting(instance: AutomatonInstance, actions: tuple[str, ...]) -> list[Edge]:
