@@ -127,6 +127,8 @@ def test_trees(tree: tuple[dict[str, Extent], dict[str, list[str]]], direction: 
     for (parent, child), route in zip(pairs, layout.routes, strict=True):
         assert touches(layout.nodes[parent], route.parts[0][0])
         assert touches(layout.nodes[child], route.parts[0][-1])
+    starts = {(parent, route.parts[0][0]) for (parent, _), route in zip(pairs, layout.routes, strict=True)}
+    assert len(starts) == len({parent for parent, _ in pairs})
     for group in children.values():
         middles = [box.x + box.width / 2 if direction is LayoutDirection.DOWN else box.y + box.height / 2 for box in
                    (layout.nodes[child] for child in group)]  # fmt: skip

@@ -13,7 +13,7 @@ SIBLING_DISTANCE = 20.0
 COUSIN_DISTANCE = 30.0
 LEVEL_DISTANCE = 40.0
 NEARLY_STRAIGHT = 8.0
-"""A line with a bend of less than this is drawn straight, beside the middle of the parent."""
+"""If the middles of a node and a child differ by less than this, the line between them is straight."""
 
 
 def tidy_tree(nodes: Mapping[str, Extent], children: Mapping[str, Sequence[str]], direction: LayoutDirection) -> Layout:
@@ -50,9 +50,11 @@ def tidy_tree(nodes: Mapping[str, Extent], children: Mapping[str, Sequence[str]]
     left = min((box.x for box in boxes.values()), default=0.0)
     depth = {name: index for index, level in enumerate(levels) for name in level}
     routes = [
-        _elbow(boxes[parent], boxes[child], bottoms[depth[parent]] + LEVEL_DISTANCE / 2).moved(-left, 0)
+        route.moved(-left, 0)
         for parent, group in children.items()
-        for child in group
+        for route in _elbows(
+            boxes[parent], [boxes[child] for child in group], bottoms[depth[parent]] + LEVEL_DISTANCE / 2
+        )
     ]
     placed = {name: boxes[name].moved(-left, 0) for name in nodes}
     width = max((box.right for box in placed.values()), default=0.0)
@@ -105,9 +107,14 @@ def _join(width: float, parts: Sequence[_Outline], offsets: dict[str, float], na
     )
 
 
-def _elbow(parent: Box, child: Box, track: float) -> Route:
-    start = Point(parent.x + parent.width / 2, parent.bottom)
-    end = Point(child.x + child.width / 2, child.y)
-    if abs(start.x - end.x) < min(NEARLY_STRAIGHT, parent.width / 2):
-        return Route(((Point(end.x, start.y), end),))
-    return Route(((start, Point(start.x, track), Point(end.x, track), end),))
+def _elbows(parent: Box, children: Sequence[Box], track: float) -> list[Route]:
+    """The routes to the children of a node. All begin at the same point: above the child that is nearly in the middle,
+    if there is one, so that its route is straight; otherwise in the middle."""
+    middle = parent.x + parent.width / 2
+    ends = [Point(child.x + child.width / 2, child.y) for child in children]
+    tolerance = min(NEARLY_STRAIGHT, parent.width / 2)
+    start = Point(next((end.x for end in ends if abs(end.x - middle) < tolerance), middle), parent.bottom)
+    return [
+        Route(((start, end) if end.x == start.x else (start, Point(start.x, track), Point(end.x, track), end),))
+        for end in ends
+    ]
