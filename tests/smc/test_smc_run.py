@@ -293,6 +293,29 @@ def test_no_more_tasks_are_taken_than_workers_need() -> None:
         assert taken <= 5
 
 
+class _Submissions(ThreadPoolExecutor):
+    """An executor that records the numbers of batches that it gets at once."""
+
+    def __init__(self) -> None:
+        super().__init__(1)
+        self.sizes: list[int] = []
+
+    def submit(self, function: Any, /, *arguments: Any, **named: Any) -> Future[Any]:
+        self.sizes.append(len(arguments[0]))
+        return super().submit(function, *arguments, **named)
+
+
+def test_a_worker_gets_several_short_batches_at_once() -> None:
+    first = 0
+    with _Submissions() as executor, Pool(1, executor) as pool:
+        for task, outcome in pool.outcomes(tasks()):
+            assert (task.first, len(outcome.questions[0].verdicts)) == (first, 10)
+            first += 10
+            if max(executor.sizes) > 4:
+                break
+    assert executor.sizes[:2] == [1, 1]
+
+
 def test_a_batch_is_a_function_of_its_task() -> None:
     task = next(tasks())
     first, second = run(task), run(task)

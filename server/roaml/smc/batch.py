@@ -8,8 +8,9 @@ import hashlib
 import pickle
 import signal
 import threading
+import time
 from array import array
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from roaml.record import Record
@@ -285,14 +286,27 @@ def _end_with(sentinel: int) -> None:
     signal.raise_signal(signal.SIGTERM)
 
 
-def run_in_worker(task: Task) -> BatchOutcome:
-    """Run a batch in a worker process.
+class Bundle(NamedTuple):
+    """The outcomes of some batches, in their order, and the elapsed time in s."""
+
+    outcomes: list[BatchOutcome]
+    seconds: float
+
+
+def run_in_worker(tasks: Sequence[Task]) -> Bundle:
+    """Run batches in a worker process.
 
     Raises:
-        StoppedError: the batch is no longer needed.
+        StoppedError: the batches are no longer needed.
     """
     _checkpoint(0, 0)
-    return run(task, _checkpoint)
+    return run_all(tasks, _checkpoint)
+
+
+def run_all(tasks: Sequence[Task], pulse: Callable[[int, int], None] | None = None) -> Bundle:
+    """Run batches; see `run`."""
+    started = time.monotonic()
+    return Bundle([run(task, pulse) for task in tasks], time.monotonic() - started)
 
 
 def _checkpoint(trace: int, steps: int) -> None:

@@ -10,9 +10,10 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
+from itertools import islice
 from typing import TYPE_CHECKING, Protocol, TypeAlias
 
-from roaml.smc.batch import BatchOutcome, Simulator, Task, run, run_in_worker, run_on, start_worker
+from roaml.smc.batch import BatchOutcome, Bundle, Simulator, Task, run, run_all, run_in_worker, run_on, start_worker
 from roaml.smc.program import Compiled
 
 if TYPE_CHECKING:
@@ -23,6 +24,10 @@ WORKER_START_DELAY_S = 0.4
 """The time in s before workers are started, because most questions are answered in less time."""
 MAX_CONSECUTIVE_LOSSES = 5
 """The maximum number of consecutive losses of workers without progress."""
+BUNDLE_S = 0.03
+"""The approximate time in s of the batches that a worker gets at once. To send the compiled model with them takes about
+a millisecond."""
+MAX_BUNDLE_TASKS = 32
 _POLL_INTERVAL_S = 0.1
 
 Pulse: TypeAlias = Callable[[int, int], None]
@@ -93,20 +98,21 @@ class Pool:
     def _distributed(self, waiting: Iterator[Task], pulse: Pulse | None) -> Iterator[tuple[Task, BatchOutcome]]:
         from concurrent.futures import BrokenExecutor  # noqa: PLC0415 - most questions are answered without workers
 
-        running: deque[tuple[Task, Future[BatchOutcome] | None]] = deque()
+        running: deque[tuple[list[Task], Future[Bundle] | None]] = deque()
+        size = 1
         lost = 0
         try:
             while True:
                 while len(running) < 2 * self.jobs:
-                    task = next(waiting, None)
-                    if task is None:
+                    tasks = list(islice(waiting, size))
+                    if not tasks:
                         break
-                    running.append((task, self._submit(task)))
+                    running.append((tasks, self._submit(tasks)))
                 if not running:
                     return
-                task, future = running[0]
+                tasks, future = running[0]
                 try:
-                    outcome = self._wait(task, future, pulse)
+                    bundle = self._wait(tasks, future, pulse)
                 except Exception as error:
                     if self.is_own and not isinstance(error, BrokenExecutor):
                         raise
@@ -115,20 +121,21 @@ class Pool:
                         raise WorkersLostError(f"worker processes end repeatedly: {error}") from error
                     if self.is_own:
                         self._stop()
-                    again = [task for task, _ in running]
+                    again = [tasks for tasks, _ in running]
                     running.clear()
-                    running.extend((task, self._submit(task)) for task in again)
+                    running.extend((tasks, self._submit(tasks)) for tasks in again)
                     continue
                 lost = 0
                 running.popleft()
-                yield task, outcome
+                size = _next_size(len(tasks), bundle.seconds)
+                yield from zip(tasks, bundle.outcomes, strict=True)
         finally:
             for _, future in running:
                 if future is not None:
                     future.cancel()
 
-    def _submit(self, task: Task) -> Future[BatchOutcome] | None:
-        """Submit a batch; return `None` if this fails because workers have just been lost."""
+    def _submit(self, tasks: list[Task]) -> Future[Bundle] | None:
+        """Submit batches; return `None` if this fails because workers have just been lost."""
         import multiprocessing  # noqa: PLC0415 - most questions are answered without workers
         from concurrent.futures import BrokenExecutor, ProcessPoolExecutor  # noqa: PLC0415
 
@@ -138,11 +145,11 @@ class Pool:
             self._stopping = context.Event()
             self.executor = ProcessPoolExecutor(self.jobs, context, start_worker, (self._stopping,))
         try:
-            return self.executor.submit(run_in_worker if self.is_own else run, task)
+            return self.executor.submit(run_in_worker if self.is_own else run_all, tasks)
         except BrokenExecutor:
             return None
 
-    def _wait(self, task: Task, future: Future[BatchOutcome] | None, pulse: Pulse | None) -> BatchOutcome:
+    def _wait(self, tasks: list[Task], future: Future[Bundle] | None, pulse: Pulse | None) -> Bundle:
         from concurrent.futures import BrokenExecutor  # noqa: PLC0415 - most questions are answered without workers
         from concurrent.futures import TimeoutError as FutureTimeoutError  # noqa: PLC0415
 
@@ -155,7 +162,7 @@ class Pool:
                 if future.done():
                     raise
                 if pulse is not None:
-                    pulse(task.first, 0)
+                    pulse(tasks[0].first, 0)
 
     def _stop(self) -> None:
         if self.executor is None or not self.is_own:
@@ -164,3 +171,9 @@ class Pool:
             self._stopping.set()
         self.executor.shutdown(wait=True, cancel_futures=True)
         self.executor = None
+
+
+def _next_size(size: int, seconds: float) -> int:
+    """The number of batches for the next worker, after a worker took `seconds` for `size` batches."""
+    wanted = int(size * BUNDLE_S / seconds) if seconds > 0 else MAX_BUNDLE_TASKS
+    return max(1, min(wanted, 2 * size, MAX_BUNDLE_TASKS))
