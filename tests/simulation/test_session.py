@@ -249,6 +249,12 @@ def test_invalid_saved_sessions_are_refused(text: str) -> None:
         api.SavedSession.from_json(text)
 
 
+def test_the_versions_of_a_session_are_named() -> None:
+    other = "saved in format 1 by engine 7, and this program repeats sessions of format 1 and engine 1"
+    with pytest.raises(ValueError, match=other):
+        api.SavedSession.from_json('{"format": 1, "engine": 7}')
+
+
 def test_decisions_that_are_not_possible(robot: api.VerificationTarget) -> None:
     impossible = api.SavedSession("block_placed", 0, 0, 1, (api.Decision(10**6, (), ()),))
     with pytest.raises(api.RunError, match="step 1 is not possible"):

@@ -20,6 +20,7 @@ from roaml.smc.record import Plain, RecordedVariable
 from roaml.verification.target import VerificationTarget
 from roaml.views.arrays import ArrayReader, without_lengths
 from roaml.views.event_words import event_phrase
+from roaml.views.library_nodes import is_library_node
 from roaml.views.observed import observer_phrase
 from roaml.views.values import shown_parameters, shown_value
 
@@ -200,14 +201,20 @@ class Terminal:
         for (instance, name), value in session.values():
             stored.setdefault(session.automata[instance] if instance >= 0 else "", {})[name] = value
         shown = {automaton: without_lengths(values) for automaton, values in stored.items()}
+        library = {automaton.name for automaton in session.automata_of_model if is_library_node(automaton)}
+        of_nodes = {}
         for machine in state.machines:
             phrases, own = session.phrases(machine.automaton), shown.get(machine.automaton, {})
             values = shown_parameters({phrases.get(name, name): value for name, value in own.items()})
+            if machine.automaton in library:
+                of_nodes[machine.name] = f" ({values})" if values else ""
+                continue
             handled = event_phrase(machine.event, session.automata, taken=True) if machine.event else ""
             handles = f", handles {handled}" if handled else ""
             yield f"{machine.name}: {machine.state}{handles}{f' ({values})' if values else ''}"
         for node in state.nodes:
-            yield f"{node.type} (bt_{node.number}): {node.status.value}"
+            name = f"{node.type} (bt_{node.number})"
+            yield f"{name}: {node.status.value}{of_nodes.get(name, '')}"
         for event in state.events:
             values = shown_parameters(event.parameters)
             waiting = ", not received yet" if event.is_waiting else ""

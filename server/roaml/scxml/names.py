@@ -118,6 +118,9 @@ TIMER_PREFIX = "ros_time_rate."
 BLACKBOARD_REQUEST = "bt_blackboard_req"
 BLACKBOARD_ANSWER = "bt_blackboard_get"
 BLACKBOARD_WRITE_PREFIX = "bt_blackboard_set_"
+ENTRY_PREFIX = "entry__"
+"""The beginning of the name of the variable in which a node of a library stores the value of a blackboard entry that it
+has read last."""
 _TREE_EVENT = re.compile(r"bt_(\d+)(?:_inner\d*)?_(tick|response|halt|halt_response)")
 _OBSERVER_SUFFIX = "__observer"
 """The end of the name of the automaton that observes a property in XML (docs/spec/jani.md#observers)."""

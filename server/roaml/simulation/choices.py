@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import TypeAlias
 
 from roaml.jani.expressions import Boolean, Integer, Name, Real
@@ -21,9 +21,12 @@ from roaml.scxml.events import Role
 from roaml.scxml.names import (
     CLOCK,
     CLOCK_ACTION,
+    STATUS_NAMES,
+    TreeEventKind,
     automaton_role,
     is_observer,
     is_timer,
+    read_tree_event,
     received_by,
     sent_by,
 )
@@ -35,6 +38,7 @@ from roaml.smc.record import Plain, RecordedVariable
 from roaml.views.arrays import without_lengths
 from roaml.views.event_words import event_phrase
 from roaml.views.events import EventReader
+from roaml.views.library_nodes import is_library_node
 from roaml.views.locations import states_of
 from roaml.views.values import shown_parameters, shown_value
 
@@ -144,8 +148,17 @@ def _outcomes(
     for taken in itertools.islice(itertools.product(*ways), MAX_OUTCOMES):
         probability = math.prod(part.probabilities[way] for part, way in zip(parts, taken, strict=True))
         decision = Decision(vector, picks, taken)
-        text = "" if is_certain else ", ".join(_effects(run, decision, parts, events, phrases)) or "nothing changes"
-        yield Outcome(probability, text, decision)
+        effects = () if is_certain else tuple(_effects(run, decision, parts, events, phrases))
+        if not is_certain and not effects:
+            effects = tuple(_moves(run, decision, parts)) or ("nothing changes",)
+        yield Outcome(probability, ", ".join(effects), decision)
+
+
+def _moves(run: Run, decision: Decision, parts: Sequence[_Part]) -> Iterator[str]:
+    """The automata that go on to another location."""
+    for part, way in zip(parts, decision.ways, strict=True):
+        if run.legend.ways[part.first_way + way][1].location != part.edge.source:
+            yield f"{who(part.automaton.name)} goes on"
 
 
 def _effects(
@@ -206,15 +219,52 @@ def _consequences(
         location = destination.location
         following = [edge for edge in automaton.edges if edge.source == location]
         if location in rest:
-            yield f"{name} enters `{states[location]}`"
+            if not is_library_node(automaton):
+                yield f"{name} enters `{states[location]}`"
             return
         if location in visited or len(following) != 1 or len(following[0].destinations) != 1:
+            statuses = _statuses(automaton, location, rest)
+            if len(statuses) == 1 and (status := statuses.pop()):
+                yield f"{name} returns {status}"
             return
         visited.add(location)
         event = sent_by(following[0].action or "")
-        if event:
-            yield f"{name} sends {event_phrase(event, clients)}"
         (destination,), after = following[0].destinations, {}
+        if status := _status(event, destination):
+            yield f"{name} returns {status}"
+        elif event:
+            yield f"{name} sends {event_phrase(event, clients)}"
+
+
+def _statuses(automaton: Automaton, location: str, rest: Collection[str]) -> set[str]:
+    """The statuses that a node of the tree may return before it waits for an event again; "" for paths on which it
+    returns none."""
+    statuses: set[str] = set()
+    visited = {location}
+    remaining = [location]
+    while remaining:
+        source = remaining.pop()
+        if source in rest:
+            statuses.add("")
+            continue
+        for edge in automaton.edges:
+            for destination in edge.destinations if edge.source == source else ():
+                if status := _status(sent_by(edge.action or ""), destination):
+                    statuses.add(status)
+                elif destination.location not in visited:
+                    visited.add(destination.location)
+                    remaining.append(destination.location)
+    return statuses
+
+
+def _status(event: str, destination: Destination) -> str:
+    """The status that a node of the tree returns by sending an event; "" for another event, or if the status is not a
+    constant."""
+    tree = read_tree_event(event)
+    if tree is None or tree.kind is not TreeEventKind.RESPONSE:
+        return ""
+    values = (a.value for a in destination.assignments if a.variable == f"{event}__status")
+    return next((STATUS_NAMES.get(value.value, "") for value in values if isinstance(value, Integer)), "")
 
 
 def _assigned(destination: Destination, after: Mapping[str, Plain]) -> dict[str, Plain]:

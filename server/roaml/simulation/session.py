@@ -79,7 +79,9 @@ class SavedSession(Record, frozen=True):
             value = json.loads(text)
             if value["format"] != FORMAT_VERSION or value["engine"] != ENGINE_VERSION:
                 raise ValueError(
-                    "this session was saved by another version of the program; save it again with this version"
+                    f"this session was saved in format {value['format']} by engine {value['engine']}, and this program "
+                    f"repeats sessions of format {FORMAT_VERSION} and engine {ENGINE_VERSION}; use the version of the "
+                    "program that saved it, or save a new session"
                 )
             decisions: list[ByHand | None] = []
             for row in value["decisions"]:

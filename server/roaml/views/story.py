@@ -250,17 +250,20 @@ def _what(turn: Turn) -> str:
         return f"ends with {turn.result}"
     source, destination = turn.source, turn.destination
     if turn.starts:
-        return f"starts in {_short(destination)}"
+        return "starts" if turn.is_library_node else f"starts in {_short(destination)}"
     move = _short(source if source == destination else f"{source} → {destination}")
+    place = "" if turn.is_library_node else f" in {move}"
     answer = f": {turn.status}" if turn.status else ""
     if turn.is_answered and turn.status:
         return f"returns {turn.status}"
     if turn.is_ticked:
-        return f"is ticked in {move}{answer}"
+        return f"is ticked{place}{answer}"
     if turn.is_halted:
-        return f"is halted in {move}"
+        return f"is halted{place}"
     if turn.heard is not None:
-        return f"receives {_message(turn.heard)} in {move}{answer}"
+        return f"receives {_message(turn.heard)}{place}{answer}"
+    if turn.is_library_node:
+        return f"goes on{answer}"
     return f"{turn.action}: {move}" if turn.action else move
 
 

@@ -36,6 +36,7 @@ from roaml.smc.story import Story
 from roaml.views.actors import actor, message_phrase
 from roaml.views.arrays import ArrayReader
 from roaml.views.events import EventReader
+from roaml.views.library_nodes import is_library_node
 from roaml.views.locations import states_of
 from roaml.views.observed import effects, observation, observed_property
 from roaml.views.variables import variable_phrases
@@ -63,6 +64,8 @@ class Turn(Record):
         observation: what an observer observes.
         phrases: phrases for those variables of the automaton whose names are not those of the user, by their names.
         states: location of the automaton -> the state to which it belongs.
+        is_library_node: whether the automaton is a node of the tree whose behaviour is that of a library or of a mock,
+            so that its states are not those of a machine of the user.
     """
 
     instance: int
@@ -80,6 +83,7 @@ class Turn(Record):
     observation: str = ""
     phrases: Mapping[str, str] = field(default_factory=dict)
     states: Mapping[str, str] = field(default_factory=dict)
+    is_library_node: bool = False
 
     @property
     def automaton(self) -> str:
@@ -233,6 +237,7 @@ class _Reader:
         self._events = EventReader(story.automata, story.start)
         self._arrays = ArrayReader(story.automata, story.start)
         self.inner = frozenset(n for n, automaton in enumerate(story.automata) if is_inner(automaton))
+        self._library_nodes = frozenset(n for n, automaton in enumerate(story.automata) if is_library_node(automaton))
         self._known_phrases: dict[int, Mapping[str, str]] = {}
         self._known_states: dict[int, Mapping[str, str]] = {}
         self._messages: dict[str, Message] = {}
@@ -253,6 +258,7 @@ class _Reader:
                 together = step.action if len(actors) > 1 and heard is None else None
                 turn = Turn(part.instance, step.number, self._story.clock[index], heard, together)
                 turn.phrases, turn.states = self._phrases(part.instance), self._states(part.instance)
+                turn.is_library_node = part.instance in self._library_nodes
                 if is_observer(part.automaton):
                     turn.observed = observed_property(part.automaton, self._story.property)
                     turn.observation = observation(step.action, self._automata)
@@ -314,21 +320,10 @@ class _Reader:
 def is_inner(automaton: Automaton) -> bool:
     """Whether an automaton only ticks other nodes: it is a node of BehaviorTree.CPP that has children, or the root of
     the tree."""
-    node = NODE_AUTOMATON.fullmatch(automaton.name)
-    comes_along = _is_builtin(node[2]) or _is_in_tree(automaton) if node else is_generated(automaton.name)
+    comes_along = (
+        is_library_node(automaton) if NODE_AUTOMATON.fullmatch(automaton.name) else is_generated(automaton.name)
+    )
     return comes_along and any(_kind(sent_by(edge.action or "")) in _CALLS for edge in automaton.edges)
-
-
-def _is_in_tree(automaton: Automaton) -> bool:
-    """Whether the behaviour of a node is that of a library: the node has no file of its own, so its origin is its place
-    in the tree. In the automaton's name, the name of the node may replace that of its type."""
-    return automaton.origin is not None and automaton.origin.path.lower().endswith(".xml")
-
-
-def _is_builtin(plugin: str) -> bool:
-    from roaml.model.system import library_plugins  # noqa: PLC0415 - a JANI model has no tree, and loads faster
-
-    return plugin in library_plugins()
 
 
 _ANSWERS = (TreeEventKind.RESPONSE, TreeEventKind.HALT_RESPONSE)

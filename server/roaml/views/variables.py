@@ -8,8 +8,9 @@ from collections.abc import Callable, Iterator, Mapping
 
 from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
-from roaml.scxml.names import is_length
+from roaml.scxml.names import CONDITIONS_PREFIX, ENTRY_PREFIX, is_length
 from roaml.views.event_words import goal_phrases
+from roaml.views.library_nodes import is_library_node
 
 _SEPARATOR = "__"
 """Separates the members of a struct in the name of a variable (docs/spec/jani.md#array-storage)."""
@@ -17,12 +18,16 @@ _SEPARATOR = "__"
 
 def variable_phrases(automaton: Automaton, is_event: Callable[[str], bool]) -> Mapping[str, str]:
     """Phrases for those variables of an automaton whose names are not those of the user, by their names: `pose.x` for a
-    member of a struct, and `executes goal 0 of /drive`.
+    member of a struct, `executes goal 0 of /drive`, and `{load}` for the value of a blackboard entry that a node of a
+    library has read.
 
     Args:
         is_event: whether a name denotes an event of the system.
     """
-    return {**dict(_members(automaton)), **goal_phrases([v.name for v in automaton.variables], is_event)}
+    names = [variable.name for variable in automaton.variables]
+    if is_library_node(automaton) or automaton.name.startswith(CONDITIONS_PREFIX):
+        return {name: f"{{{name.removeprefix(ENTRY_PREFIX)}}}" for name in names if name.startswith(ENTRY_PREFIX)}
+    return {**dict(_members(automaton)), **goal_phrases(names, is_event)}
 
 
 def _members(automaton: Automaton) -> Iterator[tuple[str, str]]:

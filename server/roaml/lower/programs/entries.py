@@ -9,6 +9,7 @@ from roaml.expr.operators import Operator, UnaryOperator
 from roaml.expr.tree import Boolean, Conditional, Expr, Number, String, Unary
 from roaml.lower.build import binary, integer
 from roaml.record import Record
+from roaml.scxml.names import ENTRY_PREFIX
 from roaml.text import NO_SPAN
 
 
@@ -37,7 +38,7 @@ class BoardEntry(Record, frozen=True):
     @property
     def local(self) -> str:
         """The name of the variable in which an automaton stores the value that it has read last."""
-        return f"entry__{self.variable}"
+        return f"{ENTRY_PREFIX}{self.variable}"
 
     @property
     def zero(self) -> Expr:
