@@ -16,6 +16,7 @@ from roaml.jani.types import INT, ArrayType
 from roaml.smc.record import Plain, RecordedVariable, TraceStep, VariableChange
 from roaml.views.arrays import ArrayReader, cut, without_lengths
 from roaml.views.story import as_text
+from roaml.views.values import shown_value
 
 COLLECTOR = """<ascxml name="Collector" version="1.0" initial="ask">
     <datamodel>
@@ -75,6 +76,13 @@ def test_the_terminal_shows_used_elements(main: Path, capsys: pytest.CaptureFixt
     assert "levels: [7, 8, 0, 9] → []" in text
     assert "Collector: empty (levels: [], grid: [[], [4]])" in text
     assert "(values: [7, 8, 0, 9])" in text
+
+
+def test_strings_are_decoded() -> None:
+    assert shown_value([*"Küche €".encode(), 0, 0]) == "'Küche €'"
+    assert shown_value([*"Küche".encode("latin-1")]) == "[75, 252, 99, 104, 101]"
+    assert shown_value([7, 8]) == "[7, 8]"
+    assert shown_value([65.0, 66.0]) == "[65, 66]"
 
 
 def test_lengths_of_rows() -> None:

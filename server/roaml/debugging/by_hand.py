@@ -11,7 +11,7 @@ from typing import Any
 from roaml.debugging.breakpoints import WatchedVariable
 from roaml.debugging.evaluate import WatchError
 from roaml.debugging.sources import Sources
-from roaml.debugging.values import SEPARATOR, Value, nested, shown, type_of
+from roaml.debugging.values import SEPARATOR, Value, bytes_of, nested, shown, type_of
 from roaml.expr.types import INTEGER_RANGES, Array, Scalar, ScalarKind, Struct, Type, leaves
 from roaml.record import Record
 from roaml.scxml.names import (
@@ -231,7 +231,7 @@ class _Cells:
             if isinstance(value, list):
                 codes = value
             else:
-                codes = [ord(character) for character in _expect("" if value is None else value, str, path, "a string")]
+                codes = [*bytes_of(_expect("" if value is None else value, str, path, "a string"))]
             if len(codes) > len(old):
                 raise WatchError(f"`{path}` has space for {len(old)} elements, not for {len(codes)}")
             self._set_length(name, len(codes), index)

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 
-from roaml.debugging.values import Value, shown, type_of
+from roaml.debugging.values import Value, bytes_of, shown, type_of
 from roaml.expr import parse as parser
 from roaml.expr.operators import FUNCTIONS, Operator, UnaryOperator
 from roaml.expr.tree import (
@@ -112,7 +112,7 @@ def _member(expr: Member, scope: Scope) -> Value:
             return value
     owner = _value(expr.object, scope)
     if expr.name == "length" and isinstance(owner, (list, str)):
-        return len(owner)
+        return len(bytes_of(owner) if isinstance(owner, str) else owner)
     if isinstance(owner, list):
         return [_part(element, expr.name) for element in owner]
     return _part(owner, expr.name)
@@ -143,9 +143,10 @@ def _element(owner: Value, index: Value) -> Value:
         raise WatchError(f"{shown(owner)} is not an array")
     if not isinstance(index, int) or isinstance(index, bool):
         raise WatchError(f"the index {shown(index)} is not an integer")
-    if not 0 <= index < len(owner):
-        raise WatchError(f"index {index} is outside of the array, whose length is {len(owner)}")
-    return ord(owner[index]) if isinstance(owner, str) else owner[index]
+    elements = bytes_of(owner) if isinstance(owner, str) else owner
+    if not 0 <= index < len(elements):
+        raise WatchError(f"index {index} is outside of the array, whose length is {len(elements)}")
+    return elements[index]
 
 
 def _unary(operator: UnaryOperator, operand: Value) -> Value:

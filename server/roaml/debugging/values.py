@@ -81,8 +81,18 @@ def _first_leaf(name: str, type_: Type) -> str:
             return name
 
 
-def _text(characters: list[Plain]) -> str:
-    return "".join(chr(c) for c in characters if isinstance(c, int) and 0 < c <= 0x10FFFF)
+def bytes_of(text: str) -> bytes:
+    """The bytes of a string (docs/spec/types.md#strings)."""
+    return text.encode("utf-8", "surrogatepass")
+
+
+def _text(elements: list[Plain]) -> str:
+    """The string with these bytes; other numbers and bytes that are not UTF-8 become replacement characters."""
+    numbers = (number for number in elements if isinstance(number, int) and number != 0)
+    return bytes(number if 0 < number <= MAX_BYTE else MAX_BYTE for number in numbers).decode("utf-8", "replace")
+
+
+MAX_BYTE = 0xFF
 
 
 MAX_SHOWN = 120

@@ -27,8 +27,13 @@ def shown_parameters(values: Mapping[str, Plain]) -> str:
 
 
 def _text(value: list[Plain]) -> str:
-    """A string, which JANI represents as an array of bytes that ends in zeros; "" if the array is not a string."""
+    """A string, which JANI represents as an array of its bytes in UTF-8 that ends in zeros; "" if the array
+    is not a string."""
     while value and value[-1] == 0:
         value = value[:-1]
-    printable = all(isinstance(byte, int) and 32 <= byte < 127 for byte in value)
-    return repr("".join(chr(byte) for byte in value if isinstance(byte, int))) if value and printable else ""
+    codes = [byte for byte in value if isinstance(byte, int) and 32 <= byte <= 255]
+    try:
+        text = bytes(codes).decode("utf-8") if len(codes) == len(value) else ""
+    except UnicodeDecodeError:
+        return ""
+    return repr(text) if text and text.isprintable() else ""
