@@ -94,16 +94,23 @@ def test_shapes_and_lines_have_the_colors_of_the_style_sheet(theme: str) -> None
     assert f"{color('blue', theme)} rg\n50 50 m\n45.5 41 l\n54.5 41 l\nh\nf" in head
 
 
-def test_areas_of_timelines_are_translucent() -> None:
+def test_areas_and_rules_of_timelines_are_translucent() -> None:
     items = (
         Shape(Box(0.0, 0.0, 60.0, 20.0), Outline.RECTANGLE, "span"),
         Shape(Box(60.0, 0.0, 6.0, 20.0), Outline.RECTANGLE, "busy"),
     )
-    pdf = pdf_file(svg_file(one_group(*items, tone=Tone.RUNNING), "run", "light", TIMELINE_STYLES))
-    assert b"/ExtGState << /G0 << /ca 0.18 >> /G1 << /ca 0.55 >> >>" in pdf
+    rule = Group("axis", Tone.PLAIN, (Polyline((Point(5.0, 0.0), Point(5.0, 90.0)), role="rule"),))
+    drawing = Drawing(Extent(200.0, 100.0), (rule, Group("state", Tone.RUNNING, items)), {})
+    pdf = pdf_file(svg_file(drawing, "run", "light", TIMELINE_STYLES))
+    states = b"/G0 << /ca 1 /CA 0.25 >> /G1 << /ca 0.18 /CA 1 >> /G2 << /ca 0.55 /CA 1 >>"
+    assert b"/ExtGState << " + states + b" >>" in pdf
     lines = content(pdf)
-    assert lines.count("/G0 gs") == lines.count("/G1 gs") == 1
-    assert lines[lines.index("/G0 gs") - 1] == f"{color('orange')} rg"
+    for state, following in (
+        ("/G0", f"{color('muted')} RG"),
+        ("/G1", f"{color('orange')} rg"),
+        ("/G2", f"{color('orange')} rg"),
+    ):
+        assert lines[lines.index(f"{state} gs") + 1] == following
 
 
 def test_unknown_elements_are_an_error() -> None:

@@ -47,7 +47,7 @@ def pdf_file(svg: str) -> bytes:
     content = zlib.compress("\n".join([begin, *page.operators]).encode("latin-1"))
     title = next(root.iter(_SVG + "title")).text or ""
     fonts = " ".join(f"/F{index} {number} 0 R" for index, number in enumerate(range(6, 6 + len(_FONTS))))
-    states = " ".join(f"/G{index} << /ca {opacity} >>" for opacity, index in page.opacities.items())
+    states = " ".join(f"/G{index} << /ca {fill} /CA {stroke} >>" for (fill, stroke), index in page.opacities.items())
     objects = [
         b"<< /Type /Catalog /Pages 2 0 R >>",
         b"<< /Type /Pages /Kids [3 0 R] /Count 1 >>",
@@ -137,14 +137,14 @@ class _Page:
     """The operators that draw a page (ISO 32000-1, 8.2).
 
     Attributes:
-        opacities: the opacity of areas -> the number of its graphics state.
+        opacities: the opacities of areas and lines -> the number of their graphics state.
     """
 
     def __init__(self, rules: Sequence[_Rule]) -> None:
         self._rules = rules
         self._known: dict[tuple[_Styled, ...], Mapping[str, str]] = {}
         self.operators: list[str] = []
-        self.opacities: dict[str, int] = {}
+        self.opacities: dict[tuple[str, str], int] = {}
 
     def add(self, element: ET.Element, around: tuple[_Styled, ...]) -> None:
         """Draw an element and those inside it."""
@@ -179,11 +179,11 @@ class _Page:
         if fill == stroke == "none":
             return
         state = []
+        opacity = style.get("fill-opacity", "1"), style.get("stroke-opacity", "1")
+        if opacity != ("1", "1"):
+            state.append(f"/G{self.opacities.setdefault(opacity, len(self.opacities))} gs")
         if fill != "none":
             state.append(f"{_color(fill)} rg")
-            opacity = style.get("fill-opacity", "1")
-            if opacity != "1":
-                state.append(f"/G{self.opacities.setdefault(opacity, len(self.opacities))} gs")
         if stroke != "none":
             dashes = " ".join(style.get("stroke-dasharray", "").replace(",", " ").split())
             state += [f"{_color(stroke)} RG", f"{style.get('stroke-width', '1')} w", f"[{dashes}] 0 d"]
