@@ -177,6 +177,30 @@ def test_outcomes_name_members_of_structs(tmp_path: Path) -> None:
     assert texts == ["pose.x := 4, Robot enters `driving`", "pose.y := 7, Robot enters `driving`"]
 
 
+def test_outcomes_cut_arrays_to_their_lengths(tmp_path: Path) -> None:
+    robot = """<ascxml name="Robot" version="1.0" initial="driving">
+        <datamodel><data id="levels" type="int32[5]" expr="[7, 8]" /></datamodel>
+        <ros_time_rate name="second" rate_hz="1" />
+        <state id="driving">
+            <ros_rate_callback name="second">
+                <target id="driving" prob="0.5"><assign location="levels[1]" expr="levels[0] + 2" /></target>
+                <target id="driving" prob="0.3"><assign location="levels[2]" expr="5" /></target>
+                <target id="driving" prob="0.2"><assign location="levels.length" expr="0" /></target>
+            </ros_rate_callback>
+        </state>
+    </ascxml>"""
+    for name, text in {**STRUCT, "robot.ascxml": robot}.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    session = api.session(api.as_target(api.load(str(tmp_path / "main.xml"))))
+    while not (drawn := [choice for choice in session.choices() if len(choice.outcomes) > 1]):
+        session.step()
+    assert [outcome.text.partition(", Robot")[0] for outcome in drawn[0].outcomes] == [
+        "levels := [7, 9]",
+        "levels := [7, 8, 5]",
+        "levels := []",
+    ]
+
+
 def test_outcomes_show_elements_of_arrays_and_failures() -> None:
     """The text of an outcome that fails states why. Listing the choices changes nothing."""
     array = {"kind": "array", "base": "int"}

@@ -23,6 +23,7 @@ from roaml.scxml.names import (
     CLOCK_ACTION,
     STATUS_NAMES,
     TreeEventKind,
+    array_of,
     automaton_role,
     is_observer,
     is_timer,
@@ -35,7 +36,7 @@ from roaml.simulation.words import resting, tree_text, who
 from roaml.smc.compile import Legend
 from roaml.smc.fault import FaultError
 from roaml.smc.record import Plain, RecordedVariable
-from roaml.views.arrays import without_lengths
+from roaml.views.arrays import cut
 from roaml.views.event_words import event_phrase
 from roaml.views.events import EventReader
 from roaml.views.library_nodes import is_library_node
@@ -170,13 +171,7 @@ def _effects(
         for part, way in zip(parts, decision.ways, strict=True)
         if sum(chance > 0 for chance in part.probabilities) > 1
     ]
-    computed = {
-        RecordedVariable(instance, assignment.variable)
-        for part, destination in destinations
-        for assignment in destination.assignments
-        if _constant(assignment) is None
-        for instance in (part.instance, -1)
-    }
+    computed = {variable for part, destination in destinations for variable in _computed(part, destination)}
     try:
         after = run.values_after(decision, computed) if computed else {}
     except FaultError as fault:
@@ -186,6 +181,19 @@ def _effects(
     for part, destination in destinations:
         values = {variable.name: value for variable, value in after.items() if variable.instance in (-1, part.instance)}
         yield from _consequences(part.automaton, destination, values, clients, events, phrases(part.automaton.name))
+
+
+def _computed(part: _Part, destination: Destination) -> Iterator[RecordedVariable]:
+    """The variables whose values a destination computes, with the lengths of arrays."""
+    names = {
+        array_of(assignment.variable) or assignment.variable
+        for assignment in destination.assignments
+        if array_of(assignment.variable) or _constant(assignment) is None
+    }
+    names |= {variable.name for variable in part.automaton.variables if array_of(variable.name) in names}
+    for name in names:
+        yield RecordedVariable(part.instance, name)
+        yield RecordedVariable(-1, name)
 
 
 def _constant(assignment: Assignment) -> Plain | None:
@@ -207,13 +215,13 @@ def _consequences(
     branch.
 
     Args:
-        after: the values of the variables that the destination computes.
+        after: the values of the variables that the destination computes, with the lengths of arrays.
     """
     rest, states = resting(automaton), states_of(automaton)
     name = who(automaton.name)
     visited: set[str] = set()
     while True:
-        for variable, value in without_lengths(_assigned(destination, after)).items():
+        for variable, value in _assigned(destination, after).items():
             if not events.carries_event(variable):
                 yield f"{phrases.get(variable, variable)} := {shown_value(value)}"
         location = destination.location
@@ -268,12 +276,15 @@ def _status(event: str, destination: Destination) -> str:
 
 
 def _assigned(destination: Destination, after: Mapping[str, Plain]) -> dict[str, Plain]:
-    """The variables that a destination sets, with their values as far as they are known."""
+    """The variables that a destination sets, with their values as far as they are known. Arrays are cut to their
+    lengths, and an assignment to a length sets its array."""
     values: dict[str, Plain] = {}
     for assignment in destination.assignments:
-        value = after.get(assignment.variable, _constant(assignment))
+        array = array_of(assignment.variable)
+        name = array or assignment.variable
+        value = after.get(name, None if array else _constant(assignment))
         if value is not None:
-            values[assignment.variable] = value
+            values[name] = cut(name, value, after)
     return values
 
 
