@@ -64,6 +64,7 @@ if TYPE_CHECKING:
     from roaml.text import Location, SourceFile, Span
     from roaml.verification.counterexample import Counterexample, counterexample
     from roaml.verification.expectations import Expectation, RangeError, Verdict
+    from roaml.verification.explorations import Explorations
     from roaml.verification.refusal import Refusal
     from roaml.verification.results import Exact, Proof, Result, SampledResult, ShortestTrace, Traces
     from roaml.verification.stuck import Stuck, StuckLevel, StuckResult
@@ -112,6 +113,7 @@ else:
         "roaml.smc.story": ("Story",),
         "roaml.verification.counterexample": ("Counterexample", "counterexample"),
         "roaml.verification.expectations": ("Expectation", "RangeError", "Verdict"),
+        "roaml.verification.explorations": ("Explorations",),
         "roaml.verification.refusal": ("Refusal",),
         "roaml.verification.results": ("Exact", "Proof", "Result", "SampledResult", "ShortestTrace", "Traces"),
         "roaml.verification.stuck": ("StuckResult", "Stuck", "StuckLevel"),
@@ -150,6 +152,7 @@ __all__ = [
     "EventState",
     "Exact",
     "Expectation",
+    "Explorations",
     "Extreme",
     "ExtremeMethod",
     "FaultError",

@@ -22,6 +22,7 @@ from roaml.suggest import alternatives, close_names
 from roaml.verification import stuck
 from roaml.verification.exhaustive import UndecidedError, check_exactly, exact_values
 from roaml.verification.expectations import Expectation, Verdict, check_expectation, check_range, is_possible
+from roaml.verification.explorations import Explorations
 from roaml.verification.refusal import refusal
 from roaml.verification.results import Exact, Result, SampledResult, Traces
 from roaml.verification.schedulers import is_minimised, under_all_schedulers
@@ -161,6 +162,7 @@ class Verifier(Record, frozen=True):
         exact_if_small: whether the result of a property contains exact values if the model has few states (`small`).
         example_traces: the number of traces that are generated for a result with exact values; `None` for the number
             that an estimate needs.
+        explorations: the exact values that several properties share.
     """
 
     target: VerificationTarget
@@ -170,6 +172,7 @@ class Verifier(Record, frozen=True):
     only_uniform: bool = False
     exact_if_small: bool = False
     example_traces: int | None = None
+    explorations: Explorations = field(default_factory=Explorations)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -316,7 +319,13 @@ class Verifier(Record, frozen=True):
         """The exact values of a property, for its result or to compare schedulers; `None` if neither needs them, or if
         the model is too large."""
         if self.exact_if_small or (self._considers_choices(property_) and not self.checker.is_deterministic):
-            return values_if_small(self.checker, property_, leaves_out=self.exact_if_small)
+            leaves_out = self.exact_if_small
+            return self.explorations.exact(
+                self.checker,
+                property_,
+                leaves_out,
+                lambda: values_if_small(self.checker, property_, leaves_out=leaves_out),
+            )
         return None
 
     def _shown(self, small: Exact | None) -> Exact | None:
@@ -436,7 +445,10 @@ class Verifier(Record, frozen=True):
         began = time.monotonic()
         expectations = self.expected(property_)
         try:
-            exact = exact_values(self.checker, property_, limits, watch)
+            exact = self.explorations.exact(
+                self.checker, property_, limits, lambda: exact_values(self.checker, property_, limits, watch)
+            )
+            assert exact is not None
         except UndecidedError as error:
             open_ = tuple(Verdict(expectation, False, False, under="so far") for expectation in expectations)
             seconds = time.monotonic() - began
