@@ -78,4 +78,4 @@ def test_the_state_shows_each_node_once(
     monkeypatch.setattr("sys.stdin", io.StringIO("t\ns\nq\n"))
     assert run(["simulate", str(tree), "-i", "--mock", "*: 0.5 in 200 ms", "--entry", "load=1"]) == 0
     lines = [line.strip() for line in capsys.readouterr().out.splitlines() if "Drive (bt_1001):" in line]
-    assert lines == ["Drive (bt_1001): RUNNING (left: 2, {code}: 0)"]
+    assert lines == ["Drive (bt_1001): RUNNING (ticks_left: 2, {code}: 0)"]
