@@ -17,12 +17,12 @@ from roaml.debugging.evaluate import Scope, WatchError, condition, evaluate, par
 from roaml.debugging.sources import Sources
 from roaml.debugging.values import SEPARATOR, shown
 from roaml.expr.tree import Expr
-from roaml.jani.expressions import Integer, Name
 from roaml.jani.node import Origin
 from roaml.record import Record, field
 from roaml.scxml.names import STATUSES, TreeEventKind, read_tree_event, received_by, sent_by
 from roaml.simulation.session import Session
 from roaml.simulation.verdicts import Decided
+from roaml.simulation.words import returned_status
 from roaml.smc.record import AutomatonStep, TraceStep, TraceVerdict
 
 
@@ -310,14 +310,8 @@ def _fails(step: TraceStep) -> bool:
         return False
     variable = f"{event}{SEPARATOR}status"
     changed = [change.after for change in step.changes if change.variable.name == variable]
-    assigned = [
-        assignment.value.value
-        for part in step.parts
-        for assignment in part.destination.assignments
-        if isinstance(assignment.target, Name) and assignment.target.identifier == variable
-        if isinstance(assignment.value, Integer)
-    ]
-    return STATUSES["FAILURE"] in (*changed, *assigned)
+    is_returned = any(returned_status(event, part.destination) == "FAILURE" for part in step.parts)
+    return is_returned or STATUSES["FAILURE"] in changed
 
 
 def _is_part(instance: int, name: str, variable: WatchedVariable) -> bool:

@@ -21,18 +21,15 @@ from roaml.scxml.events import Role
 from roaml.scxml.names import (
     CLOCK,
     CLOCK_ACTION,
-    STATUS_NAMES,
-    TreeEventKind,
     array_of,
     automaton_role,
     is_observer,
     is_timer,
-    read_tree_event,
     received_by,
     sent_by,
 )
 from roaml.simulation.run import Decision, EnabledEdges, Run
-from roaml.simulation.words import resting, tree_text, who
+from roaml.simulation.words import resting, returned_status, tree_text, who
 from roaml.smc.compile import Legend
 from roaml.smc.fault import FaultError
 from roaml.smc.record import Plain, RecordedVariable
@@ -238,7 +235,7 @@ def _consequences(
         visited.add(location)
         event = sent_by(following[0].action or "")
         (destination,), after = following[0].destinations, {}
-        if status := _status(event, destination):
+        if status := returned_status(event, destination):
             yield f"{name} returns {status}"
         elif event:
             yield f"{name} sends {event_phrase(event, clients)}"
@@ -257,22 +254,12 @@ def _statuses(automaton: Automaton, location: str, rest: Collection[str]) -> set
             continue
         for edge in automaton.edges:
             for destination in edge.destinations if edge.source == source else ():
-                if status := _status(sent_by(edge.action or ""), destination):
+                if status := returned_status(sent_by(edge.action or ""), destination):
                     statuses.add(status)
                 elif destination.location not in visited:
                     visited.add(destination.location)
                     remaining.append(destination.location)
     return statuses
-
-
-def _status(event: str, destination: Destination) -> str:
-    """The status that a node of the tree returns by sending an event; "" for another event, or if the status is not a
-    constant."""
-    tree = read_tree_event(event)
-    if tree is None or tree.kind is not TreeEventKind.RESPONSE:
-        return ""
-    values = (a.value for a in destination.assignments if a.variable == f"{event}__status")
-    return next((STATUS_NAMES.get(value.value, "") for value in values if isinstance(value, Integer)), "")
 
 
 def _assigned(destination: Destination, after: Mapping[str, Plain]) -> dict[str, Plain]:

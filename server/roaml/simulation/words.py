@@ -6,7 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from roaml.exhaustive import assert_never
-from roaml.jani.model import Automaton
+from roaml.jani.expressions import Integer
+from roaml.jani.model import Automaton, Destination
 from roaml.scxml.events import Role
 from roaml.scxml.names import (
     CLOCK_ACTION,
@@ -81,3 +82,13 @@ def tree_text(actor: str, event: str, is_sent: bool, parameters: Mapping[str, Pl
             return f"{actor} receives the report of {child} that it has halted"
         case _:
             return assert_never(tree.kind)
+
+
+def returned_status(event: str, destination: Destination) -> str:
+    """The status that a node of the tree returns by sending an event; "" for another event, or if the status is not a
+    constant."""
+    tree = read_tree_event(event)
+    if tree is None or tree.kind is not TreeEventKind.RESPONSE:
+        return ""
+    values = (a.value for a in destination.assignments if a.variable == f"{event}__status")
+    return next((STATUS_NAMES.get(value.value, "") for value in values if isinstance(value, Integer)), "")
