@@ -41,6 +41,39 @@ def networks(draw: st.DrawFn, *, has_faults: bool = False) -> Json:
     return document(*elements, variables=variables, properties={"p": draw(_properties())}, **rows)
 
 
+@st.composite
+def messages(draw: st.DrawFn) -> Json:
+    """A model whose events have data, which their receivers copy, compare or ignore. So many variables are dead in some
+    states."""
+    written = draw(networks())
+    events = [a["name"].removeprefix("buffer_") for a in written["automata"] if a["name"].startswith("buffer_")]
+    for number, machine in enumerate(written["automata"][: len(written["automata"]) - len(events)]):
+        own, kept = machine["variables"][0]["name"], f"kept{number}"
+        machine["variables"].append(variable(kept))
+        for edge_ in machine["edges"]:
+            verb, _, event = edge_.get("action", "").partition("_")
+            if verb == "get" and draw(st.integers(0, 2)) == 0:
+                edge_["guard"] = {"exp": op("<", f"data_{event}", draw(st.integers(1, 2)))}
+            elif draw(st.integers(0, 5)) == 0:
+                edge_["guard"] = {"exp": op(draw(st.sampled_from(["=", "<"])), kept, draw(st.sampled_from([1, own])))}
+            for destination in edge_["destinations"]:
+                assigned = {a["ref"]: a for a in destination.get("assignments", ())}
+                values: dict[str, Any] = {}
+                if verb == "send":
+                    values[f"data_{event}"] = draw(st.sampled_from([1, 2, own, kept, "x"]))
+                if verb == "get" and draw(st.booleans()):
+                    values[kept] = f"data_{event}"
+                elif draw(st.integers(0, 3)) == 0:
+                    values[kept] = draw(st.sampled_from([0, 1, own, "x"]))
+                if draw(st.integers(0, 4)) == 0:
+                    values[draw(st.sampled_from(SHARED))] = kept
+                for name, value in values.items():
+                    assigned[name] = {"ref": name, "value": value, "index": draw(st.sampled_from([0, 0, 1]))}
+                destination["assignments"] = list(assigned.values())
+    written["variables"] += [variable(f"data_{event}") for event in events]
+    return written
+
+
 def _is_synchronised(action: str, syncs: list[list[str | None]]) -> bool:
     return any(action in row for row in syncs)
 

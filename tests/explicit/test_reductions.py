@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from loose_networks import STUCK_AUTOMATON, STUCK_LOCATION, networks
+from loose_networks import STUCK_AUTOMATON, STUCK_LOCATION, messages, networks
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 from smc_random import networks as entangled_networks
 
@@ -126,6 +126,26 @@ def test_reduced_spaces_have_the_same_answers() -> None:
     run()
     assert sum(smaller) > len(smaller) / 2
     assert len(smaller) > examples(300) / 2
+
+
+def test_together_with_dead_variables() -> None:
+    """Compared with a search that leaves nothing out and resets nothing."""
+    smaller: list[bool] = []
+
+    @given(messages(), st.booleans())
+    @settings(max_examples=examples(60), deadline=None)
+    def run(written: Json, is_stuck: bool) -> None:
+        checker, property_ = question_of(written, is_stuck=is_stuck)
+        compiled = checker.compiled(property_)
+        if can_be_reduced(compiled.program, compiled.goal):
+            whole = explore(checker, property_, StateLimits(reduces=False))
+            check(whole, explore(checker, property_, ALL))
+            reduced = explore(checker, property_, ALL, is_reduced=True)
+            check(whole, reduced)
+            smaller.append(is_smaller(whole, reduced))
+
+    run()
+    assert sum(smaller) > len(smaller) / 2
 
 
 def test_reduced_spaces_have_the_same_faults() -> None:
