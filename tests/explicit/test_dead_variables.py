@@ -342,6 +342,24 @@ def test_a_value_that_is_read_later_in_the_same_step_is_live() -> None:
     assert reduced < whole
 
 
+def test_a_variable_is_live_if_its_copy_is_live() -> None:
+    """`x` is read only when it is copied to `y`, which is written as a whole and read in the next step."""
+    toss = [way("m", 0.25, x=1), way("m", 0.25, x=2), way("m", 0.5, x=3)]
+    edges = [
+        edge("l", *toss),
+        edge("m", way("n", y="x")),
+        edge("n", way("l", z=1), guard=op("=", "y", 1)),
+        edge("n", "l", guard=op(">", "y", 1)),
+    ]
+    written = document(
+        automaton("a", "l m n", edges),
+        variables=[variable("x"), variable("y"), variable("z")],
+        properties={"p": probability(op("F", op("=", "z", 1)))},
+    )
+    whole, reduced = counts(written)
+    assert (whole, reduced) == (16, 8)
+
+
 def test_without_reductions_all_states_are_explored() -> None:
     checker = checker_of(delivered(*IS_THREE))
     assert explore(checker, checker.compiled_properties[0], ALL).states == 9
