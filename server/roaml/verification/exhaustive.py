@@ -106,7 +106,7 @@ def values_from(space: Space, limits: StateLimits) -> Exact:
     try:
         values = values_of(space, work=limits.work)
     except NoValueError as error:
-        raise UndecidedError(str(error)) from None
+        raise UndecidedError(f"{error}; {_ESTIMATE}") from None
     uniform = values.uniform
     if uniform is None and is_same(values.minimum, values.maximum):
         uniform = Bounds(values.minimum.lower, values.maximum.upper)
