@@ -113,6 +113,14 @@ def test_undecided_traces_count_against_an_expectation(command: Command, tmp_pat
     assert command("verify", name, *options, "--expect", "p <= 0.94").status == 1
 
 
+def test_a_value_is_unknown_if_no_trace_is_decided(command: Command, tmp_path: Path) -> None:
+    counts = edge("s", way("s", x=op("+", "x", 1)))
+    goal = {"p": probability(op("F", op("=", "x", 50)))}
+    name = write(tmp_path, document(automaton("a", "s", [counts]), variables=[variable("x")], properties=goal))
+    done = command("verify", name, "--max-steps", 5, "--method", "adaptive")
+    assert "p: unknown in [0, 1] from 100 traces: 0 passed, 0 failed, 100 undecided" in done.out
+
+
 def test_junit(command: Command, tmp_path: Path) -> None:
     done = command("verify", write(tmp_path, coin()), "--expect", "heads >= 0.9", "--format", "junit")
     suites = ET.fromstring(done.out)

@@ -101,12 +101,14 @@ class KnownResults(Record):
 
 
 def short(result: Result) -> str:
-    """A short form of a result, such as `0.48 [0.47, 0.49]` or `0.4832, exact`; "" if there is no value."""
+    """A short form of a result, such as `0.48 [0.47, 0.49]`, `0.4832, exact` or `unknown`; "" if there is no result."""
     answer, exact = result.answer, result.asked_value()
     if exact is not None:
         return f"{_number(exact[1], 4)}, exact"
     if answer is None or answer.tally.traces == 0:
         return ""
+    if answer.is_unknown:
+        return "unknown"
     lower, upper = answer.bounds
     return f"{_number(answer.value)} [{_number(lower)}, {_number(upper)}]"
 

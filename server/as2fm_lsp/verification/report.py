@@ -135,7 +135,7 @@ def _estimate(answer: Answer) -> str:
     tally, (lower, upper) = answer.tally, answer.bounds
     if tally.traces == 0:
         return activity_report.warning(answer) or "no result yet"
-    value = "infinite" if math.isinf(answer.value) else _number(answer.value)
+    value = "unknown" if answer.is_unknown else "infinite" if math.isinf(answer.value) else _number(answer.value)
     interval = f" in [{_number(lower)}, {_number(upper)}]"
     good, bad = ("stuck", "not stuck") if answer.question.is_stuck else ("passed", "failed")
     counts = f"{tally.traces:,} traces: {tally.successes:,} {good}, {answer.failures:,} {bad}"

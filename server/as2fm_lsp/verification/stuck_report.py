@@ -30,8 +30,8 @@ def as_text(result: StuckResult, place_of: PlaceOf, shown: str = "") -> str:
         lower, upper = answer.bounds
         cut = answer.tally.ended(End.CUT)
         to = f"; {cut:,} of them were cut after {answer.options.max_steps:,} steps" if cut else " to their end"
-        value = f"{answer.value:.6g} in [{lower:.6g}, {upper:.6g}]"
-        lines.append(f"{PROBABILITY}: {value} from {answer.tally.traces:,} traces{to}")
+        value = "unknown" if answer.is_unknown else f"{answer.value:.6g}"
+        lines.append(f"{PROBABILITY}: {value} in [{lower:.6g}, {upper:.6g}] from {answer.tally.traces:,} traces{to}")
     if result.fault:
         lines.append(f"{PROBABILITY}: unknown, because a longer trace failed: {result.fault}")
     if stuck is not None:

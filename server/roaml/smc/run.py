@@ -109,6 +109,11 @@ class Answer(Record, frozen=True):
         return "confidence sequence" if self.is_anytime else "Clopper-Pearson"
 
     @property
+    def is_unknown(self) -> bool:
+        """Whether there are traces and all of them are undecided, so that `value` says nothing about the model."""
+        return 0 < self.tally.traces == self.tally.undecided
+
+    @property
     def failures(self) -> int:
         return self.tally.traces - self.tally.successes - self.tally.undecided
 
