@@ -244,13 +244,16 @@ class Compilation:
                 left = sorted(before.keys() - after.keys())
                 entered = sorted(slot for slot in after.keys() - before.keys() if self._count(after[slot]) == 1)
                 others = sorted(after.keys() - set(entered))
-                records.extend((len(left), len(entered), len(others)))
+                instance, _ = self.network.locations[target]
+                records.extend((instance, target, len(left), len(entered), len(others)))
                 for slot in left:
                     records.extend((slot, slot_vector[slot]))
                 for slot in entered:
                     records.extend((slot, slot_vector[slot], after[slot]))
                 for slot in others:
-                    records.extend((slot, after[slot], self._count(after[slot])))
+                    first = self.edge_start[after[slot]]
+                    guard = self.guard[first] if len(self.group_steps[after[slot]]) == 1 else -1
+                    records.extend((slot, after[slot], self._count(after[slot]), guard))
         return _ints(known[move] for move in self.way_move), records
 
     def _groups(self, location: int) -> dict[int, int]:

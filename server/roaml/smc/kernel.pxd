@@ -11,6 +11,7 @@ cdef u64 UINT64_MASK, GOLDEN, MIX_1, MIX_2
 cdef i64 MAX_INT64, MIN_INT64
 cdef double TO_UNIT, MASS_UNIT, MASS_UNIT_INVERSE
 cdef u64 MAX_DRAWN_COMBINATIONS
+cdef int ORDERS
 cdef int FALSE, TRUE, UNKNOWN, FAULTY, GOES_ON, ASKED
 cdef int DECIDED, TIME, FINISHED, STUCK, QUIET, DEADLOCK, IDLE, ROUND
 
@@ -46,7 +47,7 @@ cdef class Kernel:
     cdef int visit_count, leaves, questions, status, is_bounded, step_reward, exit_reward
     cdef int[::1] sum_register, sum_watch, sum_step, sum_exit, kept_slot, kept_way
     cdef double[::1] sum_limit
-    cdef int sums, lasts
+    cdef int sums, lasts, is_plain
     cdef u64 tried
     cdef int[::1] ready, ready_0, slot_group, slot_group_0, gate_missing, gate_missing_0, vector_missing, vector_missing_0
     cdef int[::1] enabled, enabled_0
@@ -96,6 +97,8 @@ cdef class Kernel:
     cdef void _arrive(self, int location) noexcept
     @cython.locals(count=int, edge=int, at=int, i=int)
     cdef int _count(self, int group) noexcept
+    @cython.locals(op=int, x=i64, y=i64, result=int)
+    cdef int _is_true(self, int pc) noexcept
     @cython.locals(at=int, i=int, value=i64)
     cdef int _list(self, int index) noexcept
     @cython.locals(at=int, i=int, value=i64)
@@ -125,9 +128,9 @@ cdef class Kernel:
     cdef void _take(self, int vector, u64 rest, int apart) noexcept
     @cython.locals(i=int, slot=int, edge=int)
     cdef void _take_given(self, int vector, list picks, list ways) noexcept
-    @cython.locals(i=int, update=int)
+    @cython.locals(i=int, update=int, code=int)
     cdef void _apply(self, int vector) noexcept
-    @cython.locals(at=int, end=int, slot=int, group=int, count=int, old=int, vector=int, missing=int)
+    @cython.locals(at=int, end=int, slot=int, group=int, guard=int, count=int, old=int, vector=int, missing=int)
     cdef void _move(self, int update) noexcept
     @cython.locals(i=int)
     cdef void _execute_ways(self, int vector) noexcept

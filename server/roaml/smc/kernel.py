@@ -36,6 +36,9 @@ TO_UNIT = 1.0 / 9007199254740992.0
 MAX_DRAWN_COMBINATIONS = 4096
 """The maximum number of combinations from which one random number of 32 bits selects: the relative error of each
 probability is then at most one in a million."""
+ORDERS = 0x3152
+"""For `=`, `≠`, `<` and `≤`, 4 bits each, beginning with the lowest ones: the results for which the comparison is true.
+They are 1 if the left number is less than the right one, 2 if they are equal, 4 if it is greater."""
 MASS_UNIT = 2.0**512
 MASS_UNIT_INVERSE = 2.0**-512
 
@@ -157,6 +160,7 @@ class Kernel:
         self.sum_exit = goal.sum_exit
         self.sum_limit = goal.sum_limit
         self.sums = len(goal.sum_register)
+        self.is_plain = 1 if self.sums == 0 and self.settle < 0 and self.step_reward < 0 else 0
         self.lasts = 1 if goal.upper[0] >= 0 and (goal.step_reward >= 0 or goal.exit_reward >= 0) else 0
         self.verdict = goal.left[:]
         self.holds_left = goal.left[:]
@@ -314,7 +318,7 @@ class Kernel:
         ways = []
         for group in range(self.group_start[location], self.group_start[location + 1]):
             for edge in range(self.edge_start[group], self.edge_start[group + 1]):
-                if self.guard[edge] < 0 or self._execute(self.guard[edge]) != 0:
+                if self.guard[edge] < 0 or self._is_true(self.guard[edge]) != 0:
                     ways.append(self.way_start[edge])
         return ways
 
@@ -655,13 +659,29 @@ class Kernel:
             at = self._list(self.group_index[group])
             for i in range(self.list_start[at], self.list_start[at + 1]):
                 edge = self.list_item[i]
-                if edge < 0 or self.guard[edge] < 0 or self._execute(self.guard[edge]) != 0:
+                if edge < 0 or self.guard[edge] < 0 or self._is_true(self.guard[edge]) != 0:
                     count += 1
             return count
         for edge in range(self.edge_start[group], self.edge_start[group + 1]):
-            if self.guard[edge] < 0 or self._execute(self.guard[edge]) != 0:
+            if self.guard[edge] < 0 or self._is_true(self.guard[edge]) != 0:
                 count += 1
         return count
+
+    def _is_true(self, pc: int) -> int:
+        """Whether the guard at `pc` is true. Most guards consist of comparisons, which need not be distinguished by
+        jumps here."""
+        op = self.code[pc]
+        while op >= 53:  # FAIL_EQ, FAIL_NE, FAIL_LT, FAIL_LE, IS_EQ, IS_NE, IS_LT, IS_LE
+            x = self.ints[self.code[pc + 2]]
+            y = self.ints[self.code[pc + 3]]
+            result = (ORDERS >> (((op - 53) & 3) * 4)) & (1 << ((x > y) + (x >= y)))
+            if op >= 57:
+                return 1 if result != 0 else 0
+            if result != 0:
+                return 0
+            pc += 5
+            op = self.code[pc]
+        return 1 if self._execute(pc) != 0 else 0
 
     def _list(self, index: int) -> int:
         """The list of an index for the current values."""
@@ -894,7 +914,13 @@ class Kernel:
 
     def _apply(self, vector: int) -> None:
         """Take the chosen ways, and update what is enabled."""
-        self._execute_ways(vector)
+        if self.is_plain == 0 or self.entangled[vector] != 0:
+            self._execute_ways(vector)
+        else:
+            for i in range(self.parts):
+                code = self.way_code[self.part_way[i]]
+                if code >= 0:
+                    self._execute(code)
         if self.fault != 0:
             return
         for i in range(self.parts):
@@ -905,11 +931,11 @@ class Kernel:
             self._look_around()
 
     def _move(self, update: int) -> None:
-        """Update what is enabled when an instance goes from one location to another. `update`: an index in
-        `Program.updates`."""
+        """Let an instance go from one location to another. `update`: an index in `Program.updates`."""
         self.moved = 1
-        at = update + 3
-        end = at + 2 * self.updates[update]
+        self.place[self.updates[update]] = self.updates[update + 1]
+        at = update + 5
+        end = at + 2 * self.updates[update + 2]
         while at < end:
             slot = self.updates[at]
             old = self.ready[slot]
@@ -926,7 +952,7 @@ class Kernel:
                     if missing == 0:
                         self._disable(vector)
             at += 2
-        end = at + 3 * self.updates[update + 1]
+        end = at + 3 * self.updates[update + 3]
         while at < end:
             slot = self.updates[at]
             self.ready[slot] = 1
@@ -940,16 +966,17 @@ class Kernel:
                 if missing == 0:
                     self._enable(vector)
             at += 3
-        end = at + 3 * self.updates[update + 2]
+        end = at + 4 * self.updates[update + 4]
         while at < end:
             slot = self.updates[at]
             group = self.updates[at + 1]
             count = self.updates[at + 2]
             if count < 0:
-                count = self._count(group)
+                guard = self.updates[at + 3]
+                count = self._is_true(guard) if guard >= 0 else self._count(group)
             self.slot_group[slot] = group
             self._set_ready(slot, count)
-            at += 3
+            at += 4
 
     def _execute_ways(self, vector: int) -> None:
         """Execute the assignments of the chosen ways, and change the locations."""
@@ -986,13 +1013,13 @@ class Kernel:
             i = self.list_start[self._list(self.group_index[group])]
             while True:
                 edge = self.list_item[i]
-                if edge < 0 or self.guard[edge] < 0 or self._execute(self.guard[edge]) != 0:
+                if edge < 0 or self.guard[edge] < 0 or self._is_true(self.guard[edge]) != 0:
                     if pick == 0:
                         return edge if edge >= 0 else -1 - edge
                     pick -= 1
                 i += 1
         while True:
-            if self.guard[edge] < 0 or self._execute(self.guard[edge]) != 0:
+            if self.guard[edge] < 0 or self._is_true(self.guard[edge]) != 0:
                 if pick == 0:
                     return edge
                 pick -= 1

@@ -46,11 +46,12 @@ class Program(Record, frozen=True, eq=False):
         group_way: the way of a group that consists of one edge with one way; -1 for other groups.
         way_update: for each way, the index in `updates` of the change of what is enabled; -1 if its source and its
             target are equal.
-        updates: one record after the other. It contains the numbers of slots in its three parts, and these parts:
+        updates: one record after the other. It contains the instance, its target location, the numbers of slots in
+            the three parts of the record, and these parts:
             slots that have edges only in the source location, with their `slot_vector`; slots that have one edge
             without a guard in the target location and none in the source location, with their `slot_vector` and their
-            group; and the other slots that have edges in the target location, with their group and the number of their
-            enabled edges, -1 if it depends on guards.
+            group; and the other slots that have edges in the target location, with their group, the number of their
+            enabled edges, -1 if it depends on guards, and the guard of a single edge, otherwise -1.
         slot_vector: the vector of each slot; -1 if there is none; -2 - g if there are several, where g is the gate of
             the slot (`roaml.smc.kernel` defines gates). gate_vector: the vectors of a gate.
         gate_missing, vector_missing: the number of slots of each gate; for each vector, the number of its slots that
