@@ -29,7 +29,7 @@ def compiled() -> Iterator[tuple[str, Compiled]]:
     """Name -> program and goal of the first property of each system, and of one property of each model."""
     for path in conformance.systems():
         checker = api.checker(api.to_jani(api.load(str(path), [str(conformance.INTERFACES)])))
-        yield f"{path.parent.name}/{path.stem}", _first(checker)
+        yield conformance.label(path), _first(checker)
     for name, content in models().items() if FOLDER.is_dir() else ():
         value, _ = parse((FOLDER / f"{name}.jani").read_text(encoding="utf-8-sig"))
         model, _ = read_model(value, name)
