@@ -16,7 +16,7 @@ from roaml.figures.drawing import Drawing, Shape, TextItem
 from roaml.figures.text import text_width
 from roaml.simulation import Session
 from roaml.simulation.state import NodeStatus
-from roaml.timeline import Axis, LaneKind, Timeline, View, draw_timeline, extent, position_of, step_at
+from roaml.timeline import Axis, LaneKind, Timeline, View, draw_names, draw_timeline, extent, position_of, step_at
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 ROBOT = EXAMPLES / "assembly_robot" / "main_with_bug.xml"
@@ -166,6 +166,29 @@ def test_messages_that_are_close_to_each_other_have_one_mark(width: float) -> No
             assert group.step is None
         else:
             assert group.step is not None
+
+
+@pytest.mark.parametrize("width", [180.0, 120.0])
+@pytest.mark.parametrize("path", [ROBOT, DELIVERY], ids=lambda path: path.parent.name)
+def test_the_ends_of_the_range_of_a_plot_are_beside_its_name_and_cross_no_line(path: Path, width: float) -> None:
+    session = api.session(api.load(str(path)), seed=3)
+    session.until_decided(2_000)
+    timeline = timeline_of(session)
+    names = draw_names(timeline, width)
+    by_hint = {group.hint: [item for item in group.items if isinstance(item, TextItem)] for group in names.groups}
+    numbered = 0
+    for plot in timeline.plots:
+        name, *numbers = by_hint[plot.name]
+        ends = [] if plot.is_flag else [f"{value:.6g}" for value in sorted({*plot.values}, reverse=True)]
+        assert [number.text for number in numbers] == [*ends[:1], *ends[1:][-1:]]
+        assert all(name.box.right <= number.box.x and number.box.right <= width for number in numbers)
+        assert [number.y for number in numbers] == sorted(number.y for number in numbers)
+        numbered += len(numbers)
+    assert numbered > 1
+    rows = draw_timeline(timeline, View(Axis.STEPS, 0.0, float(timeline.count), 900.0))
+    plots = [group for group in rows.groups if group.role == "variable"]
+    assert len(plots) == len(timeline.plots)
+    assert not any(isinstance(item, TextItem) for group in plots for item in group.items)
 
 
 def _texts(drawing: Drawing) -> list[TextItem]:

@@ -92,8 +92,7 @@ def draw_names(timeline: Timeline, width: float) -> Drawing:
         text = _text(lane.name, 4.0, _middle(index), width - 8.0, "text", bold=bold)
         groups.append(Group("name", Tone.PLAIN, (text,), hint=lane.name))
     for index, plot in enumerate(timeline.plots):
-        y = _plot_top(timeline, index) + PLOT / 2
-        groups.append(Group("name", Tone.PLAIN, (_text(plot.name, 4.0, y, width - 8.0, "muted"),), hint=plot.name))
+        groups.append(_plot_name(plot, _plot_top(timeline, index), width))
     return Drawing(Extent(width, height_of(timeline)), tuple(groups), {})
 
 
@@ -285,8 +284,7 @@ class _Painter:
     def _plot(self, top: float, plot: Plot) -> Group:
         first = max(0, bisect_right(plot.steps, self._first_step(0.0)) - 1)
         last = bisect_right(plot.steps, self._first_step(self._view.width))
-        finite = [value for value in plot.values if math.isfinite(value)] or [0.0]
-        low, high = (0.0, 1.0) if plot.is_flag else (min(finite), max(finite))
+        low, high = _range(plot)
         space = PLOT - 2 * _MARGIN
 
         def y(value: float) -> float:
@@ -316,12 +314,25 @@ class _Painter:
         ]
         if len(points) > 1:
             items.append(Polyline(tuple(points), role="plot", is_round=False))
-        width = max(text_width(_number(value), SMALL) for value in (low, high))
-        if not plot.is_flag and width + 2.0 <= self._view.width:
-            items.append(TextItem(_number(high), 2.0, top + _MARGIN + 4.0, SMALL, "muted"))
-            if low != high:
-                items.append(TextItem(_number(low), 2.0, top + PLOT - 2.0, SMALL, "muted"))
         return Group("variable", Tone.ROS, tuple(items), hint=plot.name)
+
+
+def _plot_name(plot: Plot, top: float, width: float) -> Group:
+    """The name of a plot, and right of it the ends of its range at their heights, where no line crosses them."""
+    low, high = _range(plot)
+    numbers = [] if plot.is_flag else [(_number(high), top + _MARGIN)]
+    if low != high and not plot.is_flag:
+        numbers.append((_number(low), top + PLOT - _MARGIN))
+    free = width - 8.0 - max((text_width(number, SMALL) + 6.0 for number, _ in numbers), default=0.0)
+    name = _text(plot.name, 4.0, top + PLOT / 2, free, "muted")
+    ends = [_text(number, width - 4.0 - text_width(number, SMALL), y, width, "muted") for number, y in numbers]
+    return Group("name", Tone.PLAIN, (name, *ends), hint=plot.name)
+
+
+def _range(plot: Plot) -> tuple[float, float]:
+    """The lowest and the highest finite value of a plot; 0 and 1 for a flag."""
+    finite = [value for value in plot.values if math.isfinite(value)] or [0.0]
+    return (0.0, 1.0) if plot.is_flag else (min(finite), max(finite))
 
 
 def _beside(name: str, x: float, end: float, free_from: float, beside: float) -> tuple[float, str]:
