@@ -214,8 +214,8 @@ def _shown(debugger: Debugger, variable: WatchedVariable) -> str:
     name = variable.name.replace(SEPARATOR, ".")
     if variable.instance < 0:
         return name
-    automaton = debugger.session.automata[variable.instance]
-    return f"{name} on the blackboard" if automaton == BLACKBOARD else f"{who(automaton)}.{name}"
+    automaton = debugger.session.automata_of_model[variable.instance]
+    return f"{name} on the blackboard" if automaton.name == BLACKBOARD else f"{who(automaton)}.{name}"
 
 
 def _not_checked(requested: Iterable[tuple[int, Arguments]]) -> list[dict[str, Any]]:

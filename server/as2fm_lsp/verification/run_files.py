@@ -41,10 +41,10 @@ def csv_lines(session: Session, first: int = 0) -> Iterator[str]:
 
 def _columns(session: Session, state: SystemState) -> Iterator[tuple[str, int | float | str]]:
     for machine in state.machines:
-        yield f"{machine.name}.state", machine.state
+        yield f"{machine.identifier}.state", machine.state
         phrases = session.phrases(machine.automaton)
         for name, value in machine.variables.items():
-            yield from _cells(f"{machine.name}.{phrases.get(name, name)}", value)
+            yield from _cells(f"{machine.identifier}.{phrases.get(name, name)}", value)
     for node in state.nodes:
         yield f"bt_{node.number}", node.status.value
     for name, value in {**state.blackboard, **state.shared}.items():

@@ -66,7 +66,7 @@ def threads(session: Session, sources: Sources) -> tuple[DebugThread, ...]:
     number = FIRST_MACHINE_THREAD
     for instance, automaton in enumerate(session.automata_of_model):
         if session.is_machine(instance) and not _is_node(automaton.name, sources):
-            threads_.append(DebugThread(number, who(automaton.name), instance))
+            threads_.append(DebugThread(number, who(automaton), instance))
             number += 1
     return tuple(threads_)
 

@@ -212,7 +212,7 @@ class Values:
         if there is none. Variables of the frame take precedence over those of the system."""
         own = () if frame is None or frame.instance < 0 else self._own(frame.instance)
         owned = (
-            replace(entry, expression=f"{machine.name}.{entry.expression}")
+            replace(entry, expression=f"{machine.identifier}.{entry.expression}")
             for machine, entries in self.machines()
             for entry in entries
         )
@@ -228,7 +228,7 @@ class Values:
             known[entry.name] = entry.value
         for machine in self._state.machines:
             instance = self._instances[machine.automaton]
-            known[machine.name] = {**{e.expression: e.value for e in self._own(instance)}, "state": machine.state}
+            known[machine.identifier] = {**{e.expression: e.value for e in self._own(instance)}, "state": machine.state}
         known |= {entry.name: entry.value for entry in self._shared()}
         known |= {f"bt_{node.number}": node.status.value for node in self._state.nodes}
         known |= self._blackboard_values()

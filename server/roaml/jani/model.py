@@ -144,6 +144,17 @@ class Edge(CommentedNode, frozen=True):
 
 
 class Automaton(CommentedNode, frozen=True):
+    """An automaton.
+
+    Attributes:
+        thread_of: for an action thread of a translated system, the name of the automaton of its machine; "" for other
+            automata. JANI files do not contain it, and equality ignores it.
+        thread: the name of this thread for users within its machine, such as `goal thread 0`; otherwise like
+            `thread_of`.
+    """
+
+    UNCOMPARED = CommentedNode.UNCOMPARED | {"thread_of", "thread"}
+
     name: str
     locations: tuple[Location, ...]
     initial_locations: tuple[str, ...]
@@ -151,6 +162,8 @@ class Automaton(CommentedNode, frozen=True):
     variables: tuple[Variable, ...] = ()
     functions: tuple[Function, ...] = ()
     restrict_initial: Clause | None = None
+    thread_of: str = ""
+    thread: str = ""
 
 
 class Element(CommentedNode, frozen=True):

@@ -57,6 +57,20 @@ def copies(automaton: SystemAutomaton, machine: Machine) -> Iterator[tuple[str, 
             yield f"{sanitise(action)}_thread_{k}", thread.chart, k
 
 
+def thread_name(machine: Machine, chart: Chart, number: int) -> str:
+    """The name of an action thread for users within its machine, such as `goal thread 0`; with the name of its action
+    server if the machine has threads of several servers.
+
+    Args:
+        chart: the chart of the thread.
+        number: the number of the copy of the chart.
+    """
+    name = f"goal thread {number}"
+    handles = {thread.server.value: thread.chart for thread in machine.threads if thread.server}
+    server = next((handle for handle, of_server in handles.items() if of_server is chart), "")
+    return f"{name} of {server}" if len(handles) > 1 and server else name
+
+
 def lower_machine(
     automaton: SystemAutomaton, machine: Machine, program: TranslatableSystem, timers: TimerEvents
 ) -> Iterator[PlainAutomaton]:
@@ -83,8 +97,12 @@ class _ChartLowering:
         states[0] = replace(states[0], transitions=(*states[0].transitions, *self.discarded(states[0])))
         origin = context.origin(chart.element.name_span)
         data = (*self.data(), *self.goals.data(origin), *self.statements.drawn)
-        thread_of = "" if context.thread is None else context.automaton.name
-        return PlainAutomaton(context.name, Role.MACHINE, chart.initial.value, data, tuple(states), origin, thread_of)
+        thread_of, thread = "", ""
+        if context.thread is not None:
+            thread_of, thread = context.automaton.name, thread_name(context.machine, chart, context.thread)
+        return PlainAutomaton(
+            context.name, Role.MACHINE, chart.initial.value, data, tuple(states), origin, thread_of, thread
+        )
 
     def discarded(self, state: State) -> Iterator[Transition]:
         """Transitions that are never taken. They make the machine a receiver of the cancel requests that only its

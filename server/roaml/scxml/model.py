@@ -106,6 +106,7 @@ class Automaton(Record, frozen=True):
 
     Attributes:
         thread_of: for an action thread, the name of the automaton of its machine; "" for other automata.
+        thread: for an action thread, its name for users within its machine; "" for other automata.
     """
 
     name: str
@@ -115,6 +116,7 @@ class Automaton(Record, frozen=True):
     states: tuple[State, ...]
     origin: Location
     thread_of: str = ""
+    thread: str = ""
 
 
 class Network(Record, frozen=True):

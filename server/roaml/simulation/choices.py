@@ -156,7 +156,7 @@ def _moves(run: Run, decision: Decision, parts: Sequence[_Part]) -> Iterator[str
     """The automata that go on to another location."""
     for part, way in zip(parts, decision.ways, strict=True):
         if run.legend.ways[part.first_way + way][1].location != part.edge.source:
-            yield f"{who(part.automaton.name)} goes on"
+            yield f"{who(part.automaton)} goes on"
 
 
 def _effects(
@@ -215,7 +215,7 @@ def _consequences(
         after: the values of the variables that the destination computes, with the lengths of arrays.
     """
     rest, states = resting(automaton), states_of(automaton)
-    name = who(automaton.name)
+    name = who(automaton)
     visited: set[str] = set()
     while True:
         for variable, value in _assigned(destination, after).items():
@@ -291,22 +291,22 @@ def _time_text(time_s: float | None) -> str:
 
 
 def _text(action: str, actors: Sequence[_Part], parts: Sequence[_Part], events: EventReader, legend: Legend) -> str:
-    names = [who(part.automaton.name) for part in actors]
-    clients = [instance.automaton.name for instance in legend.layout.instances]
+    names = [who(part.automaton) for part in actors]
+    automata = [instance.automaton for instance in legend.layout.instances]
+    clients = [automaton.name for automaton in automata]
     event = sent_by(action)
     spoken = event or received_by(action)
-    description = tree_text(_listed(names), spoken, bool(event), events.parameters(spoken), clients) if names else ""
+    description = tree_text(_listed(names), spoken, bool(event), events.parameters(spoken), automata) if names else ""
     if description:
         return description
     if event:
         return f"{_listed(names)} {_verb(names, 'sends', 'send')} {event_phrase(event, clients)}"
     event = received_by(action)
     if event and is_timer(event):
-        automata = [part.automaton.name for part in actors]
-        takers = [automaton for automaton in automata if automaton_role(automaton) is not Role.CLOCK]
+        takers = [part.automaton for part in actors if automaton_role(part.automaton.name) is not Role.CLOCK]
         if not takers:
             return "a timer ticks"
-        if all(automaton_role(taker) is Role.TREE_ROOT for taker in takers):
+        if all(automaton_role(taker.name) is Role.TREE_ROOT for taker in takers):
             return "the tree begins its next tick"
         names = [who(taker) for taker in takers]
         return f"{_listed(names)} {_verb(names, 'takes', 'take')} {event_phrase(event, clients, taken=True)}"
@@ -316,7 +316,7 @@ def _text(action: str, actors: Sequence[_Part], parts: Sequence[_Part], events: 
             return f"no automaton receives {event_phrase(event, clients)}{parameters}"
         return f"{_listed(names)} {_verb(names, 'receives', 'receive')} {event_phrase(event, clients)}{parameters}"
     if not names:
-        names = [who(part.automaton.name) for part in parts]
+        names = [who(part.automaton) for part in parts]
     if all(_is_start(part) for part in actors or parts):
         return f"{_listed(names)} {_verb(names, 'starts', 'start')}"
     if all(part.automaton.name == CLOCK for part in actors or parts):

@@ -59,6 +59,7 @@ class Follower:
         self._automata = automata
         self._names = [automaton.name for automaton in automata]
         self._holders = {automaton.name: number for number, automaton in enumerate(automata)}
+        self._who = {automaton.name: who(automaton) for automaton in automata}
         self._is_machine = [self._executes_machine(automaton) for automaton in automata]
         self._states = [states_of(automaton) for automaton in automata]
         self._sent: dict[str, tuple[int, str, dict[str, Plain]]] = {}
@@ -180,8 +181,9 @@ class Follower:
             is_resting = location in resting[number]
             handled = "" if is_resting else self._handles.get(number, "")
             yield MachineState(
-                who(automaton.name),
+                self._who[automaton.name],
                 automaton.name,
+                automaton.name if automaton.thread_of else self._who[automaton.name],
                 self.state_of(number, location),
                 own.get(number, {}),
                 self.events.name(handled) if handled else "",
@@ -204,7 +206,7 @@ class Follower:
                 event,
                 self.events.name(event),
                 event_phrase(event, self._names),
-                who(sender) if sender else "",
+                self._who[sender] if sender else "",
                 parameters,
                 step,
                 holder is not None and locations[holder] == RECEIVED,

@@ -27,6 +27,8 @@ class MachineState(Record, frozen=True):
 
     Attributes:
         name: the name of the machine for users; `automaton` is the name of its automaton.
+        identifier: the name of the machine in expressions and in the headers of tables; of an action thread, the name
+            of its automaton.
         state: its current state; while it handles an event, the state in which it received the event.
         variables: its own variables.
         handles: the name of the event that it handles; "" while it waits for one.
@@ -37,6 +39,7 @@ class MachineState(Record, frozen=True):
 
     name: str
     automaton: str
+    identifier: str
     state: str
     variables: Mapping[str, Plain]
     handles: str

@@ -22,9 +22,9 @@ from roaml.smc.record import Plain
 from roaml.views.actors import actor, name_of
 
 
-def who(automaton: str) -> str:
+def who(automaton: Automaton) -> str:
     """The name of an automaton in texts for users."""
-    role = automaton_role(automaton)
+    role = automaton_role(automaton.name)
     match role:
         case Role.CLOCK:
             return "clock"
@@ -53,7 +53,9 @@ def resting(automaton: Automaton) -> frozenset[str]:
     )
 
 
-def tree_text(actor: str, event: str, is_sent: bool, parameters: Mapping[str, Plain], automata: Iterable[str]) -> str:
+def tree_text(
+    actor: str, event: str, is_sent: bool, parameters: Mapping[str, Plain], automata: Iterable[Automaton]
+) -> str:
     """A description of how a node sends or receives an event of the tree; "" for other events.
 
     Args:
@@ -64,7 +66,7 @@ def tree_text(actor: str, event: str, is_sent: bool, parameters: Mapping[str, Pl
     if tree is None:
         return ""
     prefix = f"{NODE_PREFIX}{tree.number}_"
-    child = next((who(name) for name in automata if name.startswith(prefix)), f"bt_{tree.number}")
+    child = next((who(automaton) for automaton in automata if automaton.name.startswith(prefix)), f"bt_{tree.number}")
     match tree.kind:
         case TreeEventKind.TICK:
             return f"{actor} ticks {child}" if is_sent else f"{actor} is ticked"

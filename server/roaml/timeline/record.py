@@ -120,19 +120,20 @@ class Timeline:
 
     def _begin_lanes(self, session: Session) -> None:
         """The lanes before the first step: first the machines, then the nodes of the tree by their numbers."""
+        automata = session.automata_of_model
         machines = [instance for instance in range(len(self._automata)) if session.is_machine(instance)]
         nodes = {i: match for i, name in enumerate(self._automata) if (match := NODE_AUTOMATON.fullmatch(name))}
         self._machines = frozenset(machines) - nodes.keys()
         for instance in machines:
             if instance in self._machines:
-                self._add(instance, Lane(who(self._automata[instance]), LaneKind.MACHINE))
+                self._add(instance, Lane(who(automata[instance]), LaneKind.MACHINE))
                 self.lanes[-1].enter(0, session.state_of(instance, session.first_locations[instance]))
         for instance, match in sorted(nodes.items(), key=lambda node: int(node[1][1])):
             self._nodes[int(match[1])] = len(self.lanes)
-            self._add(instance, Lane(who(self._automata[instance]), LaneKind.NODE))
+            self._add(instance, Lane(who(automata[instance]), LaneKind.NODE))
             self.lanes[-1].enter(0, IDLE)
         self._plotted = {
-            instance: "" if name == BLACKBOARD else f"{who(name)}."
+            instance: "" if name == BLACKBOARD else f"{who(automata[instance])}."
             for instance, name in enumerate(self._automata)
             if name == BLACKBOARD or instance in machines
         }

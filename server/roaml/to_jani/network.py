@@ -80,6 +80,8 @@ def _automaton(behavior: AutomatonMoves, table: Mapping[str, EventUsage], networ
         (flow.initial,),
         flow.edges,
         variables,
+        thread_of=automaton.thread_of,
+        thread=automaton.thread,
         origin=automaton.origin,
     )
 

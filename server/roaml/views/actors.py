@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from roaml.exhaustive import assert_never
-from roaml.jani.model import Model
+from roaml.jani.model import Automaton, Model
 from roaml.scxml.events import Role
 from roaml.scxml.names import (
     ACTION_HANDLER_PREFIX,
@@ -37,18 +37,31 @@ _TREE_EVENTS = {
 }
 
 
-def name_of(automaton: str) -> str:
-    """The name of an automaton for users; for a node of the tree, its name and number, such as `Wait (bt_1003)`."""
+def name_of(automaton: Automaton) -> str:
+    """The name of an automaton for users; for a node of the tree, its name and number, such as `Wait (bt_1003)`; for an
+    action thread, the name of its machine and its number, such as `server, goal thread 0`."""
+    if automaton.thread_of:
+        return f"{_machine_name(automaton.thread_of)}, {automaton.thread}"
+    return _machine_name(automaton.name)
+
+
+def names_of(automata: Iterable[Automaton]) -> dict[str, str]:
+    """The name of an automaton -> its name for users (`name_of`)."""
+    return {automaton.name: name_of(automaton) for automaton in automata}
+
+
+def _machine_name(automaton: str) -> str:
     if conditions := _CONDITIONS.fullmatch(automaton):
         return f"the conditions of {conditions[2]} (bt_{conditions[1]})"
     node = NODE_AUTOMATON.fullmatch(automaton)
     return f"{node[2]} (bt_{node[1]})" if node else automaton
 
 
-def actor(automaton: str) -> str:
+def actor(automaton: Automaton) -> str:
     """A phrase for an automaton that does not buffer an event, without backquotes around the name of a machine or
     node."""
-    role = automaton_role(automaton)
+    name = automaton.name
+    role = automaton_role(name)
     match role:
         case Role.MACHINE:
             return name_of(automaton)
@@ -59,9 +72,9 @@ def actor(automaton: str) -> str:
         case Role.BLACKBOARD:
             return "the blackboard"
         case Role.HANDLER:
-            is_service = automaton.startswith(SERVICE_HANDLER_PREFIX)
+            is_service = name.startswith(SERVICE_HANDLER_PREFIX)
             what, prefix = ("service", SERVICE_HANDLER_PREFIX) if is_service else ("action", ACTION_HANDLER_PREFIX)
-            return f"the {what} `/{automaton.removeprefix(prefix).replace('__', '/')}`"
+            return f"the {what} `/{name.removeprefix(prefix).replace('__', '/')}`"
         case _:
             return assert_never(role)
 
@@ -85,7 +98,7 @@ def _observers(model: Model) -> Iterator[tuple[str, str]]:
 
 
 def _parts(model: Model) -> Iterator[tuple[str, str]]:
-    names = [automaton.name for automaton in model.automata]
+    names = names_of(model.automata)
     for automaton in model.automata:
         name = automaton.name
         if is_observer(name):
@@ -93,19 +106,19 @@ def _parts(model: Model) -> Iterator[tuple[str, str]]:
         if is_event(automaton):
             yield name, event_subject(name, names)
         elif _CONDITIONS.fullmatch(name):
-            yield name, name_of(name)
+            yield name, names[name]
         elif automaton_role(name) is Role.MACHINE and not NODE_AUTOMATON.fullmatch(name):
-            yield name, f"`{name}`"
+            yield name, f"`{names[name]}`"
         else:
-            yield name, actor(name)
+            yield name, actor(automaton)
 
 
-def message_phrase(event: str, automata: Collection[str]) -> str:
+def message_phrase(event: str, automata: Mapping[str, str]) -> str:
     """A short phrase for an event that an automaton sends or receives, such as `/battery` for a message on this topic,
     `a request to /adder`, or the name of a plain event.
 
     Args:
-        automata: the names of all automata.
+        automata: the names of all automata, with their names for users.
     """
     if is_timer(event):
         return event_phrase(event, automata, taken=True)
@@ -114,24 +127,24 @@ def message_phrase(event: str, automata: Collection[str]) -> str:
     return interface_phrase(event, automata) or blackboard_phrase(event) or event
 
 
-def event_subject(event: str, automata: Collection[str]) -> str:
+def event_subject(event: str, automata: Mapping[str, str]) -> str:
     """A noun phrase for an event, such as ``a message on the topic `/battery` ``.
 
     Args:
-        automata: the names of all automata.
+        automata: the names of all automata, with their names for users.
     """
     tree = read_tree_event(event)
     if tree is not None:
         number = str(tree.number)
         nodes = (node for name in automata if (node := NODE_AUTOMATON.fullmatch(name)) and node[1] == number)
-        return f"{_TREE_EVENTS[tree.kind]} {next((name_of(node[0]) for node in nodes), f'bt_{number}')}"
+        return f"{_TREE_EVENTS[tree.kind]} {next((automata[node[0]] for node in nodes), f'bt_{number}')}"
     if not is_timer(event):
         client = client_of(event, automata)
-        return event_phrase(event, automata) + (f" at {name_of(client)}" if client else "")
+        return event_phrase(event, automata) + (f" at {automata[client]}" if client else "")
     timer = event.removeprefix(TIMER_PREFIX)
-    for user in automata:
+    for user, name in automata.items():
         if timer.endswith(f"__{safe_name(user)}"):
             if user.startswith(TREE_ROOT_PREFIX):
                 return "the next tick of the tree"
-            return f"the timer `{timer.removesuffix(f'__{safe_name(user)}')}` of {name_of(user)}"
+            return f"the timer `{timer.removesuffix(f'__{safe_name(user)}')}` of {name}"
     return f"the timer `{timer}`"

@@ -4,7 +4,7 @@ property."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from roaml.scxml.names import (
     CLOCK_ACTION,
@@ -41,11 +41,11 @@ def observed_property(observer: str, property_: str) -> str:
     return property_ if prefix.rstrip("_") == safe_name(property_).rstrip("_") else prefix
 
 
-def observation(action: str | None, automata: Collection[str]) -> str:
+def observation(action: str | None, automata: Mapping[str, str]) -> str:
     """What an observer observes in a step with an action of the model.
 
     Args:
-        automata: the names of all automata.
+        automata: the names of all automata, with their names for users.
     """
     if action == CLOCK_ACTION:
         return "observes a step of the clock"

@@ -33,7 +33,7 @@ from roaml.scxml.names import (
 )
 from roaml.smc.record import AutomatonStep, Plain, TraceStep, VariableChange
 from roaml.smc.story import Story
-from roaml.views.actors import actor, message_phrase
+from roaml.views.actors import actor, message_phrase, names_of
 from roaml.views.arrays import ArrayReader
 from roaml.views.events import EventReader
 from roaml.views.library_nodes import is_library_node
@@ -66,6 +66,7 @@ class Turn(Record):
         states: location of the automaton -> the state to which it belongs.
         is_library_node: whether the automaton is a node of the tree whose behaviour is that of a library or of a mock,
             so that its states are not those of a machine of the user.
+        actor: the phrase `roaml.views.actors.actor` for the automaton.
     """
 
     instance: int
@@ -84,6 +85,7 @@ class Turn(Record):
     phrases: Mapping[str, str] = field(default_factory=dict)
     states: Mapping[str, str] = field(default_factory=dict)
     is_library_node: bool = False
+    actor: str = ""
 
     @property
     def automaton(self) -> str:
@@ -115,7 +117,7 @@ class Turn(Record):
     @property
     def who(self) -> str:
         """The name of the automaton for users. An observer has the name of its property."""
-        return self.observed or actor(self.automaton)
+        return self.observed or self.actor
 
     @property
     def effects(self) -> tuple[str, ...]:
@@ -231,7 +233,7 @@ class _Reader:
     def __init__(self, story: Story) -> None:
         self._story = story
         self._relevant = frozenset(story.relevant)
-        self._automata = frozenset(automaton.name for automaton in story.automata)
+        self._automata = names_of(story.automata)
         observers = filter(is_observer, self._automata)
         self._observer_prefixes = tuple(f"{prefix_of_observer(name)}__" for name in observers)
         self._events = EventReader(story.automata, story.start)
@@ -258,6 +260,7 @@ class _Reader:
                 together = step.action if len(actors) > 1 and heard is None else None
                 turn = Turn(part.instance, step.number, self._story.clock[index], heard, together)
                 turn.phrases, turn.states = self._phrases(part.instance), self._states(part.instance)
+                turn.actor = actor(self._story.automata[part.instance])
                 turn.is_library_node = part.instance in self._library_nodes
                 if is_observer(part.automaton):
                     turn.observed = observed_property(part.automaton, self._story.property)

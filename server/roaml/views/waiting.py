@@ -271,7 +271,7 @@ class _Chain:
         return not is_inner(automaton)
 
     def who(self, number: int) -> str:
-        return actor(self.automata[number].name)
+        return actor(self.automata[number])
 
     def role(self, number: int) -> Role:
         return automaton_role(self.automata[number].name)
