@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 import signal
 import threading
 from collections.abc import Callable, Iterator
@@ -55,6 +56,8 @@ class Terminal:
     def __init__(self, session: Session, target: VerificationTarget) -> None:
         self._session = session
         self._target = target
+        self._arrays: ArrayReader | None = None
+        self._read_steps = 0
 
     def run(self, lines: TextIO) -> None:
         """Execute commands until the input ends or contains `q`."""
@@ -157,18 +160,27 @@ class Terminal:
     # ------------------------------------------------------------ output
 
     def _show_steps(self, before: int) -> None:
+        """Show what the steps after step `before` have changed."""
         session = self._session
+        if session.position < self._read_steps:
+            self._arrays = None  # the next steps may differ from those that were read
         if session.position <= before:
             return
-        arrays = ArrayReader(session.automata_of_model, session.start)
-        for step in session.steps[: session.position]:
+        if self._arrays is None:
+            self._arrays, self._read_steps = ArrayReader(session.automata_of_model, session.start), 0
+        first_shown = max(before, session.position - MAX_STEPS_SHOWN) + 1
+        for step in itertools.islice(session.steps, self._read_steps, session.position):
+            read = self._arrays.read(step)
+            if step.number < first_shown:
+                continue
             changes = ", ".join(
                 f"{self._name(change.variable)}: {shown_value(change.before)} → {shown_value(change.after)}"
-                for change in arrays.read(step)
+                for change in read
                 if change.variable.instance >= 0 and session.is_machine(change.variable.instance)
             )
-            if changes and step.number > max(before, session.position - MAX_STEPS_SHOWN):
+            if changes:
                 print_text(f"  {step.number:>6}  {changes}\n")
+        self._read_steps = session.position
 
     def _name(self, variable: RecordedVariable) -> str:
         """The name of a variable of a machine."""
