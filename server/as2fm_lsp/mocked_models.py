@@ -169,7 +169,8 @@ def mocked_system_texts(
     leaves = len(mocked.planned)
     parts = [f"{leaves} {'type' if leaves == 1 else 'types'} of leaves"]
     if mocked.events:
-        parts.append(f"{mocked.events} {'node' if mocked.events == 1 else 'nodes'} that depend on random events")
+        nodes = "1 node that depends" if mocked.events == 1 else f"{mocked.events} nodes that depend"
+        parts.append(f"{nodes} on random events")
     messages.write(f"with mocks for {' and '.join(parts)}")
     return mocked.texts
 

@@ -60,7 +60,7 @@ def test_a_small_model_is_answered_exactly(command: Command, tmp_path: Path) -> 
         "  ends of 200 random traces: goal decided 200",
         "  expected ≤ 0.1: met",
     ]
-    assert lines[4].startswith("exact values: computed from all reachable states, over all schedulers and for uniform ")
+    assert lines[4].startswith("exact values, computed from all reachable states: minimum and maximum over all ")
     assert len(lines) == 5
     row = rows(command("verify", name, "--format", "json").out)["p"]
     assert [row[key] for key in ("probability", "lower", "upper", "method", "interval")] == [0, 0, 0, "exact", "exact"]

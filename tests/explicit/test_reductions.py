@@ -218,7 +218,9 @@ def test_the_uniform_value_follows_from_an_equal_minimum_and_maximum() -> None:
     assert (exact.least, exact.greatest, exact.average) == (0.5, 0.5, 0.5)
     text = exact_report.lines("p", exact, 0.0)
     assert text[0] == f"p: = 0.5 for all schedulers, exact, {exact.states} states after reductions, 0.0 s"
-    assert "  traces: it fails after 64 steps, it holds after 1 step" in text or text[1].startswith("  traces: ")
+    assert "  example traces: it fails after 64 steps, it holds after 1 step" in text or text[1].startswith(
+        "  example traces: "
+    )
 
 
 def test_the_uniform_value_is_computed_from_all_states_if_possible() -> None:
@@ -347,8 +349,10 @@ def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     assert "p: minimum 0, maximum 1, exact, " in text
     assert "\np failed in a trace after 64 steps" in text
     assert (
-        "\ncomputed for all reachable states, over all schedulers; choices that change no result were left out\n"
-        in text
-    )
+        "\ncomputed from all reachable states: minimum and maximum over all schedulers; "
+        "reductions left out choices that do not change these values\n"
+    ) in text
     assert run([*arguments, "--no-reductions"]) == 1
-    assert "stopped at 30,000 states" in capsys.readouterr().out
+    text = capsys.readouterr().out
+    assert "stopped at 30,000 states" in text
+    assert text.endswith("\nno value was computed\n")

@@ -141,8 +141,9 @@ def test_equal_extremes_are_the_value_for_all_schedulers(capsys: pytest.CaptureF
     assert lines[2].startswith("  ends of 200 random traces: ")
     assert lines[3] == "  expected = 0.5: met"
     assert lines[4:] == [
-        "exact values: computed for all reachable states, over all schedulers and for uniform choices "
-        "(--method adaptive: estimates from traces); choices that change no result were left out"
+        "exact values, computed from all reachable states: minimum and maximum over all schedulers, value under "
+        "uniform choices; reductions left out choices that do not change these values; use --method adaptive for "
+        "estimates from traces"
     ]
     row = row_of(capsys, file)
     assert (row["method"], row["probability"], row["traces"]) == ("exact", 0.5, 200)
@@ -163,7 +164,7 @@ def test_traces_estimate_the_uniform_value_between_different_extremes(
     assert "] from 1" in lines[1]
     assert lines[3].startswith("  ends: goal decided ")
     assert lines[4] == "  expected ≥ 0.2: NOT MET by the least value, which is 0"
-    assert "over all schedulers (--method adaptive: estimates from traces); choices that change no result" in out
+    assert "states: minimum and maximum over all schedulers; reductions left out choices" in out
     assert "\nestimates: 0.95 confidence, seed 0; " in out
     assert "p failed in a trace after " in out
     assert "may differ" not in out

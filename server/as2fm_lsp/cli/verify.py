@@ -375,7 +375,7 @@ class _Verification:
     def _assumptions(self) -> str:
         """The assumptions of all results: one line, or two lines if some values are exact and others are estimates."""
         if self.options.exhaustive:
-            return self._exploration("computed", ("over all schedulers", "for uniform choices"))
+            return self._exploration("computed", uniform_only=False)
         if self.options.scheduler is Scheduler.LSS:
             how = f"with each scheduler found; others may be more extreme; seed {self.limits.seed}"
             return f"{self.limits.confidence:g} confidence {how}"
@@ -385,28 +385,30 @@ class _Verification:
         how = f"{self.limits.confidence:g} confidence, seed {self.limits.seed}; {drawn}"
         if all(result.exact is None for result in self.results):
             return how
-        asked = (
-            ("for uniform choices",) if self.verifier.only_uniform else ("over all schedulers", "for uniform choices")
-        )
-        computed = self._exploration("exact values: computed", asked, " (--method adaptive: estimates from traces)")
+        computed = self._exploration("exact values, computed", uniform_only=self.verifier.only_uniform)
+        computed += "; use --method adaptive for estimates from traces"
         has_estimate = self.stuck_result is not None and self.stuck_result.answer is not None
         has_estimate = has_estimate or any(
             r.answer is not None and (r.exact is None or r.has_uniform_estimate) for r in self.results
         )
         return f"{computed}\nestimates: {how}" if has_estimate else computed
 
-    def _exploration(self, verb: str, asked: Sequence[str], remedy: str = "") -> str:
-        """How the exact values were computed.
+    def _exploration(self, verb: str, *, uniform_only: bool) -> str:
+        """Which exact values were computed, and from what.
 
         Args:
-            asked: the choices for which values were computed; the last ones are the uniform ones.
+            uniform_only: whether only the values under uniform choices are of interest.
         """
         exact = [result.exact for result in self.results if result.exact is not None]
-        is_reduced = any(values.is_reduced for values in exact)
-        if any(values.uniform is None for values in exact):
-            asked = asked[:-1]
-        end = "; choices that change no result were left out" if is_reduced else ""
-        return f"{verb} {'for' if is_reduced else 'from'} all reachable states, {' and '.join(asked)}{remedy}{end}"
+        if not exact:
+            return "no value was computed"
+        values = [] if uniform_only else ["minimum and maximum over all schedulers"]
+        if all(computed.uniform is not None for computed in exact):
+            values.append("value under uniform choices")
+        end = ""
+        if any(computed.is_reduced for computed in exact):
+            end = "; reductions left out choices that do not change these values"
+        return f"{verb} from all reachable states: {', '.join(values)}{end}"
 
     def _place(self, origin: Location) -> str:
         path, line, _ = self.target.place(origin) or ("", 0, 0)

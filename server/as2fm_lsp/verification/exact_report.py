@@ -64,7 +64,7 @@ def lines(
         if trace is not None
     ]
     if shortest:
-        shown.append(f"  {'traces' if exact.is_reduced else 'shortest traces'}: it {', it '.join(shortest)}")
+        shown.append(f"  {'example traces' if exact.is_reduced else 'shortest traces'}: it {', it '.join(shortest)}")
     return shown
 
 
