@@ -136,7 +136,7 @@ def load_mocked_tree(
     from roaml.project.mock_files import mocks_path  # noqa: PLC0415
 
     if not declared.has_mocks and Path(beside := mocks_path(path)).is_file():
-        messages.write(f"with the mocks of {messages.shown(beside)}")
+        messages.write(f"uses the mocks of {messages.shown(beside)}")
         declared = replace(declared, file=beside)
     mocks = declared.mocks()
     rate, limit = declared.rate or DEFAULT_RATE, max_time or DEFAULT_MAX_TIME
@@ -171,7 +171,7 @@ def mocked_system_texts(
     if mocked.events:
         nodes = "1 node that depends" if mocked.events == 1 else f"{mocked.events} nodes that depend"
         parts.append(f"{nodes} on random events")
-    messages.write(f"with mocks for {' and '.join(parts)}")
+    messages.write(f"uses mocks for {' and '.join(parts)}")
     return mocked.texts
 
 

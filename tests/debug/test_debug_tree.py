@@ -62,7 +62,7 @@ def _outputs(client: Client) -> str:
 
 def test_a_tree_runs_with_the_mocks_beside_it(client: Client) -> None:
     assert client.begin(FETCH)["reason"] == "entry"
-    assert "with the mocks of" in _outputs(client)
+    assert "uses the mocks of" in _outputs(client)
     assert "fetch.mocks" in _outputs(client)
     assert client.ask("threads")["threads"] == [{"id": 1, "name": "tree"}]
     follow = _line(FETCH, "<FollowPath")
@@ -162,7 +162,7 @@ def test_mocks_replace_missing_plugins_of_a_system(client: Client, tmp_path: Pat
     listed = re.sub(r'\s*<input[^>]*src="plugins/holds_block.ascxml"[^>]*/>', "", main.read_text(encoding="utf-8"))
     main.write_text(listed, encoding="utf-8")
     client.begin(main, mocks=["HoldsBlock: 1"])
-    assert "with mocks for 1 type of leaves" in _outputs(client)
+    assert "uses mocks for 1 type of leaves" in _outputs(client)
     client.ask("setFunctionBreakpoints", breakpoints=[{"name": "HoldsBlock"}])
     assert client.move()["text"] == "HoldsBlock"
 
