@@ -15,7 +15,12 @@ from dap_client import Client
 
 from as2fm_lsp.cli.main import run
 from roaml import api
+from roaml.api.trees import load_tree
 from roaml.ide.diagrams import DiagramKind, picture_of
+from roaml.mocks.mock import Mock
+from roaml.mocks.network import MockOptions
+from roaml.smc.run import Options
+from roaml.verification.tree_outcome import measure
 
 ROOT = Path(__file__).resolve().parents[2]
 FETCH = ROOT / "examples" / "fetch_tree" / "fetch.xml"
@@ -183,3 +188,36 @@ def test_the_schema_of_launch_lists_what_the_adapter_reads(client: Client, tree:
     assert {name for row in rows for name in re.findall(r"`(\w+)`", row)} == set(schema)
     texts = json.loads((ROOT / "vscode-extension" / "package.nls.json").read_text(encoding="utf-8"))
     assert all(attribute["description"].strip("%") in texts for attribute in schema.values())
+
+
+@pytest.mark.parametrize(
+    "main", ["<Sequence><SubTree ID='Fetch' /><Leaf name='last' /></Sequence>", "<SubTree ID='Fetch' />"]
+)
+def test_nodes_have_the_numbers_of_the_picture(tmp_path: Path, main: str) -> None:
+    """Pictures do not number `<SubTree>`, also if it is the root of the tree or of a subtree."""
+    path = tmp_path / "tree.xml"
+    path.write_text(
+        f"""<root BTCPP_format="4" main_tree_to_execute="Main">
+    <BehaviorTree ID="Main">{main}</BehaviorTree>
+    <BehaviorTree ID="Fetch"><Sequence><SubTree ID="Pick" name="first" /><SubTree ID="Pick" /></Sequence></BehaviorTree>
+    <BehaviorTree ID="Pick"><SubTree ID="Grasp" /></BehaviorTree>
+    <BehaviorTree ID="Grasp"><Inverter><Leaf name="grasp" /></Inverter></BehaviorTree>
+</root>""",
+        encoding="utf-8",
+    )
+    picture = picture_of(DiagramKind.TREE, api.check([str(path)]).snapshot.analysis, str(path))
+    assert picture is not None
+    titles = [node.title for node in picture.nodes if node.title is not None]
+    drawn = {title.number: title.name for title in titles if title.number is not None}
+    subtrees = [title.name for title in titles if title.number is None and title.plugin != "Main"]
+    tree = load_tree(str(path), MockOptions((Mock("*", 0.5),), counts=True))
+    session = api.session(tree.target, "succeeds")
+    session.until_decided()
+    statuses = {node.number: node.type for node in session.state().nodes}
+    assert list(drawn) == list(range(1000, 1000 + len(drawn)))
+    assert drawn.items() <= statuses.items()
+    assert sorted(statuses[number] for number in statuses.keys() - drawn.keys()) == sorted(subtrees)
+    assert session.is_decided
+    outcome = measure(tree.mocked, tree.target, Options(max_traces=1000))
+    assert outcome.unfinished == 0
+    assert outcome.success.value == pytest.approx(0.25 / (1 + main.count("Leaf")), abs=0.06)

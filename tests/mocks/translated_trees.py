@@ -71,7 +71,7 @@ def observe(tree: MockedTree, seed: int) -> Observed:
     """One run of the translated tree."""
     model = translate(tree.network)
     assert list(check_model(model)) == []
-    model = replace(model, properties=tree_properties(model))
+    model = replace(model, properties=tree_properties(tree.tree.root))
     never = model.properties[:1]
     checker = ModelChecker(model, never)
     recorder = Recorder(checker, checker.compiled_properties[0], seed, 20_000)
@@ -90,7 +90,7 @@ def observe(tree: MockedTree, seed: int) -> Observed:
         if match is None:
             continue
         number, what = int(match[1]), match[2]
-        if number == 1000 and what == "tick":
+        if number == tree.tree.root and what == "tick":
             pending = True
         answer = ""
         if what == "response":
@@ -113,7 +113,7 @@ def observe(tree: MockedTree, seed: int) -> Observed:
                 drawn.discard(number)
                 if answer != "SKIPPED":
                     state[number] = answer
-        if number == 1000 and what == "response":
+        if number == tree.tree.root and what == "response":
             seen.answers.append(answer)
             pending = False
     seen.is_stuck = pending

@@ -16,6 +16,7 @@ from roaml.jani.model import Model
 from roaml.jani.typecheck import check_model
 from roaml.mocks.mock import Mock
 from roaml.mocks.plugin import mock_plugin
+from roaml.model.expand import ROOT_NUMBER
 from roaml.record import replace
 from roaml.scxml.names import sent_by
 from roaml.smc.model import ModelChecker
@@ -80,7 +81,7 @@ def leaves_of(drawn: Drawn) -> dict[int, tuple[str, str]]:
 
 def observe_system(drawn: Drawn, model: Model, seed: int) -> Observed:
     """One run of the translated system."""
-    model = replace(model, properties=tree_properties(model))
+    model = replace(model, properties=tree_properties(ROOT_NUMBER))
     checker = ModelChecker(model, model.properties[:1])
     recorder = Recorder(checker, checker.compiled_properties[0], seed, 40_000)
     status = {storage.name: storage for storage in recorder.shared if storage.name.endswith("_response__status")}

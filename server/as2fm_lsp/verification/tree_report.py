@@ -10,7 +10,6 @@ from typing import Any
 
 from roaml.lower.programs.nodes import EVENT_PROBABILITY
 from roaml.mocks.network import MockedTree
-from roaml.model.expand import ROOT_NUMBER
 from roaml.scxml.names import TreeEventKind, sent_by, tree_event_name
 from roaml.smc.program import TRUE
 from roaml.smc.statistics import Bounds
@@ -106,7 +105,7 @@ def story_as_text(mocked: MockedTree, story: Story, place_of: PlaceOf) -> str:
     ticks = [
         step.number
         for step in story.steps
-        if sent_by(step.action or "") == tree_event_name(ROOT_NUMBER, TreeEventKind.TICK)
+        if sent_by(step.action or "") == tree_event_name(mocked.tree.root, TreeEventKind.TICK)
     ]
     rows = []
     for turn in leaf_turns:

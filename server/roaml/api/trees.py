@@ -71,6 +71,6 @@ def load_tree(
         reason = Diagnostic(origin.path, UNTRANSLATABLE, Severity.ERROR, origin.span, refusal.reason)
         raise ModelError(replace(result, diagnostics=(reason,))) from None
     model = translate(tree.network)
-    model = replace(model, properties=tree_properties(model))
+    model = replace(model, properties=tree_properties(tree.tree.root))
     files = tuple(file for file, _ in forest.files)
     return LoadedTree(tree, target_of(model, full, files, analysis.source))

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 from roaml.jani.node import Origin
-from roaml.model.expand import ROOT_NUMBER, Instance, PortConstant, node_at
+from roaml.model.expand import Instance, PortConstant, node_at
 from roaml.project.analysis import Analysis
 from roaml.record import Record
 from roaml.text import Location
@@ -81,14 +81,14 @@ def _of_instance(analysis: Analysis, instance: Instance) -> SourceNode:
 def nodes_of_tree(tree: ExecutedTree) -> Iterator[SourceNode]:
     """The nodes of a tree without a system, in pre-order.
 
-    The picture of a tree numbers its nodes without the subtrees, and the subtrees separately, from 1.
+    The picture of a tree numbers the subtrees separately, from 1.
     """
     parents = {child: node.number for node in tree.nodes for child in node.children}
     subtrees = 0
-    for index, node in enumerate(tree.nodes):
+    for node in tree.nodes:
         is_subtree = node.type == _SUBTREE
         subtrees += is_subtree
-        picture = f"subtree {subtrees}" if is_subtree else str(ROOT_NUMBER + index - subtrees)
+        picture = f"subtree {subtrees}" if is_subtree else str(node.number)
         yield _of_executed(node, parents.get(node.number), picture)
 
 

@@ -32,7 +32,6 @@ from roaml.lower.programs.values import ticks_of
 from roaml.lower.timers import Timer, clock
 from roaml.mocks.mock import Mock, mock_for
 from roaml.mocks.unfolding import unfold
-from roaml.model.expand import ROOT_NUMBER
 from roaml.model.timing import period
 from roaml.record import Record, field
 from roaml.scxml.events import EventRole, Role, ScxmlEvent
@@ -145,7 +144,7 @@ class _Builder:
             automata[node.number], children[node.number] = built.automaton, built.child
         origin = self.tree.nodes[0].origin
         tick = ScxmlEvent(f"{TIMER_PREFIX}{self.tree.name}_tick", EventRole.TIMER_TICK)
-        root = _root(self.tree, tick, children[ROOT_NUMBER].answers, origin, self.options.counts)
+        root = _root(self.tree, tick, children[self.tree.root].answers, origin, self.options.counts)
         timer = Timer(root.name, f"{self.tree.name}_tick", tick, period(self.options.rate), origin)
         members = [root, *(automata[node.number] for node in self.tree.nodes)]
         blackboard = board_automaton(board, origin, is_read=bool(board.read or board.flag_of))
@@ -236,7 +235,7 @@ class _Builder:
 def _root(tree: ExecutedTree, tick: ScxmlEvent, answers: frozenset[int], origin: Location, counts: bool) -> Automaton:
     """The automaton that ticks the tree until the tree returns a status other than RUNNING; with `counts`, it also
     counts the ticks."""
-    response = tree_event(ROOT_NUMBER, TreeEventKind.RESPONSE)
+    response = tree_event(tree.root, TreeEventKind.RESPONSE)
 
     def to(state: str, *body: Statement) -> tuple[Target, ...]:
         return (Target(state, 1.0, body, origin),)
@@ -252,7 +251,7 @@ def _root(tree: ExecutedTree, tick: ScxmlEvent, answers: frozenset[int], origin:
     ]
     data = (Data(TICKS, BASE_TYPES["int64"], integer(0), origin),) if counts else ()
     counted = [Assign(name(TICKS), binary(name(TICKS), Operator.ADD, integer(1)), origin)] if counts else []
-    call = Send(tree_event(ROOT_NUMBER, TreeEventKind.TICK), (), origin)
+    call = Send(tree_event(tree.root, TreeEventKind.TICK), (), origin)
     idle = Transition(tick, None, to("wait_tick_res", *counted, call), origin)
     states = (
         State("idle", (), (), (idle,), origin),

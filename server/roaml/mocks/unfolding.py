@@ -13,11 +13,14 @@ from roaml.lower.programs.executed import ExecutedNode, ExecutedTree, identifier
 from roaml.lower.programs.refusal import TreeRefusal
 from roaml.model.expand import MAX_NODES, ROOT_NUMBER
 from roaml.model.tree import Tree, TreeNode
-from roaml.record import Record, field
+from roaml.record import Record, field, replace
 from roaml.text import Location
 
 MAX_DEPTH = 200
 """The maximum nesting depth of nodes and subtrees."""
+
+
+SUBTREE = "SubTree"
 
 
 class TreeFrame(Record, frozen=True, eq=False):
@@ -57,8 +60,22 @@ def unfold(forest: Forest) -> ExecutedTree:
     unfolder = _Unfolder(forest)
     assert tree.id is not None
     unfolder.tree(forest.path, tree, TreeFrame("", {}, False, None, frozenset((tree.id.value,))), 0)
-    nodes = tuple(unfolder.nodes[n] for n in sorted(unfolder.nodes))
-    return ExecutedTree(tree.id.value, nodes, unfolder.initial, forest.settings.version)
+    return ExecutedTree(tree.id.value, _numbered(unfolder.nodes), unfolder.initial, forest.settings.version)
+
+
+def _numbered(places: Mapping[int, ExecutedNode]) -> tuple[ExecutedNode, ...]:
+    """The nodes in pre-order. They have the numbers of a system's tree and of pictures, which do not number
+    `<SubTree>`; these have the numbers after the last node.
+
+    Args:
+        places: place in pre-order -> the node. The number and the children of a node are places.
+    """
+    order = sorted(places, key=lambda place: (places[place].type == SUBTREE, place))
+    numbers = {place: number for number, place in enumerate(order, ROOT_NUMBER)}
+    return tuple(
+        replace(node, number=numbers[place], children=tuple(numbers[child] for child in node.children))
+        for place, node in sorted(places.items())
+    )
 
 
 def _main_tree(forest: Forest) -> Tree:
@@ -101,7 +118,7 @@ class _Unfolder(Record):
             raise TreeRefusal(
                 origin, f"the tree is too large: at most {MAX_NODES} nodes and {MAX_DEPTH} levels of nesting"
             )
-        number = ROOT_NUMBER + self.count
+        place = self.count
         self.count += 1
         type_ = node.plugin.value if node.plugin else ""
         name = node.name.value if node.name else type_
@@ -110,12 +127,12 @@ class _Unfolder(Record):
                 raise TreeRefusal(origin, f"there is no tree `{type_}`")
             inner_path, inner = self.forest.trees[type_]
             child = self.tree(inner_path, inner, self.enter(node, name, type_, frame, origin), depth + 1)
-            self.nodes[number] = ExecutedNode(number, "SubTree", name, node, None, frame, (child,), origin)
-            return number
+            self.nodes[place] = ExecutedNode(place, SUBTREE, name, node, None, frame, (child,), origin)
+            return place
         known = self.forest.known_node(node)
         children = tuple(self.node(path, below, frame, depth + 1) for below in node.children)
-        self.nodes[number] = ExecutedNode(number, type_, name, node, known, frame, children, origin)
-        return number
+        self.nodes[place] = ExecutedNode(place, type_, name, node, known, frame, children, origin)
+        return place
 
     def enter(self, node: TreeNode, name: str, type_: str, frame: TreeFrame, origin: Location) -> TreeFrame:
         if type_ in frame.trees:

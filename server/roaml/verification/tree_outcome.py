@@ -8,7 +8,6 @@ import math
 from collections.abc import Sequence
 
 from roaml.jani.expressions import Binary, Expression, Integer, Name
-from roaml.jani.model import Model
 from roaml.jani.operators import BinaryOperator
 from roaml.jani.properties import (
     Filter,
@@ -24,7 +23,7 @@ from roaml.jani.properties import (
 from roaml.lower.programs.executed import ExecutedNode
 from roaml.mocks.network import TICKS, MockedLeaf, MockedTree
 from roaml.record import Record
-from roaml.scxml.names import TREE_ROOT_PREFIX
+from roaml.scxml.names import TREE_ROOT_PREFIX, TreeEventKind, tree_event_name
 from roaml.smc.kernel import Kernel
 from roaml.smc.model import ModelChecker
 from roaml.smc.names import Storage
@@ -33,8 +32,6 @@ from roaml.smc.run import Options
 from roaml.smc.statistics import Bounds, Mean, clopper_pearson, incomplete_beta
 from roaml.verification.target import VerificationTarget
 
-STATUS = "bt_1000_response__status"
-"""The variable with the status that the tree returned last."""
 SUCCEEDS, FAILS = "succeeds", "fails"
 """The names of the properties of a tree without a system."""
 TRACES = 1000
@@ -44,17 +41,24 @@ COUNTERS = ("recoveries", "failed_attempts")
 _SUCCESS, _FAILURE, _RUNNING, _SKIPPED, _HELD = 1, 2, 3, 4, 5
 
 
-def tree_properties(model: Model) -> tuple[Property, ...]:
-    """The properties of a translated tree: it succeeds, and it fails."""
-    return (_eventually(SUCCEEDS, _answers(_SUCCESS)), _eventually(FAILS, _any(_FAILURE, _SKIPPED, _HELD)))
+def tree_properties(root: int) -> tuple[Property, ...]:
+    """The properties of a translated tree: it succeeds, and it fails.
+
+    Args:
+        root: the number of the root of the tree.
+    """
+    failed = _any(root, _FAILURE, _SKIPPED, _HELD)
+    return (_eventually(SUCCEEDS, _any(root, _SUCCESS)), _eventually(FAILS, failed))
 
 
-def _answers(code: int) -> Expression:
-    return Binary(BinaryOperator.EQUAL, Name(STATUS), Integer(code))
+def _status(root: int) -> str:
+    """The variable with the status that the tree returned last."""
+    return f"{tree_event_name(root, TreeEventKind.RESPONSE)}__status"
 
 
-def _any(*codes: int) -> Expression:
-    first, *others = map(_answers, codes)
+def _any(root: int, *codes: int) -> Expression:
+    """The condition that the tree has returned one of the statuses `codes`."""
+    first, *others = (Binary(BinaryOperator.EQUAL, Name(_status(root)), Integer(code)) for code in codes)
     for other in others:
         first = Binary(BinaryOperator.OR, first, other)
     return first
@@ -140,13 +144,13 @@ def measure(mocked: MockedTree, target: VerificationTarget, options: Options) ->
 class _Measuring:
     def __init__(self, mocked: MockedTree, target: VerificationTarget, options: Options) -> None:
         self.mocked, self.target, self.options = mocked, target, options
-        ends = _eventually("ends", _any(_SUCCESS, _FAILURE, _SKIPPED, _HELD))
+        ends = _eventually("ends", _any(mocked.tree.root, _SUCCESS, _FAILURE, _SKIPPED, _HELD))
         checker = ModelChecker(target.model, (ends,))
         compiled = checker.compiled(checker.compiled_properties[0])
         self.kernel = Kernel(compiled.program, compiled.goal)
         layout = checker.legend.layout
         shared = {storage.name: storage for storage in layout.shared}
-        self.status = shared[STATUS]
+        self.status = shared[_status(mocked.tree.root)]
         self.clock = tuple(shared[name] for name in target.clock or ())
         root = f"{TREE_ROOT_PREFIX}{mocked.tree.name}"
         self.ticks = next(s for i in layout.instances if i.automaton.name == root for s in i.own if s.name == TICKS)

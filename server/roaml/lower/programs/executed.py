@@ -30,7 +30,8 @@ class ExecutedNode(Record, frozen=True, eq=False):
     """A node of the executed tree.
 
     Attributes:
-        number: 1000 for the root, then increasing in pre-order.
+        number: that of the translation. Other nodes than `<SubTree>` are numbered in pre-order from 1000 on, as in
+            pictures and in trees of systems.
         type: the name of its type; `SubTree` for a subtree.
         name: its name; if it has none, the name of its type or of the subtree.
         known: the declaration of its type; `None` if there is none.
@@ -77,6 +78,11 @@ class ExecutedTree(Record, frozen=True, eq=False):
     nodes: tuple[ExecutedNode, ...]
     initial: Mapping[str, str]
     version: Version = NEWEST_VERSION
+
+    @property
+    def root(self) -> int:
+        """The number of the root, which may be a `<SubTree>`."""
+        return self.nodes[0].number
 
 
 def identifier(name: str) -> str:
