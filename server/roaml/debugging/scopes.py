@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
+from typing import cast
 
 from roaml.debugging.breakpoints import WatchedVariable
 from roaml.debugging.evaluate import Scope
@@ -26,6 +27,7 @@ from roaml.scxml.names import (
 from roaml.simulation.session import Session
 from roaml.simulation.state import MachineState, SystemState
 from roaml.smc.record import Plain, TraceStep, TraceVerdict
+from roaml.views.arrays import declared
 from roaml.views.observed import observer_phrase
 
 
@@ -242,8 +244,7 @@ class Values:
             own_value = own(name)
             if own_value is not None or name not in shared:
                 return own_value
-            plain = shared[name]
-            return plain if not isinstance(plain, list) else untyped_values({name: plain}).get(name)
+            return cast("Value", declared(name, shared[name], shared))
 
         return value
 

@@ -10,9 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TypeAlias, cast
 
-from roaml.expr.types import Array, ScalarKind, Struct, Type, is_kind
+from roaml.expr.types import Array, Struct, Type
 from roaml.smc.record import Plain
-from roaml.views.arrays import cut, element_at, length_of, without_lengths
+from roaml.views.arrays import declared, element_at, length_of, without_lengths
+from roaml.views.values import shown_value
 
 Value: TypeAlias = "bool | int | float | str | list[Value] | dict[str, Value]"
 
@@ -61,13 +62,7 @@ def _built(name: str, type_: Type | None, stored: Mapping[str, Plain], index: tu
             return [element for element in elements if element is not None]
     if name not in stored:
         return None
-    value = element_at(stored[name], index)
-    if not isinstance(value, list):
-        return value
-    if type_ is not None and is_kind(type_, ScalarKind.STRING):
-        length = length_of(name, stored, index)
-        return _text(value[:length])
-    return cast(Value, cut(name, value, stored, index))
+    return cast(Value, declared(name, element_at(stored[name], index), stored, index))
 
 
 def _first_leaf(name: str, type_: Type) -> str:
@@ -86,15 +81,6 @@ def bytes_of(text: str) -> bytes:
     return text.encode("utf-8", "surrogatepass")
 
 
-def _text(elements: list[Plain]) -> str:
-    """The string with these bytes; other numbers and bytes that are not UTF-8 become replacement characters."""
-    numbers = (number for number in elements if isinstance(number, int) and number != 0)
-    return bytes(number if 0 < number <= MAX_BYTE else MAX_BYTE for number in numbers).decode("utf-8", "replace")
-
-
-MAX_BYTE = 0xFF
-
-
 MAX_SHOWN = 120
 """The maximum number of characters of a displayed struct or array."""
 
@@ -102,14 +88,8 @@ MAX_SHOWN = 120
 def shown(value: Value) -> str:
     """A value in the notation of expressions; a long struct or array is abbreviated."""
     match value:
-        case bool():
-            return "true" if value else "false"
-        case str():
-            return f"'{value}'"
-        case float():
-            return f"{value:g}"
-        case int():
-            return str(value)
+        case bool() | int() | float() | str():
+            return shown_value(value)
         case list():
             return _joined("[", (shown(element) for element in value[:MAX_SHOWN]), "]")
         case dict():

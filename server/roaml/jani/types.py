@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from roaml.exhaustive import assert_never
 from roaml.jani.expressions import Expression
-from roaml.record import Record
+from roaml.record import PartlyCompared, Record
 
 
 class BasicType(enum.Enum):
@@ -27,8 +27,14 @@ class BoundedType(Record, frozen=True):
     upper: Expression | None = None
 
 
-class ArrayType(Record, frozen=True):
+class ArrayType(PartlyCompared, frozen=True):
+    """An array. `is_text` marks the bytes of a string in UTF-8: JANI has no strings, so equality ignores the mark, and
+    a JANI file does not contain it."""
+
+    UNCOMPARED = frozenset({"is_text"})
+
     element: Type
+    is_text: bool = False
 
 
 class DatatypeType(Record, frozen=True):
@@ -91,6 +97,16 @@ def join(left: Type, right: Type) -> Type | None:
     if fits(left, right):
         return right
     return left if fits(right, left) else None
+
+
+def element_of(type_: Type) -> Type:
+    """The type of the elements of an array; `UNKNOWN` for another type."""
+    return type_.element if isinstance(type_, ArrayType) else UNKNOWN
+
+
+def is_text(type_: Type) -> bool:
+    """Whether the values of a type are marked as strings."""
+    return isinstance(type_, ArrayType) and type_.is_text
 
 
 def is_number(type_: Type) -> bool:

@@ -33,7 +33,7 @@ from roaml.simulation.words import resting, returned_status, tree_text, who
 from roaml.smc.compile import Legend
 from roaml.smc.fault import FaultError
 from roaml.smc.record import Plain, RecordedVariable
-from roaml.views.arrays import cut
+from roaml.views.arrays import DeclaredValue, declared
 from roaml.views.event_words import event_phrase
 from roaml.views.events import EventReader
 from roaml.views.library_nodes import is_library_node
@@ -262,16 +262,16 @@ def _statuses(automaton: Automaton, location: str, rest: Collection[str]) -> set
     return statuses
 
 
-def _assigned(destination: Destination, after: Mapping[str, Plain]) -> dict[str, Plain]:
-    """The variables that a destination sets, with their values as far as they are known. Arrays are cut to their
-    lengths, and an assignment to a length sets its array."""
-    values: dict[str, Plain] = {}
+def _assigned(destination: Destination, after: Mapping[str, Plain]) -> dict[str, DeclaredValue]:
+    """The variables that a destination sets, with their values as far as they are known. An assignment to a length
+    sets its array."""
+    values: dict[str, DeclaredValue] = {}
     for assignment in destination.assignments:
         array = array_of(assignment.variable)
         name = array or assignment.variable
         value = after.get(name, None if array else _constant(assignment))
         if value is not None:
-            values[name] = cut(name, value, after)
+            values[name] = declared(name, value, after)
     return values
 
 
@@ -329,7 +329,7 @@ def _is_start(part: _Part) -> bool:
     return part.edge.source in part.automaton.initial_locations and part.edge.action == part.edge.source
 
 
-def _parameters(values: Mapping[str, Plain]) -> str:
+def _parameters(values: Mapping[str, DeclaredValue]) -> str:
     return f" ({shown_parameters(values)})" if values else ""
 
 

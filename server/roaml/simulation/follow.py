@@ -33,6 +33,7 @@ from roaml.simulation.state import (
 )
 from roaml.simulation.words import who
 from roaml.smc.record import Plain, RecordedVariable, TraceStep
+from roaml.views.arrays import DeclaredValue
 from roaml.views.event_words import event_phrase, interface_name
 from roaml.views.events import EventReader
 from roaml.views.locations import states_of
@@ -62,7 +63,7 @@ class Follower:
         self._who = {automaton.name: who(automaton) for automaton in automata}
         self._is_machine = [self._executes_machine(automaton) for automaton in automata]
         self._states = [states_of(automaton) for automaton in automata]
-        self._sent: dict[str, tuple[int, str, dict[str, Plain]]] = {}
+        self._sent: dict[str, tuple[int, str, dict[str, DeclaredValue]]] = {}
         self._status: dict[int, NodeStatus] = {}
         self._origin: dict[int, Origin | None] = {}
         self._handles: dict[int, str] = {}

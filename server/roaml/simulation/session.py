@@ -23,6 +23,7 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.program import UNKNOWN
 from roaml.smc.record import VERDICTS, AutomatonStep, Plain, RecordedVariable, Recording, TraceStep, TraceVerdict
 from roaml.smc.story import Story, clock_times
+from roaml.views.arrays import DeclaredValue
 from roaml.views.variables import variable_phrases
 
 FORMAT_VERSION = 1
@@ -226,7 +227,7 @@ class Session:
         """The name of the current location of each instance."""
         return self._run.locations()
 
-    def parameters(self, event: str) -> dict[str, Plain]:
+    def parameters(self, event: str) -> dict[str, DeclaredValue]:
         """The parameters with which an event was last sent."""
         return self._follower.events.parameters(event)
 

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from roaml.jani.node import Origin
 from roaml.record import Record
 from roaml.smc.record import Plain
+from roaml.views.arrays import DeclaredValue
 
 
 class NodeStatus(enum.Enum):
@@ -71,7 +72,7 @@ class EventState(Record, frozen=True):
     name: str
     text: str
     sender: str
-    parameters: Mapping[str, Plain]
+    parameters: Mapping[str, DeclaredValue]
     step: int
     is_waiting: bool
 

@@ -18,8 +18,8 @@ from roaml.scxml.names import (
     read_tree_event,
     received_by,
 )
-from roaml.smc.record import Plain
 from roaml.views.actors import actor, name_of
+from roaml.views.arrays import DeclaredValue
 
 
 def who(automaton: Automaton) -> str:
@@ -54,7 +54,7 @@ def resting(automaton: Automaton) -> frozenset[str]:
 
 
 def tree_text(
-    actor: str, event: str, is_sent: bool, parameters: Mapping[str, Plain], automata: Iterable[Automaton]
+    actor: str, event: str, is_sent: bool, parameters: Mapping[str, DeclaredValue], automata: Iterable[Automaton]
 ) -> str:
     """A description of how a node sends or receives an event of the tree; "" for other events.
 

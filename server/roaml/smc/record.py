@@ -9,6 +9,7 @@ from typing import NamedTuple, TypeAlias
 
 from roaml.exhaustive import Vocabulary
 from roaml.jani.model import Destination, Edge, System
+from roaml.jani.types import Type, element_of, is_text
 from roaml.record import Record
 from roaml.smc.batch import TraceProblem
 from roaml.smc.compile import Legend
@@ -23,6 +24,12 @@ from roaml.smc.rounds import Rounds, limits
 from roaml.smc.standstill import Standstill
 
 Plain: TypeAlias = "bool | int | float | list[Plain]"
+"""A value as the model stores it: an array with unused elements, a string as `StoredText`."""
+
+
+class StoredText(list[Plain]):
+    """The stored bytes of a string: an array whose type is marked as text (`roaml.jani.types.ArrayType`)."""
+
 
 SHORTEST = -1
 """The number of the shortest possible trace, which is not generated at random."""
@@ -254,13 +261,17 @@ class Recorder:
 
 
 def _value(storage: Storage, cells: Sequence[int] | Sequence[float]) -> Plain:
-    return _part_of(cells, storage.base, storage.shape, storage.kind)
+    return _part_of(cells, storage.base, storage.shape, storage.kind, storage.type)
 
 
-def _part_of(cells: Sequence[int] | Sequence[float], base: int, shape: tuple[int, ...], kind: str) -> Plain:
+def _part_of(
+    cells: Sequence[int] | Sequence[float], base: int, shape: tuple[int, ...], kind: str, type_: Type
+) -> Plain:
     if not shape:
         return bool(cells[base]) if kind == BOOL else cells[base]
     size = 1
     for length in shape[1:]:
         size *= length
-    return [_part_of(cells, base + i * size, shape[1:], kind) for i in range(shape[0])]
+    element = element_of(type_)
+    parts = [_part_of(cells, base + i * size, shape[1:], kind, element) for i in range(shape[0])]
+    return StoredText(parts) if is_text(type_) else parts

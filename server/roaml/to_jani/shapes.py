@@ -24,10 +24,11 @@ _ITERATOR = "__array_iterator_dim_"
 
 class ArrayShape(Record, frozen=True):
     """The shape of a variable. `capacities` contains the maximum number of elements in each dimension, the outermost
-    first; it is empty for a scalar."""
+    first; it is empty for a scalar. `is_text` states whether the innermost dimension contains the bytes of strings."""
 
     base: BasicType
     capacities: tuple[int, ...] = ()
+    is_text: bool = False
 
     @property
     def dimensions(self) -> int:
@@ -36,7 +37,7 @@ class ArrayShape(Record, frozen=True):
     @property
     def element(self) -> ArrayShape:
         """The shape of an element of the outermost dimension."""
-        return ArrayShape(self.base, self.capacities[1:])
+        return ArrayShape(self.base, self.capacities[1:], self.is_text and self.dimensions > 1)
 
     def lengths(self, array: str) -> Iterator[tuple[str, ArrayShape]]:
         """The names and shapes of the companion variables of `array`, an array of this shape."""
@@ -51,16 +52,17 @@ def shape_of(type_: Type, max_array_size: int, sent: bool = False) -> ArrayShape
     """The shape of a variable of type `type_`. If it is a parameter of an event (`sent`), it has the capacity
     `max_array_size` in every dimension (docs/spec/jani.md#global-variables)."""
     element, bounds = unwrap(type_)
-    if isinstance(element, EmptyArray) or is_kind(element, ScalarKind.STRING):
+    is_text = is_kind(element, ScalarKind.STRING)
+    if is_text or isinstance(element, EmptyArray):
         bounds = (*bounds, None)
     capacities = tuple(max_array_size if sent or bound is None else bound for bound in bounds)
-    return ArrayShape(_KINDS[element.kind] if isinstance(element, Scalar) else INT, capacities)
+    return ArrayShape(_KINDS[element.kind] if isinstance(element, Scalar) else INT, capacities, is_text)
 
 
 def jani_type(shape: ArrayShape) -> JaniType:
     type_: JaniType = shape.base
-    for _ in shape.capacities:
-        type_ = ArrayType(type_)
+    for dimension in range(shape.dimensions):
+        type_ = ArrayType(type_, is_text=shape.is_text and dimension == 0)
     return type_
 
 

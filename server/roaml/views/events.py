@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from roaml.jani.model import Automaton
 from roaml.scxml.names import FIELD_PREFIX, client_of, flagged_by, is_length, received_by, sent_by, without_client
 from roaml.smc.record import AutomatonStep, Plain, TraceStep
-from roaml.views.arrays import cut
+from roaml.views.arrays import DeclaredValue, declared
 
 
 class EventReader:
@@ -59,11 +59,10 @@ class EventReader:
         is valid."""
         return variable in self._of_events
 
-    def parameters(self, event: str) -> dict[str, Plain]:
-        """The parameters with which an event was last sent, by their names in the interface. Arrays are cut to their
-        lengths."""
+    def parameters(self, event: str) -> dict[str, DeclaredValue]:
+        """The parameters with which an event was last sent, by their names in the interface."""
         return {
-            variable.removeprefix(f"{event}__").removeprefix(FIELD_PREFIX): cut(
+            variable.removeprefix(f"{event}__").removeprefix(FIELD_PREFIX): declared(
                 variable, self._values[variable], self._values
             )
             for variable in self._parameters.get(event, ())

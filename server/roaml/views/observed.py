@@ -19,8 +19,8 @@ from roaml.scxml.names import (
     safe_name,
     sent_by,
 )
-from roaml.smc.record import VariableChange
 from roaml.views.actors import event_subject
+from roaml.views.arrays import DeclaredChange
 
 _BECOMES_TRUE = {
     VIOLATED: "the property is violated",
@@ -55,7 +55,7 @@ def observation(action: str | None, automata: Mapping[str, str]) -> str:
     return f"observes {event_subject(event, automata)}" if event else "observes a step"
 
 
-def effects(changes: Sequence[VariableChange]) -> Iterator[str]:
+def effects(changes: Sequence[DeclaredChange]) -> Iterator[str]:
     """What the changes of the variables of an observer mean for its property."""
     values = {_ending(change): change.after for change in changes}
     yield from (text for ending, text in _BECOMES_TRUE.items() if values.get(ending) is True)
@@ -63,7 +63,7 @@ def effects(changes: Sequence[VariableChange]) -> Iterator[str]:
         yield "the required event has occurred"
 
 
-def _ending(change: VariableChange) -> str:
+def _ending(change: DeclaredChange) -> str:
     return change.variable.name.rpartition("__")[2]
 
 

@@ -13,8 +13,9 @@ from roaml.jani.model import Clause
 from roaml.jani.node import Origin
 from roaml.scxml.names import CLOCK, TREE_ROOT_PREFIX
 from roaml.smc.end import End
-from roaml.smc.record import SELECTED, SHORTEST, VERDICTS, Plain, TraceVerdict, VariableChange
+from roaml.smc.record import SELECTED, SHORTEST, VERDICTS, TraceVerdict
 from roaml.smc.story import Story
+from roaml.views.arrays import DeclaredChange, DeclaredValue
 from roaml.views.observed import reads_observer
 from roaml.views.turns import Message, Turn, turns
 from roaml.views.values import shown_parameters, shown_value
@@ -290,13 +291,13 @@ def _message(message: Message) -> str:
     return f"{message.name} ({_short(values)})" if values else message.name
 
 
-def _change(change: VariableChange, turn: Turn) -> str:
+def _change(change: DeclaredChange, turn: Turn) -> str:
     name = change.variable.name
     phrase = turn.phrases.get(name, name) if change.variable.instance == turn.instance else name
     return f"{phrase}: {_shown(change.before, change.after)}"
 
 
-def _shown(before: Plain, after: Plain) -> str:
+def _shown(before: DeclaredValue, after: DeclaredValue) -> str:
     return f"{_short(shown_value(before))} → {_short(shown_value(after))}"
 
 

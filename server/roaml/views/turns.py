@@ -31,10 +31,10 @@ from roaml.scxml.names import (
     received_by,
     sent_by,
 )
-from roaml.smc.record import AutomatonStep, Plain, TraceStep, VariableChange
+from roaml.smc.record import AutomatonStep, TraceStep
 from roaml.smc.story import Story
 from roaml.views.actors import actor, message_phrase, names_of
-from roaml.views.arrays import ArrayReader
+from roaml.views.arrays import ArrayReader, DeclaredChange, DeclaredValue
 from roaml.views.events import EventReader
 from roaml.views.library_nodes import is_library_node
 from roaml.views.locations import states_of
@@ -75,7 +75,7 @@ class Turn(Record):
     heard: Message | None
     action: str | None
     parts: list[AutomatonStep] = field(default_factory=list)
-    changes: list[VariableChange] = field(default_factory=list)
+    changes: list[DeclaredChange] = field(default_factory=list)
     messages: list[Message] = field(default_factory=list)
     matters: bool = False
     last: int = 0
@@ -187,7 +187,7 @@ class Message(Record, frozen=True):
 
     event: str
     name: str
-    values: Mapping[str, Plain]
+    values: Mapping[str, DeclaredValue]
     sender: Turn | None = None
 
 
@@ -303,8 +303,8 @@ class _Reader:
         return self._names[event]
 
     def _changes(
-        self, changes: Sequence[VariableChange], part: AutomatonStep, *, is_last: bool
-    ) -> Iterator[VariableChange]:
+        self, changes: Sequence[DeclaredChange], part: AutomatonStep, *, is_last: bool
+    ) -> Iterator[DeclaredChange]:
         """The changes of the variables of an automaton, and of variables of the model that do not belong to an event.
         A change of a variable of the model is included once: at the observer to which the variable belongs, or at the
         last automaton that takes part and is not an observer."""
