@@ -12,7 +12,7 @@ from array import array
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from roaml.explicit.uses import Uses, bits
+from roaml.explicit.uses import VariableUses, bits
 from roaml.record import Record
 from roaml.smc.compile import Legend
 from roaml.smc.goal import DEADLOCK, NO_DEADLOCK, STUCK
@@ -96,7 +96,7 @@ class _Analysis:
         self.program = program
         self.goal = goal
         self.legend = legend
-        self.uses = Uses(legend)
+        self.uses = VariableUses(legend)
         reads, writes = [0] * len(legend.slots), [0] * len(legend.slots)
         self.groups: list[_Group] = []
         for location in range(len(legend.locations)):

@@ -12,7 +12,7 @@ from itertools import accumulate, groupby
 from operator import attrgetter
 from typing import NamedTuple
 
-from roaml.explicit.uses import Uses, bits
+from roaml.explicit.uses import VariableUses, bits
 from roaml.jani.expressions import ArrayAccess, Name
 from roaml.jani.model import Destination
 from roaml.record import Record
@@ -91,7 +91,7 @@ class _Part(NamedTuple):
 class _Analysis:
     def __init__(self, legend: Legend, observed: frozenset[str], transient: Iterable[Storage]) -> None:
         self.legend = legend
-        self.uses = Uses(legend)
+        self.uses = VariableUses(legend)
         self.instances = legend.layout.instances
         self.locations: list[list[int]] = [[] for _ in self.instances]
         for location, (number, _) in enumerate(legend.locations):

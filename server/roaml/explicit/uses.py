@@ -56,7 +56,7 @@ def bits(mask: int) -> Iterator[int]:
         mask ^= bit
 
 
-class Uses:
+class VariableUses:
     """The variables of a model that its parts use. A part belongs to an instance, which is given by its number."""
 
     def __init__(self, legend: Legend) -> None:
