@@ -116,6 +116,17 @@ export function debugging(stage: Stage): void {
         await stop(window);
     });
 
+    stage.test("the whole system of a tree without a system is its tree", loneTree, async (window) => {
+        await start(window, "fetch.xml");
+        await window.run("AS2FM: Show Whole System");
+        const tree = await window.picture('.node[data-label="FollowPath"]');
+        await tree.locator('.node[data-label="FollowPath"][data-look="idle"]').waitFor();
+        await window.screenshot("whole-tree");
+        assert.equal(await window.page.locator(".editor-group-container").count(), 2);
+        assert.equal(await window.page.locator(".tab").count(), 2);
+        await stop(window);
+    });
+
     stage.test("the timeline shows the run, and a click moves the debugger", fromStart, async (window) => {
         const { page } = window;
         await start(window, "main_with_bug.xml");

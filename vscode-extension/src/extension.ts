@@ -60,7 +60,7 @@ export function activate(context: vscode.ExtensionContext): void {
         new ChoicesView(sessions, log),
         new TimelineView(context, sessions),
         new PictureActions(server, pictures),
-        new PictureActivity(sessions, pictures),
+        new PictureActivity(sessions, pictures, server),
         ...debugging.register(),
         watchErrors(),
     );

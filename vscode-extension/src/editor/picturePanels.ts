@@ -253,10 +253,12 @@ class PicturePanel implements vscode.Disposable {
     }
 
     private draw(): void {
-        if (this.picture)
-            this.post({ type: "show", picture: this.picture, here: this.here, highlighted: this.highlightedNode });
-        if (this.picture) this.postLit();
-        else this.post({ type: "none", reason: nothingOf(this.kind) });
+        if (!this.picture) {
+            this.post({ type: "none", reason: nothingOf(this.kind) });
+            return;
+        }
+        this.post({ type: "show", picture: this.picture, here: this.here, highlighted: this.highlightedNode });
+        this.postLit();
     }
 
     private post(message: ToView): void {
@@ -269,7 +271,8 @@ class PicturePanel implements vscode.Disposable {
                 this.ready = true;
                 this.hasLoaded();
                 this.post({ type: "words", words: words() });
-                if (this.picture) this.draw();
+                // The server may have answered before, also that there is no picture.
+                if (this.shownUri !== "") this.draw();
                 break;
             case "collapse":
                 if (!this.collapsed.delete(message.node)) this.collapsed.add(message.node);
