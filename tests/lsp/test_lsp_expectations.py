@@ -178,6 +178,18 @@ async def test_an_expectation_is_set_in_the_configuration(tmp_path: Path) -> Non
         assert problem == 'cannot change as2fm.toml; add `ticks = "< 0.5"` to `verify.expect`'
 
 
+async def test_a_hint_begins_with_the_value_and_its_system_if_there_are_several(tmp_path: Path) -> None:
+    """Editors cut long hints."""
+    clock.write(tmp_path)
+    main, other, file = (tmp_path / name for name in ("main.xml", "other.xml", "properties.jani"))
+    other.write_text(main.read_text(encoding="utf-8"), encoding="utf-8")
+    async with connect(tmp_path, options=COMMANDS) as client:
+        client.open(file, language="jani")
+        await verify(client, main, ["ticks"], {"silent": True})
+        ((hint, _),) = await hints(client, file)
+        assert hint == "= 1, exact in main.xml, no expectation set"
+
+
 async def test_exact_values_are_shown_and_judged_again(tmp_path: Path) -> None:
     """The system is small, so its value is exact. The traces remain as examples."""
     clock.write(tmp_path)

@@ -208,7 +208,8 @@ def hints(context: Context, on: RequestedDocument, within: types.Range) -> Itera
             is_uniform = any(verdict.is_uniform for verdict in known.result.verdicts)
             mark = "✗" if missed(known.result) else "~" if is_uniform else "✓" if known.result.verdicts else "="
             mark = "⚠" if known.result.stuck else mark
-            text = f"{mark} {_words(current, known)}{where}"
+            # Editors cut long hints. The value and its system come first.
+            text = f"{mark} {_words(current, known, where)}"
             position = on.convert.position(on.source, min(property_.name_span.end + 1, len(on.source.text)))
             place_of = partial(place_in_words, known.result.traces.target if known.result.traces else None)
             tooltip = one_as_text(known.result, place_of)
@@ -220,10 +221,10 @@ def _shows_hints(context: Context) -> bool:
     return bool(document and document.inlay_hint) and display_settings(context.session.client_settings).results
 
 
-def _words(current: CurrentResults, known: KnownResult) -> str:
+def _words(current: CurrentResults, known: KnownResult, where: str = "") -> str:
     result = known.result
     wrong = missed(result)
-    parts = [short(result), *([f"not {wrong}"] if wrong else [])]
+    parts = [short(result) + where, *([f"not {wrong}"] if wrong else [])]
     parts += dict.fromkeys(verdict.text for verdict in result.verdicts if verdict.is_uniform)
     parts += dict.fromkeys(verdict.unanimous_text for verdict in result.verdicts if verdict.unanimous_text)
     parts += [NO_EXPECTATION] if result.has_no_expectation else []
