@@ -116,12 +116,22 @@ def test_breakpoints_in_a_subtree_and_statuses_in_the_picture(client: Client) ->
     assert "Script" in {labels[name] for name, node in active.items() if node["look"] == "success"}
 
 
+@pytest.mark.parametrize(("chance", "name", "filter_"), [(1, "", "end"), (0, "", "violated"), (0, "fails", "end")])
+def test_a_run_stops_as_violated_only_if_its_own_property_is(
+    client: Client, chance: int, name: str, filter_: str
+) -> None:
+    client.begin(FETCH, mocks=[f"*: {chance} in 200 ms"], property=name)
+    client.ask("setExceptionBreakpoints", filters=["violated", "end"])
+    client.move()
+    assert client.ask("exceptionInfo", threadId=1)["exceptionId"] == filter_
+
+
 def test_the_attributes_of_launch_declare_the_mocks(client: Client, tree: Path) -> None:
     (tree.parent / "slow.mocks").write_text("Drive: 1 in 2 s  # slow\n", encoding="utf-8")
     attributes = {"mocks": ["grasp*: 1", "Unused: 0"], "mocksFile": "slow.mocks", "entries": {"load": 5}}
     client.launch(tree, tickRate=2.5, maxTime="10 s", **attributes)
     assert "the mock `Unused` matches no node of the tree" in _outputs(client)
-    client.ask("setExceptionBreakpoints", filters=["satisfied", "end"])
+    client.ask("setExceptionBreakpoints", filters=["satisfied", "violated", "end"])
     client.ask("configurationDone")
     client.event("stopped")
     assert client.move()["text"] == "satisfied: succeeds"
@@ -137,8 +147,8 @@ def test_the_attributes_of_launch_declare_the_mocks(client: Client, tree: Path) 
     assert "slow.mocks has changed since it was read" in _outputs(client)
     client.ask("restart")
     client.event("stopped")
-    assert client.move()["text"] == "satisfied: fails"
-    assert client.ask("choices")["verdicts"]["fails"] == "passed"
+    assert client.move()["text"] == "violated: succeeds"
+    assert client.ask("choices")["verdicts"] == {"succeeds": "failed"}
 
 
 def test_wrong_declarations_are_refused(client: Client, tree: Path) -> None:

@@ -33,6 +33,8 @@ from roaml.simulation import RunError, SavedSession
 from roaml.smc.fault import FaultError
 from roaml.smc.record import TraceVerdict
 from roaml.text import SourceFile
+from roaml.verification.target import VerificationTarget
+from roaml.verification.tree_outcome import SUCCEEDS
 
 MAX_SAVED = 1 << 26
 """The maximum size of a saved session in bytes."""
@@ -166,10 +168,18 @@ def _sources(launch: Launch, log: Log) -> Sources:
     messages = MockMessages(lambda text: log(text, None), str, '`"mocks": ["*: 0.9 in 1 s"]`')
     if names_tree(path):
         tree = load_mocked_tree(path, mocks, launch.max_time, settings, messages, counts=False)
-        return Sources(tree.target, tree=tree.mocked.tree)
+        return Sources(_with_one_property(tree.target, launch.start), tree=tree.mocked.tree)
     texts = None if mocks.is_empty else mocked_system_texts(path, mocks, launch.ros_paths, settings, messages)
     system = api.load(path, launch.ros_paths, settings, texts, Overrides(launch.max_time, None))
     return Sources(api.as_target(system), system.analysis)
+
+
+def _with_one_property(target: VerificationTarget, begin: Start) -> VerificationTarget:
+    """The model of a tree without a system, with only the property of the run: `succeeds` if none is named. The
+    properties of a tree exclude each other, so every run would stop where one of them is violated."""
+    name = (begin.saved.property if begin.saved else begin.property) or SUCCEEDS
+    properties = tuple(property_ for property_ in target.model.properties if property_.name == name)
+    return replace(target, model=replace(target.model, properties=properties)) if properties else target
 
 
 def _first(diagnostics: tuple[Diagnostic, ...], source_of: Callable[[str], SourceFile]) -> str:
