@@ -156,6 +156,7 @@ def test_a_skipped_node(command: Command, tmp_path: Path) -> None:
     assert any("  Skipped (bt_1003) " in line and ": SKIPPED " in line for line in command(*run).out.splitlines())
     table = tmp_path / "run.csv"
     assert command(*run, "--csv", str(table)).status == 0
+    assert command(*run, "--csv", "-").out == table.read_text(encoding="utf-8")
     rows = list(csv.DictReader(table.open(encoding="utf-8")))
     assert {row["bt_1003"] for row in rows} == {"IDLE", "TICKED", "SKIPPED"}
     assert {row["bt_1004"] for row in rows} == {"IDLE", "TICKED", "RUNNING", "SUCCESS"}

@@ -12,7 +12,7 @@ from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.exit_status import CLEAN, USAGE
 from as2fm_lsp.cli.mock_options import add_mocks, declared_mocks
-from as2fm_lsp.cli.output import complain, print_text
+from as2fm_lsp.cli.output import STANDARD_OUTPUT_PATH, complain, print_text
 from roaml import api
 from roaml.figures.layout import LayoutDirection
 from roaml.figures.pdf import pdf_file
@@ -27,7 +27,6 @@ from roaml.project.settings import ament_prefixes
 from roaml.record import replace
 from roaml.suggest import close_names, did_you_mean, listing
 
-STANDARD_OUTPUT = "-"
 PDF = ".pdf"
 
 EXAMPLES = """\
@@ -75,7 +74,7 @@ def run(arguments: Sequence[str]) -> int:
         draw(kind, picture, LayoutDirection(options.direction)) if options.direction else draw_for(kind, picture, *PAGE)
     )
     text = svg_file(drawing, picture.title, options.theme)
-    if options.output == STANDARD_OUTPUT:
+    if options.output == STANDARD_OUTPUT_PATH:
         print_text(text)
         return CLEAN
     output = options.output or _default_output(options.file, picture.title, kind)

@@ -6,11 +6,15 @@ from __future__ import annotations
 import io
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from typing import TextIO
 
+from as2fm_lsp.atomic_write import write_file
+
 STANDARD_OUTPUT = "standard output"
+STANDARD_OUTPUT_PATH = "-"
+"""The path that means standard output."""
 """The `filename` of an `OSError` raised for standard output."""
 
 
@@ -61,3 +65,16 @@ def _open(stream: TextIO) -> Iterator[None]:
 def takes_color(stream: TextIO) -> bool:
     """Whether the output goes to a terminal that supports and wants colors (https://no-color.org)."""
     return stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+
+
+def write_output(path: str, content: str | Iterable[str]) -> None:
+    """Write a text file, or write to standard output if the path is `-`. Both are UTF-8.
+
+    Raises:
+        OSError: the file or standard output cannot be written.
+    """
+    if path != STANDARD_OUTPUT_PATH:
+        write_file(path, content)
+        return
+    for text in [content] if isinstance(content, str) else content:
+        print_text(text, encoding="utf-8")

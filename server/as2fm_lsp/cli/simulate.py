@@ -8,7 +8,6 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
 from as2fm_lsp.cli.formats import Format, render
@@ -24,7 +23,7 @@ from as2fm_lsp.cli.model_arguments import (
     settings_of,
 )
 from as2fm_lsp.cli.numbers import natural, positive
-from as2fm_lsp.cli.output import complain, flush, print_text
+from as2fm_lsp.cli.output import complain, flush, print_text, write_output
 from as2fm_lsp.cli.times import time_of
 from as2fm_lsp.verification.run_files import csv_lines, json_text, timeline_svg
 from roaml import api
@@ -41,6 +40,7 @@ examples:
   as2fm-lsp simulate main.xml --until /arm/command    until a message is sent on this topic
   as2fm-lsp simulate main.xml --property dropped --trace 4 --html run.html
   as2fm-lsp simulate main.xml --svg run.svg           a timeline of the run, as a picture
+  as2fm-lsp simulate main.xml --csv - | head          the state after each step
   as2fm-lsp simulate main.xml --interactive           choose on the terminal what happens next, and go back
   as2fm-lsp simulate main.xml --script run.json       repeat a run that --save has written
 
@@ -141,17 +141,17 @@ def _write(options: argparse.Namespace, session: Session, target: VerificationTa
 
     story = session.story()
     if options.save is not None:
-        write_file(options.save, session.save().to_json())
+        write_output(options.save, session.save().to_json())
     if options.html is not None:
-        write_file(options.html, as_html([story], place_of, shown_path(options.main)))
+        write_output(options.html, as_html([story], place_of, shown_path(options.main)))
     if options.mermaid is not None:
-        write_file(options.mermaid, as_mermaid(story, place_of))
+        write_output(options.mermaid, as_mermaid(story, place_of))
     if options.svg is not None:
-        write_file(options.svg, timeline_svg(session, shown_path(options.main), options.theme))
+        write_output(options.svg, timeline_svg(session, shown_path(options.main), options.theme))
     if options.csv is not None:
-        write_file(options.csv, csv_lines(session))
+        write_output(options.csv, csv_lines(session))
     if options.json is not None:
-        write_file(options.json, json_text(session, target))
+        write_output(options.json, json_text(session, target))
     if not options.interactive and not any((options.html, options.mermaid, options.svg, options.csv, options.json)):
         print_text(as_text(story, place_of) + _summary(session))
         flush()
@@ -193,9 +193,17 @@ def parser() -> ArgumentParser:
     )
     add("--max-steps", type=positive, default=1_000_000, metavar="N", help="end after N steps (1000000)")
     add("--script", metavar="FILE", help="repeat a run that --save has written")
-    add("--save", metavar="FILE", help="write the decisions of the run, for --script")
+    add(
+        "--save",
+        metavar="FILE",
+        help="write the decisions of the run, for --script",
+    )
     add("--interactive", "-i", action="store_true", help="choose each next step on the terminal, and go back")
-    add("--csv", metavar="FILE", help="write the state after each step as CSV")
+    add(
+        "--csv",
+        metavar="FILE",
+        help="write the state after each step as CSV; - is standard output, also for the options below",
+    )
     add("--json", metavar="FILE", help="write the steps as JSON")
     add("--mermaid", metavar="FILE", help="write the run as a Mermaid sequence diagram")
     add("--svg", metavar="FILE", help="write the run as a timeline: states, statuses, messages and variables")

@@ -15,7 +15,7 @@ from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
 from as2fm_lsp.cli.formats import CheckReport, Format, render
 from as2fm_lsp.cli.formats.report import entry, shown_path
 from as2fm_lsp.cli.numbers import positive
-from as2fm_lsp.cli.output import complain, print_text, takes_color
+from as2fm_lsp.cli.output import STANDARD_OUTPUT_PATH, complain, print_text, takes_color, write_output
 from as2fm_lsp.cli.status_line import StatusLine
 from as2fm_lsp.cli.times import time_of
 from as2fm_lsp.translation import OutputError, check_not_an_input, jani_path, summary, without_bounded
@@ -37,8 +37,6 @@ from roaml.views.network import network_graph
 from roaml.views.notations import NOTATIONS, Notation
 from roaml.views.tree import tree_graph
 
-STANDARD_OUTPUT = "-"
-
 EXAMPLES = """\
 examples:
   as2fm-lsp translate main.xml                       write main.jani beside main.xml
@@ -59,7 +57,7 @@ def run(arguments: Sequence[str]) -> int:
     if problems:
         return _fail(problems[0])
     settings = replace(settings, ament_prefixes=ament_prefixes())
-    if output == STANDARD_OUTPUT and options.map == STANDARD_OUTPUT:
+    if output == STANDARD_OUTPUT_PATH and options.map == STANDARD_OUTPUT_PATH:
         return _fail("the model and the map cannot both go to standard output")
     with StatusLine() as status:
         try:
@@ -93,10 +91,10 @@ def run(arguments: Sequence[str]) -> int:
     if is_refused:  # The named property cannot be translated.
         _report(options, report)
         return _not_written(options, output)
-    if options.format is Format.TEXT or STANDARD_OUTPUT not in (output, options.map):
+    if options.format is Format.TEXT or STANDARD_OUTPUT_PATH not in (output, options.map):
         _report(options, report)
-    if options.format is Format.TEXT and output != STANDARD_OUTPUT:
-        messages = sys.stderr if options.map == STANDARD_OUTPUT else sys.stdout
+    if options.format is Format.TEXT and output != STANDARD_OUTPUT_PATH:
+        messages = sys.stderr if options.map == STANDARD_OUTPUT_PATH else sys.stdout
         print_text(f"{shown_path(output)}: {summary(model)}\n", stream=messages)
     return CLEAN
 
@@ -153,8 +151,8 @@ def _write(options: argparse.Namespace, output: str, system: api.LoadedSystem, n
             _write_folder(folder, _diagrams(system, model, notation))
     if options.map is not None:
         text = json.dumps(api.source_map(system, model), ensure_ascii=False, indent=1) + "\n"
-        _write_text(options.map, [text])
-    _write_text(output, (*jani_text(model, options.indent), "\n"))
+        write_output(options.map, [text])
+    write_output(output, (*jani_text(model, options.indent), "\n"))
 
 
 def _scxml_files(options: argparse.Namespace, system: api.LoadedSystem, network: Network) -> Iterator[tuple[str, str]]:
@@ -191,14 +189,6 @@ def _write_folder(folder: str, files: Iterable[tuple[str, str]]) -> None:
     os.makedirs(folder, exist_ok=True)
     for name, text in files:
         write_file(os.path.join(folder, name), text)
-
-
-def _write_text(path: str, chunks: Iterable[str]) -> None:
-    if path != STANDARD_OUTPUT:
-        write_file(path, chunks)
-        return
-    for chunk in chunks:
-        print_text(chunk, encoding="utf-8")
 
 
 def _source(system: api.LoadedSystem, path: str) -> SourceFile:

@@ -26,11 +26,10 @@ from as2fm_lsp.cli.model_arguments import (
     report_of,
     settings_of,
 )
-from as2fm_lsp.cli.output import complain, flush, print_text, takes_color
+from as2fm_lsp.cli.output import STANDARD_OUTPUT_PATH, complain, flush, print_text, takes_color
 from as2fm_lsp.cli.progress_bar import ProgressBar
 from as2fm_lsp.cli.status_line import StatusLine
 from as2fm_lsp.cli.verify_arguments import (
-    STANDARD_OUTPUT,
     Scheduler,
     asks_for_traces,
     expectations_in,
@@ -327,7 +326,7 @@ class _Verification:
 
             return as_junit(self.results, shown_path(self.options.main), self._place, self.stuck_result)
         # A story of a stuck trace ends with the waiting automata.
-        has_story = STANDARD_OUTPUT in self.options.explain and any(r.answer or r.exact for r in self.results)
+        has_story = STANDARD_OUTPUT_PATH in self.options.explain and any(r.answer or r.exact for r in self.results)
         has_story = has_story and not any(result.is_interrupted for result in self.results)
         text = as_text(self.results, self._place, self.options.stuck, "in the trace below" if has_story else "")
         if self.tree is not None:
@@ -498,7 +497,7 @@ class _Verification:
             text = "\n".join(as_mermaid(story, self._place) for story in stories)
         else:
             text = self._story_texts(stories)
-        if file == STANDARD_OUTPUT:
+        if file == STANDARD_OUTPUT_PATH:
             # With a format for programs, standard output contains only the results.
             print_text(text, stream=sys.stdout if self.options.format is Format.TEXT else sys.stderr)
         else:

@@ -12,6 +12,7 @@ from as2fm_lsp.cli.arguments import ArgumentParser, WordAction
 from as2fm_lsp.cli.formats import Format
 from as2fm_lsp.cli.model_arguments import UsageError, add_model_arguments
 from as2fm_lsp.cli.numbers import natural, positive, size
+from as2fm_lsp.cli.output import STANDARD_OUTPUT_PATH
 from roaml.exhaustive import Vocabulary
 from roaml.smc.run import MIN_EPSILON, EstimationMethod, Options
 from roaml.verification.expectations import Expectation, parse
@@ -52,7 +53,6 @@ TRACE_OPTIONS = (
     "exhaustive",
 )
 """The options that select random traces or all states. Without them, the size of the model decides which are used."""
-STANDARD_OUTPUT = "-"
 
 
 class Scheduler(Vocabulary):
@@ -123,9 +123,10 @@ def parser() -> ArgumentParser:
     add("--traces", metavar="DIR", help="write traces as CSV and JSON files into DIR")
     add("--traces-limit", type=natural, default=10, metavar="N", help="with --traces: write the first N "
         "traces of each verdict, and the shortest one (10)")  # fmt: skip
-    add("--explain", nargs="?", action="append", const=STANDARD_OUTPUT, default=[], type=_story_file, metavar="FILE",
-        help="show the shortest trace in which the property fails (if only upper limits are expected: in which it "
-        "holds), as text or in FILE.txt, FILE.mmd (Mermaid) or FILE.html; may be repeated")  # fmt: skip
+    add("--explain", nargs="?", action="append", const=STANDARD_OUTPUT_PATH, default=[], type=_story_file,
+        metavar="FILE", help="show the shortest trace in which the property fails (if only upper limits are "
+        "expected: in which it holds), as text or in FILE.txt, FILE.mmd (Mermaid) or FILE.html; may be "
+        "repeated")  # fmt: skip
     add("--dask", metavar="ADDRESS", help="run on the Dask cluster with the scheduler at this address (needs the "
         "Python package distributed)")  # fmt: skip
     add("--format", action=WordAction, words=(Format.TEXT, Format.JSON, Format.JUNIT), default=Format.TEXT,
@@ -159,7 +160,7 @@ def _width(text: str) -> float:
 
 
 def _story_file(text: str) -> str:
-    if text != STANDARD_OUTPUT and not text.endswith((".txt", ".mmd", ".html")):
+    if text != STANDARD_OUTPUT_PATH and not text.endswith((".txt", ".mmd", ".html")):
         raise argparse.ArgumentTypeError(
             f"`{text}` does not end in .txt, .mmd or .html; if it is the model, name it before --explain"
         )
