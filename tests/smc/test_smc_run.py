@@ -31,7 +31,7 @@ from roaml.smc.goal import Activity
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import MAX_CONSECUTIVE_LOSSES, Alone, Pool, WorkersLostError
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
-from roaml.smc.run import Answer, EstimationMethod, Options
+from roaml.smc.run import Answer, EstimationMethod, Options, batches
 from roaml.smc.statistics import okamoto
 from roaml.smc.tally import MAX_KEPT_TRACES, REJECTED, Ended, StoredTrace, Tally
 
@@ -314,6 +314,17 @@ def test_a_worker_gets_several_short_batches_at_once() -> None:
             if max(executor.sizes) > 4:
                 break
     assert executor.sizes[:2] == [1, 1]
+
+
+@given(st.integers(0, 10_000), st.integers(1, 200_000))
+def test_the_last_batches_are_small(done: int, count: int) -> None:
+    limit = done + count
+    reached = done
+    for first, size in batches(done, limit):
+        assert first == reached
+        assert 1 <= size <= max(100, (limit - first) / 10)
+        reached = first + size
+    assert reached == limit
 
 
 def test_a_batch_is_a_function_of_its_task() -> None:

@@ -3,7 +3,8 @@
 from them.
 
 - Whether more traces are needed is decided after whole batches, in the order of their numbers. The size of a batch
-  depends only on the traces before it. So the answer is a function of model, property, seed and options.
+  depends only on the numbers of traces before it and after it. So the answer is a function of model, property, seed
+  and options.
 - The state that is needed to continue after an interruption is a `Tally`: a few numbers.
 """
 
@@ -37,6 +38,9 @@ MAX_BATCH_TRACES = 5000
 BATCH_GROWTH = 0.1
 """The size of a batch as a fraction of the number of traces before it; at least `FIRST_BATCH_TRACES`, at most
 `MAX_BATCH_TRACES`."""
+BATCH_OF_REST = 0.1
+"""The maximum size of a batch as a fraction of the remaining traces, so that all workers end at about the same time; at
+least `FIRST_BATCH_TRACES`."""
 STOPPING_ERROR_SHARE = 0.75
 """Stopping as soon as the interval is narrow enough increases the error; so the interval is computed for this fraction
 of the allowed error. A test computes that the total error does not exceed the allowed error."""
@@ -243,7 +247,7 @@ def _run(
     limit = _limit(inquiries[0].question, options)
 
     def tasks() -> Iterator[Task]:
-        for start, size in _batches(done, limit):
+        for start, size in batches(done, limit):
             columns = tuple(column for inquiry in open_ for column in inquiry.columns)
             counted = tuple(_counting(inquiry, columns, options) for inquiry in open_)
             yield Task(payload, options.seed, first + start, size, options.max_steps, scheduler, columns, counted)
@@ -331,12 +335,12 @@ def _limit(question: Question, options: Options) -> int | None:
     return min(limits) if limits else None
 
 
-def _batches(done: int, limit: int | None) -> Iterator[tuple[int, int]]:
+def batches(done: int, limit: int | None) -> Iterator[tuple[int, int]]:
     """The first trace and the size of each batch after `done` traces."""
     while limit is None or done < limit:
         size = max(FIRST_BATCH_TRACES, min(MAX_BATCH_TRACES, int(done * BATCH_GROWTH)))
         if limit is not None:
-            size = min(size, limit - done)
+            size = min(size, max(FIRST_BATCH_TRACES, int((limit - done) * BATCH_OF_REST)), limit - done)
         yield done, size
         done += size
 
