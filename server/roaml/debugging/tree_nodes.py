@@ -15,8 +15,6 @@ from roaml.text import Location
 if TYPE_CHECKING:
     from roaml.lower.programs.executed import ExecutedNode, ExecutedTree
 
-_SUBTREE = "SubTree"
-
 
 class NodePort(NamedTuple):
     """A port that the tree sets, with its text; `entry` is the full name of the blackboard entry to which it is bound,
@@ -86,9 +84,8 @@ def nodes_of_tree(tree: ExecutedTree) -> Iterator[SourceNode]:
     parents = {child: node.number for node in tree.nodes for child in node.children}
     subtrees = 0
     for node in tree.nodes:
-        is_subtree = node.type == _SUBTREE
-        subtrees += is_subtree
-        picture = f"subtree {subtrees}" if is_subtree else str(node.number)
+        subtrees += node.is_subtree
+        picture = f"subtree {subtrees}" if node.is_subtree else str(node.number)
         yield _of_executed(node, parents.get(node.number), picture)
 
 

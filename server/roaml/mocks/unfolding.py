@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from roaml.forest.entries import entry_of, is_autoremapped
 from roaml.forest.forest import Forest
 from roaml.forest.ports import ports_of
-from roaml.lower.programs.executed import ExecutedNode, ExecutedTree, identifier
+from roaml.lower.programs.executed import SUBTREE, ExecutedNode, ExecutedTree, identifier
 from roaml.lower.programs.refusal import TreeRefusal
 from roaml.model.expand import MAX_NODES, ROOT_NUMBER
 from roaml.model.tree import Tree, TreeNode
@@ -18,9 +18,6 @@ from roaml.text import Location
 
 MAX_DEPTH = 200
 """The maximum nesting depth of nodes and subtrees."""
-
-
-SUBTREE = "SubTree"
 
 
 class TreeFrame(Record, frozen=True, eq=False):
@@ -70,7 +67,7 @@ def _numbered(places: Mapping[int, ExecutedNode]) -> tuple[ExecutedNode, ...]:
     Args:
         places: place in pre-order -> the node. The number and the children of a node are places.
     """
-    order = sorted(places, key=lambda place: (places[place].type == SUBTREE, place))
+    order = sorted(places, key=lambda place: (places[place].is_subtree, place))
     numbers = {place: number for number, place in enumerate(order, ROOT_NUMBER)}
     return tuple(
         replace(node, number=numbers[place], children=tuple(numbers[child] for child in node.children))

@@ -203,7 +203,7 @@ class _Reader(Record):
                 continue
             if port in read:
                 self.readers.add(entry)
-            if node.type == "SubTree":
+            if node.is_subtree:
                 continue
             if port in written or declared is None or declared.direction is not Direction.IN:
                 self.writers.add(entry)

@@ -26,6 +26,10 @@ class Names(Protocol):
         ...
 
 
+SUBTREE = "SubTree"
+"""The type of the nodes that stand for a subtree."""
+
+
 class ExecutedNode(Record, frozen=True, eq=False):
     """A node of the executed tree.
 
@@ -50,6 +54,10 @@ class ExecutedNode(Record, frozen=True, eq=False):
     @property
     def is_leaf(self) -> bool:
         return not self.children
+
+    @property
+    def is_subtree(self) -> bool:
+        return self.type == SUBTREE
 
     @property
     def automaton(self) -> str:

@@ -36,8 +36,8 @@ def program_of(node: ExecutedNode, version: Version = NEWEST_VERSION) -> NodePro
         TreeRefusal: the node cannot be executed.
     """
     known_programs = programs(version)
-    if node.type == "SubTree" and node.children:
-        return known_programs["SubTree"]
+    if node.is_subtree and node.children:
+        return known_programs[node.type]
     is_library = node.known is not None and bool(node.known.behaviour)
     if is_library and node.type in known_programs:
         _check_children(node)
