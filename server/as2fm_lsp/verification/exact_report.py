@@ -90,28 +90,28 @@ def row(exact: Exact) -> dict[str, Any]:
     }
 
 
+ESTIMATE = (
+    "expected_value",
+    "probability",
+    "lower",
+    "upper",
+    "complete",
+    "interval",
+    "confidence",
+    "epsilon",
+    "method",
+)
+"""The members for JSON that describe an estimate."""
+
+
 def estimate_row(result: Result) -> dict[str, Any]:
-    """The members for JSON that replace the estimate of the traces. If the value under uniform choices is not known
-    exactly, `uniform` contains its estimate."""
+    """The members for JSON that replace the estimate of the traces (`ESTIMATE`)."""
     asked = result.asked_value()
     assert asked is not None
     assert result.answer is not None
     bounds, value = asked
-    answer = result.answer
-    uniform = {}
-    if result.has_uniform_estimate:
-        uniform = {
-            "probability": _finite(answer.value),
-            "lower": _finite(answer.bounds.lower),
-            "upper": _finite(answer.bounds.upper),
-            "complete": answer.is_complete,
-            "interval": answer.interval,
-            "confidence": answer.options.confidence,
-            "epsilon": answer.options.epsilon,
-            "method": answer.options.method.value,
-        }
     return {
-        "expected_value" if answer.question.is_reward else "probability": _finite(value),
+        "expected_value" if result.answer.question.is_reward else "probability": _finite(value),
         "lower": _finite(bounds.lower),
         "upper": _finite(bounds.upper),
         "complete": True,
@@ -119,7 +119,6 @@ def estimate_row(result: Result) -> dict[str, Any]:
         "confidence": 1,
         "epsilon": EXACT_WIDTH,
         "method": EXACT,
-        **({"uniform": uniform} if uniform else {}),
     }
 
 

@@ -210,7 +210,10 @@ def row(result: Result) -> dict[str, Any]:
     if result.answer is not None:
         values.update(_answer(result.answer))
         if result.exact is not None:
+            estimate = {name: values[name] for name in exact_report.ESTIMATE if name in values}
             values.update(exact_report.estimate_row(result))
+            if result.has_uniform_estimate:
+                values["uniform"] = estimate
         values.update(scheduler_report.rows(result.choices))
     if about := warning(result):
         values["warning"] = about
