@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from smc_models import answers, automaton, document, edge, model, op, probability, variable, way
+from smc_models import answers, at, automaton, document, edge, model, op, probability, variable, way, ways
 from smc_random import networks
 
 import roaml.smc
@@ -20,6 +20,8 @@ from both_kernels import difference, plain_kernel
 from examples import examples
 from roaml import api
 from roaml.smc import kernel, program
+from roaml.smc.batch import TraceProblem
+from roaml.smc.fault import FaultError
 from roaml.smc.lss import FAVOUR, MEMORY, STARVE
 from roaml.smc.model import ModelChecker
 from roaml.smc.opcodes import Op
@@ -101,6 +103,64 @@ def test_numbers_that_do_not_fit(value: Any, message: str) -> None:
         assert simulator.advance(5) == program.FAULTY
     with pytest.raises(Exception, match=message):
         answers(written)
+
+
+@pytest.mark.parametrize(
+    ("value", "number"), [(op("floor", op("log", -2, 2)), "-2.0"), (op("floor", op("log", "x", 2)), "-3.0")]
+)
+def test_faults_of_functions_name_the_argument(value: Any, number: str) -> None:
+    """Also that of a constant, which is not computed in a trace."""
+    written = document(
+        automaton("a", "l", [edge("l", way("l", y=value))]),
+        variables=[variable("x", initial=-3), variable("y")],
+        properties={"p": probability(op("F", op("=", "y", 77)))},
+    )
+    with pytest.raises(FaultError, match=f"no value for {number}$"):
+        answers(written)
+
+
+FAULTS = {
+    "index 7 is outside of the array, whose length is 2": ("u", at("v", op("+", "u", 7))),
+    "index 9 is outside of the array, whose length is 3": ("w", at("longer", op("+", "w", 9))),
+    "index 2 is outside of the array, whose length is 2": ("u", at("v", 2)),
+    "12 is outside of the bounds of the variable's type": ("small", op("+", "w", 12)),
+    "2.5 is outside of the bounds of the variable's type": ("portion", op("+", "half", 2.0)),
+    "this function has no value for -1.5": ("u", op("floor", op("log", op("-", "half", 2.0), 2))),
+    "division by zero": ("u", op("%", 1, "u")),
+}
+
+
+@pytest.mark.parametrize("second", FAULTS)
+@pytest.mark.parametrize("first", FAULTS)
+def test_the_first_of_several_faults_of_a_step_is_reported(first: str, second: str) -> None:
+    """Both with its place and with its numbers."""
+    bounds = {"kind": "bounded", "base": "int", "lower-bound": 0, "upper-bound": 3}
+    part = {"kind": "bounded", "base": "real", "lower-bound": 0.0, "upper-bound": 1.0}
+    array = {"kind": "array", "base": "int"}
+    written = document(
+        *(
+            automaton(name, "l", [edge("l", ways("l", [(*FAULTS[fault], 0)]), action="both")])
+            for name, fault in (("a", first), ("b", second))
+        ),
+        variables=[
+            variable("u"),
+            variable("w"),
+            variable("half", "real", 0.5),
+            variable("v", array, {"op": "av", "elements": [1, 2]}),
+            variable("longer", array, {"op": "av", "elements": [1, 2, 3]}),
+            variable("small", bounds),
+            variable("portion", part, 0.5),
+        ],
+        syncs=[["both", "both"]],
+        properties={"p": probability(op("F", op("=", "u", 77)))},
+    )
+    checker = ModelChecker(model(written))
+    compiled = checker.compiled(checker.compiled_properties[0])
+    for module in (kernel, plain_kernel()):
+        simulator = module.Kernel(compiled.program, compiled.goal)
+        assert simulator.begin(0, 0) == program.UNKNOWN
+        assert simulator.advance(5) == program.FAULTY
+        assert checker.fault(TraceProblem(0, *simulator.problem())).message == first
 
 
 def test_numbers_that_just_fit() -> None:

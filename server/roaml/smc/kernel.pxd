@@ -196,7 +196,8 @@ cdef class Kernel:
     @cython.locals(i=int, register=int, reward=double, total=double)
     cdef void _accumulate(self, int[::1] codes) noexcept
     cdef void _fail(self, int fault, int at) noexcept
+    cdef void _fail_with(self, int fault, int at, i64 value, i64 size, double real) noexcept
     cdef void _note(self, int variable) noexcept
-    cdef int _call(self, int function, int real, int target) noexcept
+    cdef int _call(self, int function, int real, int target, int at) noexcept
     @cython.locals(op=int, d=int, a=int, b=int, c=int, x=i64, y=i64, z=i64, at=i64, i=int, changed=int)
     cdef i64 _execute(self, int pc) noexcept

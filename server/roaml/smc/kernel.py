@@ -1502,9 +1502,16 @@ class Kernel:
     # ------------------------------------------------------------ the bytecode
 
     def _fail(self, fault: int, at: int) -> None:
+        self._fail_with(fault, at, 0, 0, 0.0)
+
+    def _fail_with(self, fault: int, at: int, value: int, size: int, real: float) -> None:
+        """Keep the first fault of a step, with its values; later ones may follow from it."""
         if self.fault == 0:
             self.fault = fault
             self.fault_at = at
+            self.fault_value = value
+            self.fault_size = size
+            self.fault_real = real
 
     def _note(self, variable: int) -> None:
         if self.noted[variable] == 0:
@@ -1512,7 +1519,7 @@ class Kernel:
             self.notes[self.note_count] = variable
             self.note_count += 1
 
-    def _call(self, function: int, real: int, target: int) -> int:
+    def _call(self, function: int, real: int, target: int, at: int) -> int:
         """Call a Python function with the collected arguments; return whether it has a value for them."""
         arguments = self.arguments
         self.arguments = []
@@ -1522,18 +1529,17 @@ class Kernel:
                 self.reals[target] = value
             else:
                 if value > MAX_INT64 or value < MIN_INT64:
-                    self.fault = 1
+                    self._fail(1, at)
                     return 0
                 self.ints[target] = value
         except ZeroDivisionError:
-            self.fault = 2
+            self._fail(2, at)
             return 0
         except OverflowError:
-            self.fault = 8
+            self._fail(8, at)
             return 0
         except Exception:
-            self.fault = 5
-            self.fault_real = arguments[0]
+            self._fail_with(5, at, 0, 0, arguments[0])
             return 0
         return 1
 
@@ -1639,9 +1645,7 @@ class Kernel:
             elif op == 18:  # INDEX
                 x = self.ints[a]
                 if x < 0 or x >= b:
-                    self._fail(3, pc)
-                    self.fault_value = x
-                    self.fault_size = b
+                    self._fail_with(3, pc, x, b, 0.0)
                     return 0
             elif op == 19:  # OFFSET
                 self.ints[d] = self.ints[d] * b + self.ints[a]
@@ -1673,13 +1677,10 @@ class Kernel:
                 self._note(d)
             elif op == 26:  # RANGE
                 if self.ints[a] < self.ints[b] or self.ints[a] > self.ints[c]:
-                    self._fail(4, pc)
-                    self.fault_value = self.ints[a]
+                    self._fail_with(4, pc, self.ints[a], 0, 0.0)
                     return 0
             elif op == 27:  # FAULT
-                self._fail(d, pc)
-                self.fault_value = a
-                self.fault_size = b
+                self._fail_with(d, pc, a, b, 0.0)
                 return 0
             elif op == 28:  # JUMP_EQ_REAL
                 if self.reals[a] == self.reals[b]:
@@ -1746,16 +1747,13 @@ class Kernel:
                     self.reals[at + i] = self.reals[b + i]
             elif op == 46:  # RANGE_REAL
                 if self.reals[a] < self.reals[b] or self.reals[a] > self.reals[c]:
-                    self._fail(4, pc)
-                    self.fault_real = self.reals[a]
+                    self._fail_with(4, pc, 0, 0, self.reals[a])
                     return 0
             elif op == 47:  # CALL_INT
-                if self._call(c, 0, d) == 0:
-                    self.fault_at = pc
+                if self._call(c, 0, d, pc) == 0:
                     return 0
             elif op == 48:  # CALL_REAL
-                if self._call(c, 1, d) == 0:
-                    self.fault_at = pc
+                if self._call(c, 1, d, pc) == 0:
                     return 0
             elif op == 49:  # ARGUMENT
                 self.arguments.append(self.ints[a])

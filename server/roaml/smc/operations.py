@@ -135,7 +135,7 @@ class OperatorAssembler:
         except DivisionByZeroError:
             return self.cells.failing(node, FaultCode.DIVISION, kind)
         except EvaluationError:
-            return self.cells.failing(node, FaultCode.DOMAIN, kind)
+            return self.call(node, node.operator, operands, kind, -1)
         assert isinstance(result, (bool, int, float))
         if kind == INT and abs(result) > MAX_INT64:
             return self.cells.failing(node, FaultCode.OVERFLOW, kind)
