@@ -378,6 +378,58 @@ def test_a_port_is_removed_everywhere() -> None:
     assert "idle" not in "".join(after.values())
 
 
+CLOCKS = """
+-- main.xml --
+<roaml>
+  <parameters><‸max_time value="60" unit="s" /></parameters>
+  <node_models>
+    <input type="node-ascxml" src="lidar.ascxml" />
+    <input type="node-ascxml" src="drive.ascxml" />
+  </node_models>
+  <properties><input type="jani" src="p.jani" /></properties>
+</roaml>
+-- lidar.ascxml --
+<ascxml name="Lidar" version="1.0" initial="s">
+  <ros_time_rate name="scan" rate_hz="3" />
+  <state id="s"><ros_rate_callback name="scan" target="s" /></state>
+</ascxml>
+-- drive.ascxml --
+<ascxml name="Drive" version="1.0" initial="s">
+  <ros_time_rate name="control" rate_hz="10" />
+  <state id="s"><ros_rate_callback name="control" target="s" /></state>
+</ascxml>
+-- p.jani --
+{"properties": []}
+"""
+
+
+def test_a_rate_with_a_larger_clock_step() -> None:
+    after = done(CLOCKS, "Change the rate of `scan` to 3.33 Hz")
+    assert list(after) == ["lidar.ascxml"]
+    snapshot = opened(CLOCKS)[0]
+    assert "small-clock-step" in {d.code for d in found(snapshot)}
+    changed = snapshot.with_texts({path_of("lidar.ascxml"): after["lidar.ascxml"]})
+    assert "small-clock-step" not in {d.code for d in found(changed)}
+
+
+@pytest.mark.parametrize(
+    ("rates", "rate"),
+    [
+        (("30", "10"), "`control` to 10.0001 Hz"),
+        (("60", "10"), "`control` to 10.0004 Hz"),
+        (("7", "10"), "`scan` to 6.66 Hz"),
+        (("1", "3"), "`scan` to 1.001 Hz"),
+        (("100", "30"), "`control` to 33.333 Hz"),
+        (("13", "17"), "`control` to 19.5 Hz"),
+    ],
+)
+def test_the_nearest_rate_with_the_largest_steps(rates: tuple[str, str], rate: str) -> None:
+    """Large steps come first: 50 ms for 7 Hz and 10 Hz, although 142.5 ms is nearer to the period of 7 Hz. Periods are
+    rounded down, so three periods of 30 Hz are 99,999 µs."""
+    written = CLOCKS.replace('rate_hz="3"', f'rate_hz="{rates[0]}"').replace('rate_hz="10"', f'rate_hz="{rates[1]}"')
+    assert f"Change the rate of {rate}" in titles(written, "quickfix")
+
+
 def test_half_typed() -> None:
     """Code actions work for every prefix of a system's files, with the caret at its end."""
     for text in (PLUGIN, CLIENT, split_files(OLDER)["main.xml"], split_files(SYSTEM)["tree.xml"], LOGS):

@@ -38,16 +38,45 @@ def period(rate: Fraction) -> Period:
     return Period(max(1, math.floor(exact)), 1)
 
 
-def periods(system: System, parameters: Parameters) -> Iterator[Period]:
-    """The periods of all timers of a system, including the timer that ticks the tree; timers with an invalid rate are
-    left out."""
+class TimerRate(Record, frozen=True):
+    """A timer with a valid rate.
+
+    Attributes:
+        automaton: the automaton that uses it; `None` for the timer that ticks the tree.
+        name: the name of its declaration; "" for the timer that ticks the tree.
+        hertz: its rate in Hz.
+        is_literal: whether its declaration contains the rate, instead of a port.
+    """
+
+    automaton: SystemAutomaton | None
+    name: str
+    hertz: Fraction
+    is_literal: bool = True
+
+    @property
+    def path(self) -> str:
+        """The path of the machine that declares it; "" for the timer that ticks the tree."""
+        return self.automaton.path if self.automaton is not None else ""
+
+    @property
+    def period(self) -> Period:
+        return period(self.hertz)
+
+
+def rates(system: System, parameters: Parameters) -> Iterator[TimerRate]:
+    """All timers of a system, including the timer that ticks the tree; timers with an invalid rate are left out."""
     if system.instances:
-        yield period(Fraction(str(parameters.tick_rate)))
+        yield TimerRate(None, "", Fraction(str(parameters.tick_rate)))
     for automaton in system.automata:
         for timer in automaton.outline.timers:
             hertz = rate(automaton, timer.rate, timer.port)
             if hertz is not None:
-                yield period(hertz)
+                yield TimerRate(automaton, timer.name, hertz, not timer.port)
+
+
+def periods(system: System, parameters: Parameters) -> Iterator[Period]:
+    """The periods of all timers that `rates` returns."""
+    return (timer.period for timer in rates(system, parameters))
 
 
 def rate(automaton: SystemAutomaton, text: str, port: str) -> Fraction | None:

@@ -167,6 +167,7 @@ from roaml.rules.systems import (
     missing_parameter,
     model_too_large,
     repeated_parameter,
+    small_clock_step,
     tree_too_large,
 )
 from roaml.rules.trees import (
@@ -351,6 +352,7 @@ RULES: tuple[Rule, ...] = (
     silent_server.RULE,
     skipped_condition.RULE,
     skipped_node.RULE,
+    small_clock_step.RULE,
     stray_text.RULE,
     struct_declaration.RULE,
     subtree_constant_written.RULE,

@@ -23,6 +23,7 @@ from roaml.ide.rename import Renaming, rename
 from roaml.language import SYSTEM
 from roaml.model.kinds import FileKind
 from roaml.model.machine import Machine
+from roaml.model.syntax import Name
 from roaml.model.system import CHILDREN_COUNT
 from roaml.model.system_file import ListedFile, SystemSection
 from roaml.model.tree import TreeNode, nodes
@@ -30,11 +31,13 @@ from roaml.project.analysis import Analysis
 from roaml.project.edits import in_layout
 from roaml.project.paths import folder_of, is_below, is_on_disk, name_of, split_name
 from roaml.project.workspace import Snapshot
-from roaml.roles import Direction
+from roaml.roles import Direction, SymbolKind
 from roaml.rules.elements.missing_element import MissingChild
 from roaml.rules.files.missing_file import UnusableFile
+from roaml.rules.interfaces.invalid_rate import rate_problem
 from roaml.rules.support.names import WrongName
 from roaml.rules.systems.input_count import InputCount
+from roaml.rules.systems.small_clock_step import BetterRate
 from roaml.rules.trees.blackboard_type_conflict import TypeConflict
 from roaml.suggest import close_names
 from roaml.text import SourceFile, Span, TextEdit
@@ -195,6 +198,21 @@ def _move(analysis: Analysis, diagnostic: Diagnostic, system: str, listed: Liste
 def _no_tree(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
     if diagnostic.facts == InputCount(FileKind.TREE):
         yield from _list_file(snapshot, diagnostic, SystemSection.BEHAVIOR_TREE, "bt.cpp-xml", FileKind.TREE)
+
+
+def _slower_timer(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
+    """An action that changes the rate of a timer so that the clock of the system advances in larger steps."""
+    facts, system = diagnostic.facts, snapshot.analysis.system(diagnostic.path)
+    if not isinstance(facts, BetterRate) or system is None:
+        return
+    if not system.automata_of(facts.path) or rate_problem(facts.rate):
+        return
+    machine = snapshot.analysis.machine(facts.path)
+    for declaration in machine.declarations if machine else ():
+        handle, rate = declaration.handle, declaration.rate
+        if declaration.kind is SymbolKind.TIMER and handle and handle.value == facts.timer and isinstance(rate, Name):
+            change = WorkspaceEdit({facts.path: (TextEdit(rate.span, facts.rate),)})
+            yield _action(diagnostic, f"Change the rate of `{facts.timer}` to {facts.rate} Hz", known(change))
 
 
 def _no_section(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
@@ -430,6 +448,7 @@ FIXES_ACROSS_FILES: dict[str, Callable[[Snapshot, Diagnostic], Iterator[CodeActi
     "missing-element": _no_section,
     "missing-file": _missing_file,
     "missing-include": _missing_include,
+    "small-clock-step": _slower_timer,
     "tree-element-in-node": _element_in_node,
     "unknown-plugin": _unknown_plugin,
     "unknown-port": _unknown_port,
