@@ -94,7 +94,7 @@ def check(checker: ModelChecker, property_: CompiledProperty) -> tuple[int, int]
 
 def check_replay(space: Space, path: Any) -> None:
     """The steps of a path lead the kernel to a state that differs only in dead variables."""
-    recorder = PathRecorder(space, path)
+    recorder = PathRecorder(space.checker, space.compiled_property, path)
     recording = Recording(SHORTEST)
     assert len(list(recorder.walk(recording))) == len(path.steps)
     kernel = recorder._kernel

@@ -270,7 +270,7 @@ def test_the_shortest_trace_leads_to_a_state_with_its_verdict(written: Json) -> 
         layers.append(states - seen)
         seen |= states
     if path is not None:
-        recorder = PathRecorder(space, path)
+        recorder = PathRecorder(space.checker, space.compiled_property, path)
         recording = Recording(SHORTEST)
         steps = list(recorder.walk(recording))
         assert len(steps) == length

@@ -91,7 +91,7 @@ def replay(space: Space, verdict: int) -> None:
         status = kernel.close()
     assert status == verdict
     recording = Recording(SELECTED)
-    assert len(list(PathRecorder(space, path).walk(recording))) == len(path.steps)
+    assert len(list(PathRecorder(space.checker, space.compiled_property, path).walk(recording))) == len(path.steps)
     assert recording.verdict == verdict
 
 

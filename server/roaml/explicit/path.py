@@ -10,6 +10,8 @@ from roaml.explicit import codes
 from roaml.explicit.space import Space
 from roaml.record import Record
 from roaml.smc.end import End
+from roaml.smc.goal import CompiledProperty
+from roaml.smc.model import ModelChecker
 from roaml.smc.names import Storage
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
 from roaml.smc.record import Plain, Recorder, Recording, TraceStep
@@ -33,12 +35,15 @@ class Path(Record, frozen=True):
     """The steps to a state, and the verdict on the goal for a trace with these steps.
 
     Attributes:
+        state: the number of the state in which the path ends.
+        is_end: whether a trace ends at the end of the path without a decision.
         root: the number of the initial state in which the path begins.
     """
 
     state: int
     steps: tuple[PathStep, ...]
     verdict: int
+    is_end: bool
     root: int = 0
 
 
@@ -49,7 +54,9 @@ def shortest(space: Space, verdict: int) -> Path | None:
     if state is None:
         return None
     first, steps = path_to(space, state)
-    return Path(state, tuple(steps), verdict, space.roots.index(first))
+    label = space.search.label_of(state)
+    is_end = bool(label & codes.ENDED) and label & codes.STATUS == UNKNOWN
+    return Path(state, tuple(steps), verdict, is_end, space.roots.index(first))
 
 
 def path_to(space: Space, state: int) -> tuple[int, list[PathStep]]:
@@ -87,10 +94,9 @@ def _verdict(label: int, is_stuck: bool) -> int:
 class PathRecorder(Recorder):
     """Records the steps of a given path, instead of random ones."""
 
-    def __init__(self, space: Space, path: Path) -> None:
-        super().__init__(space.checker, space.compiled_property, 0, len(path.steps))
+    def __init__(self, checker: ModelChecker, property_: CompiledProperty, path: Path) -> None:
+        super().__init__(checker, property_, 0, len(path.steps))
         self._path = path
-        self._label = space.search.label_of(path.state)
 
     def initial(self, storages: Sequence[Storage], trace: int) -> list[Plain]:
         self._kernel.root(self._path.root)
@@ -104,8 +110,7 @@ class PathRecorder(Recorder):
             kernel.go(vector, edges, ways)
             yield self._steps.read(number)
         recording.verdict = self._path.verdict
-        has_ended = self._label & codes.ENDED and self._label & codes.STATUS == UNKNOWN
-        recording.end = End(kernel.standstill()) if has_ended else End.DECIDED
+        recording.end = End(kernel.standstill()) if self._path.is_end else End.DECIDED
 
     def rush(self, recording: Recording) -> None:
         for _ in self.walk(recording):

@@ -121,7 +121,7 @@ def values_from(space: Space, limits: StateLimits) -> Exact:
         space.can_get_stuck,
         space.checker.initial_states,
         space.compiled_property.question.fold,
-        tuple(ShortestTrace(space, path) for path in paths),
+        tuple(ShortestTrace(space.checker, space.compiled_property, path, space.is_reduced) for path in paths),
         space.is_reduced,
     )
 

@@ -21,7 +21,7 @@ from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
 from roaml.verification.exhaustive import UndecidedError
-from roaml.verification.results import Exact, ShortestTrace
+from roaml.verification.results import Exact
 
 
 class Explorations:
@@ -87,6 +87,6 @@ def _about(exact: Exact, property_: CompiledProperty) -> Exact:
     """The values, with traces that name another property with the same subject."""
     traces = []
     for trace in exact.traces:
-        named = replace(trace.space.compiled_property, property=property_.property, question=property_.question)
-        traces.append(ShortestTrace(replace(trace.space, compiled_property=named), trace.path))
+        named = replace(trace.compiled_property, property=property_.property, question=property_.question)
+        traces.append(replace(trace, compiled_property=named))
     return replace(exact, fold=property_.question.fold, traces=tuple(traces))

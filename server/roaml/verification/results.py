@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from enum import Enum
 
 from roaml.explicit.path import Path, PathRecorder
-from roaml.explicit.space import Space
 from roaml.record import PartlyCompared, Record
 from roaml.smc.choices import Choices
 from roaml.smc.fault import FaultError
@@ -27,10 +26,16 @@ from roaml.verification.target import VerificationTarget
 
 
 class ShortestTrace(Record, frozen=True):
-    """The shortest of all traces with a given verdict; if choices were left out, any trace with this verdict."""
+    """The shortest of all traces with a given verdict; if choices were left out, any trace with this verdict.
 
-    space: Space
+    Attributes:
+        is_reduced: whether choices were left out.
+    """
+
+    checker: ModelChecker
+    compiled_property: CompiledProperty
     path: Path
+    is_reduced: bool
 
     @property
     def verdict(self) -> int:
@@ -47,9 +52,9 @@ class ShortestTrace(Record, frozen=True):
         Args:
             clock: see `roaml.smc.story.build_story`.
         """
-        recorder = PathRecorder(self.space, self.path)
+        recorder = PathRecorder(self.checker, self.compiled_property, self.path)
         names = {storage.name for storage in recorder.shared}
-        number = SELECTED if self.space.is_reduced else SHORTEST
+        number = SELECTED if self.is_reduced else SHORTEST
         return build_story(recorder, number, clock if clock is not None and names.issuperset(clock) else None)
 
 
@@ -231,9 +236,7 @@ class Result(PartlyCompared, frozen=True):
     def includes_stuck(self) -> bool:
         """Whether the result is about the property `stuck`, which asks whether traces get stuck."""
         traces = () if self.exact is None else self.exact.traces
-        questions = [answer.question for answer in self._answers()] + [
-            t.space.compiled_property.question for t in traces
-        ]
+        questions = [answer.question for answer in self._answers()] + [t.compiled_property.question for t in traces]
         return any(question.is_stuck for question in questions)
 
     @property
