@@ -7,25 +7,34 @@ from roaml.smc.kernel cimport Kernel
 
 ctypedef long long i64
 
+cdef int SEVERAL
+
 @cython.final
 cdef class AmpleSets:
     cdef Kernel kernel
     cdef int[::1] slot_start, slot_vector, hidden, dependent_start, dependent_vector, guard_start, guard_vector
-    cdef int[::1] open_guards, frozen_at, candidates
-    cdef int is_fleeting, count
-    cdef i64 runs
-    cdef i64[::1] frozen, waits
+    cdef int[::1] open_guards, frozen_at, candidates, busy_with
+    cdef int[::1] own_start, own_slot, gates_start, gates, gate_slot_start, gate_slot, list_end, list_slot
+    cdef int is_fleeting, count, alone, chosen, is_chosen_open
+    cdef i64 runs, searches
+    cdef i64[::1] frozen, waits, listed, busy
 
     @cython.locals(count=int, i=int, k=int, vector=int)
     cpdef int find(self) noexcept
+    @cython.locals(i=int, vector=int, k=int, instance=int)
+    cdef void _mark_busy(self) noexcept
     @cython.locals(i=int)
     cdef int _is_single(self, int vector) noexcept
     @cython.locals(place=int, group=int)
     cdef int _group(self, int slot) noexcept
     @cython.locals(i=int, group=int, k=int, at=int, place=int, slot=int)
     cdef int _is_alone(self, int vector) noexcept
-    cdef void _freeze(self, int instance) noexcept
+    cdef int _freeze(self, int instance) noexcept
     @cython.locals(i=int, slot=int)
     cdef int _bar(self, int vector) noexcept
-    @cython.locals(chosen=int, i=int, slot=int, is_open=bint, is_chosen_open=bint, group=int, k=int)
+    @cython.locals(i=int, slot=int, gate=int, group=int, k=int)
     cdef int _let_wait(self, int vector) noexcept
+    @cython.locals(is_open=int)
+    cdef int _is_stopped(self, int slot) noexcept
+    @cython.locals(missing=int, at=int, end=int, slot=int)
+    cdef void _list(self, int gate) noexcept

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from roaml.explicit.independence import Independence
     from roaml.smc.kernel import Kernel
 
+SEVERAL = -2
+"""The vector with which an instance is busy that takes part in several enabled vectors."""
+
 
 def compiled() -> bool:
     """Whether this module is the compiled extension."""
@@ -49,6 +52,21 @@ class AmpleSets:
         self.frozen_at = array("i", [0] * self.kernel.instances)
         self.count = 0
         self.waits = array("q", [0] * (len(self.kernel.enabled) + 1))
+        self.own_start = tables.own_start
+        self.own_slot = tables.own_slot
+        self.gates_start = tables.gates_start
+        self.gates = tables.gates
+        self.gate_slot_start = tables.gate_slot_start
+        self.gate_slot = tables.gate_slot
+        self.listed = array("q", [0] * len(tables.gate_slot_start))
+        self.list_end = array("i", [0] * len(tables.gate_slot_start))
+        self.list_slot = array("i", [0] * (len(tables.gate_slot) + 1))
+        self.searches = 0
+        self.alone = -1
+        self.busy = array("q", [0] * self.kernel.instances)
+        self.busy_with = array("i", [0] * self.kernel.instances)
+        self.chosen = -1
+        self.is_chosen_open = 0
         self.candidates = array("i", [0] * (len(self.kernel.enabled) + 1))
 
     def find(self) -> int:
@@ -65,11 +83,22 @@ class AmpleSets:
                 self.candidates[k] = self.candidates[k - 1]
                 k -= 1
             self.candidates[k] = vector
+        self.searches += 1
+        self._mark_busy()
         for i in range(count):
             vector = self.candidates[i]
             if self._is_single(vector) != 0 and self._is_alone(vector) != 0:
                 return vector
         return -1
+
+    def _mark_busy(self) -> None:
+        """Mark the participants of enabled vectors."""
+        for i in range(self.kernel.enabled_count):
+            vector = self.kernel.enabled[i]
+            for k in range(self.kernel.all_start[vector], self.kernel.all_start[vector + 1]):
+                instance = self.kernel.slot_instance[self.kernel.all_slot[k]]
+                self.busy_with[instance] = vector if self.busy[instance] != self.searches else SEVERAL
+                self.busy[instance] = self.searches
 
     def _is_single(self, vector: int) -> int:
         """Whether only one edge of each participant can be taken."""
@@ -89,10 +118,12 @@ class AmpleSets:
     def _is_alone(self, vector: int) -> int:
         """Whether an enabled vector may be taken alone."""
         for i in range(self.kernel.all_start[vector], self.kernel.all_start[vector + 1]):
-            if self.hidden[self._group(self.kernel.all_slot[i])] == 0:
+            slot = self.kernel.all_slot[i]
+            if self.busy_with[self.kernel.slot_instance[slot]] != vector or self.hidden[self._group(slot)] == 0:
                 return 0
         self.runs += 1
         self.count = 0
+        self.alone = vector
         self.waits[vector] = self.runs
         for i in range(self.kernel.all_start[vector], self.kernel.all_start[vector + 1]):
             self._freeze(self.kernel.slot_instance[self.kernel.all_slot[i]])
@@ -108,15 +139,19 @@ class AmpleSets:
             for group in range(self.kernel.group_start[place], self.kernel.group_start[place + 1]):
                 slot = self.kernel.group_slot[group]
                 for k in range(self.slot_start[slot], self.slot_start[slot + 1]):
-                    if self._let_wait(self.slot_vector[k]) == 0:
+                    if self.waits[self.slot_vector[k]] != self.runs and self._let_wait(self.slot_vector[k]) == 0:
                         return 0
         return 1
 
-    def _freeze(self, instance: int) -> None:
+    def _freeze(self, instance: int) -> int:
+        """Freeze an instance; return 0 if another enabled vector can move it."""
         if self.frozen[instance] != self.runs:
+            if self.busy[instance] == self.searches and self.busy_with[instance] != self.alone:
+                return 0
             self.frozen[instance] = self.runs
             self.frozen_at[self.count] = instance
             self.count += 1
+        return 1
 
     def _bar(self, vector: int) -> int:
         """Ensure that a vector has a frozen participant; return 0 if that is not possible."""
@@ -128,34 +163,59 @@ class AmpleSets:
         for i in range(self.kernel.all_start[vector], self.kernel.all_start[vector + 1]):
             slot = self.kernel.all_slot[i]
             if self.kernel.ready[slot] == 0:
-                self._freeze(self.kernel.slot_instance[slot])
-                return 1
+                return self._freeze(self.kernel.slot_instance[slot])
         return 0
 
     def _let_wait(self, vector: int) -> int:
         """Ensure that a vector waits for a frozen instance; return 0 if that is not possible."""
-        if self.waits[vector] == self.runs:
-            return 1
         if self.kernel.vector_missing[vector] == 0:
             return 0
-        chosen = -1
-        is_chosen_open = False
-        for i in range(self.kernel.all_start[vector], self.kernel.all_start[vector + 1]):
-            slot = self.kernel.all_slot[i]
-            if self.kernel.ready[slot] != 0:
-                continue
-            is_open = self.open_guards[slot] != 0 and self._group(slot) >= 0
-            if self.frozen[self.kernel.slot_instance[slot]] == self.runs and not is_open:
-                self.waits[vector] = self.runs
-                return 1
-            if chosen < 0 or (is_chosen_open and not is_open):
-                chosen = slot
-                is_chosen_open = is_open
         self.waits[vector] = self.runs
-        self._freeze(self.kernel.slot_instance[chosen])
-        group = self._group(chosen)
+        self.chosen = -1
+        for i in range(self.own_start[vector], self.own_start[vector + 1]):
+            slot = self.own_slot[i]
+            if self.kernel.ready[slot] == 0 and self._is_stopped(slot) != 0:
+                return 1
+        for i in range(self.gates_start[vector], self.gates_start[vector + 1]):
+            gate = self.gates[i]
+            if self.kernel.gate_missing[gate] == 0:
+                continue
+            if self.listed[gate] != self.searches:
+                self._list(gate)
+            for k in range(self.gate_slot_start[gate], self.list_end[gate]):
+                if self._is_stopped(self.list_slot[k]) != 0:
+                    return 1
+        if self._freeze(self.kernel.slot_instance[self.chosen]) == 0:
+            return 0
+        group = self._group(self.chosen)
         if group >= 0:
             for k in range(self.guard_start[group], self.guard_start[group + 1]):
                 if self._bar(self.guard_vector[k]) == 0:
                     return 0
         return 1
+
+    def _is_stopped(self, slot: int) -> int:
+        """Whether a slot without enabled edges keeps its vectors from being taken, because its instance is frozen.
+        Otherwise it may become `chosen`, which is the first one without open guards, or the first one."""
+        is_open = 1 if self.open_guards[slot] != 0 and self._group(slot) >= 0 else 0
+        if is_open == 0 and self.frozen[self.kernel.slot_instance[slot]] == self.runs:
+            return 1
+        if self.chosen < 0 or is_open < self.is_chosen_open or (is_open == self.is_chosen_open and slot < self.chosen):
+            self.chosen = slot
+            self.is_chosen_open = is_open
+        return 0
+
+    def _list(self, gate: int) -> None:
+        """List the slots of a gate that have no enabled edges."""
+        self.listed[gate] = self.searches
+        missing = self.kernel.gate_missing[gate]
+        at = self.gate_slot_start[gate]
+        end = at
+        while missing != 0:
+            slot = self.gate_slot[at]
+            at += 1
+            if self.kernel.ready[slot] == 0:
+                self.list_slot[end] = slot
+                end += 1
+                missing -= 1
+        self.list_end[gate] = end

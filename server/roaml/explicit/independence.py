@@ -33,6 +33,9 @@ class Independence(Record, frozen=True, eq=False):
         dependent_start, dependent_vector: for each of these groups, the vectors of other instances that depend on it.
         guard_start, guard_vector: for each group, the vectors of other instances that write a variable in its guards.
         open_guards: for each slot, whether one of its groups has such vectors.
+        own_start, own_slot: the slots of each vector that are in no other vector.
+        gates_start, gates: the gates of each vector (`roaml.smc.kernel` defines gates).
+        gate_slot_start, gate_slot: the slots of each gate.
         is_fleeting: whether a state with only one choice need not be a state of the search: the goal does not depend on
             conditions that hold in a state for ever.
     """
@@ -45,6 +48,12 @@ class Independence(Record, frozen=True, eq=False):
     guard_start: Ints
     guard_vector: Ints
     open_guards: Ints
+    own_start: Ints
+    own_slot: Ints
+    gates_start: Ints
+    gates: Ints
+    gate_slot_start: Ints
+    gate_slot: Ints
     is_fleeting: bool
 
 
@@ -166,8 +175,26 @@ class _Analysis:
             *_ranges(dependent_lists),
             *_ranges(guard_lists),
             array("i", open_guards),
+            *_participants(program),
             is_fleeting=AT_END not in goal.lower,
         )
+
+
+def _participants(program: Program) -> tuple[Ints, Ints, Ints, Ints, Ints, Ints]:
+    """`own_start`, `own_slot`, `gates_start`, `gates`, `gate_slot_start` and `gate_slot`."""
+    gates = range(len(program.gate_start) - 1)
+    own: list[list[int]] = [[] for _ in program.vector_missing]
+    gates_of: list[list[int]] = [[] for _ in program.vector_missing]
+    slots_of: list[list[int]] = [[] for _ in gates]
+    for slot, number in enumerate(program.slot_vector):
+        if number >= 0:
+            own[number].append(slot)
+        elif number <= -2:
+            slots_of[-2 - number].append(slot)
+    for gate in gates:
+        for vector in program.gate_vector[program.gate_start[gate] : program.gate_start[gate + 1]]:
+            gates_of[vector].append(gate)
+    return *_ranges(own), *_ranges(gates_of), *_ranges(slots_of)
 
 
 def _union(vectors: dict[int, int], variables: int) -> int:
