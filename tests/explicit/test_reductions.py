@@ -356,3 +356,18 @@ def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     text = capsys.readouterr().out
     assert "stopped at 30,000 states" in text
     assert text.endswith("\nno value was computed\n")
+
+
+def test_the_last_line_names_properties_without_the_uniform_value(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    written = counters(7, CHOICE)
+    written["properties"].append({"name": "q", "expression": probability(op("F", True))})
+    file = tmp_path / "model.jani"
+    file.write_text(json.dumps(written), encoding="utf-8")
+    assert run(["verify", str(file), "--exhaustive"]) == 0
+    text = capsys.readouterr().out
+    assert "  not computed: the value under uniform choices" in text
+    assert "q: = 1 for all schedulers" in text
+    values = "minimum and maximum over all schedulers, value under uniform choices (not of `p`); reductions"
+    assert f"\ncomputed from all reachable states: {values}" in text

@@ -151,6 +151,24 @@ def test_equal_extremes_are_the_value_for_all_schedulers(capsys: pytest.CaptureF
     assert "uniform" not in row
     uniform = text_of(capsys, file, "--scheduler", "uniform")
     assert uniform.startswith("p: = 0.5 for all schedulers, exact, ")
+    closing = (
+        "exact values, computed from all reachable states: minimum and maximum over all schedulers, which are equal"
+    )
+    assert f"\n{closing}; reductions" in uniform
+
+
+def test_uniform_values_beside_values_for_all_schedulers(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """The last line fits both: the value of `p` is only that under uniform choices."""
+    choice = automaton("a", "s t u", [edge("s", way("t", x=1)), edge("s", way("u"))])
+    properties = {"p": probability(op("F", op("=", "x", 1))), "q": probability(op("F", True))}
+    file = write(tmp_path, document(choice, variables=[variable("x")], properties=properties))
+    out = text_of(capsys, file, "--scheduler", "uniform")
+    assert out.startswith("p: = 0.5 under uniform choices, exact, ")
+    assert "\nq: = 1 for all schedulers, exact, " in out
+    both = "value under uniform choices, which is that of all schedulers where a result says so"
+    assert f"\nexact values, computed from all reachable states: {both}; use" in out
+    out = text_of(capsys, file, "--scheduler", "uniform", "--property", "p")
+    assert "\nexact values, computed from all reachable states: value under uniform choices; use" in out
 
 
 def test_traces_estimate_the_uniform_value_between_different_extremes(

@@ -74,6 +74,8 @@ if TYPE_CHECKING:
 INTERRUPTED = 130
 WIDTH_OF_TREES = 0.05
 """Half the width of the interval that the default number of traces of a tree guarantees for every probability."""
+MAX_NAMED = 3
+"""The maximum number of properties that a note about the values names."""
 MAX_TRACES_IN_ONE_PROCESS = 20_000
 """The maximum number of traces of a tree that are generated in one process, because starting more processes would take
 longer than it saves."""
@@ -398,14 +400,23 @@ class _Verification:
         Args:
             uniform_only: whether only the values under uniform choices are of interest.
         """
-        exact = [result.exact for result in self.results if result.exact is not None]
+        exact = {result.name: result.exact for result in self.results if result.exact is not None}
         if not exact:
             return "no value was computed"
-        values = [] if uniform_only else ["minimum and maximum over all schedulers"]
-        if all(computed.uniform is not None for computed in exact):
-            values.append("value under uniform choices")
+        values = []
+        if not uniform_only:
+            values.append("minimum and maximum over all schedulers")
+        elif all(computed.agrees for computed in exact.values()):
+            values.append("minimum and maximum over all schedulers, which are equal")
+        else:
+            also = any(computed.agrees for computed in exact.values())
+            same = ", which is that of all schedulers where a result says so" if also else ""
+            values.append(f"value under uniform choices{same}")
+        uniform = [name for name, computed in exact.items() if computed.uniform is not None]
+        if uniform and not uniform_only:
+            values.append(f"value under uniform choices{_except([name for name in exact if name not in uniform])}")
         end = ""
-        if any(computed.is_reduced for computed in exact):
+        if any(computed.is_reduced for computed in exact.values()):
             end = "; reductions left out choices that do not change these values"
         return f"{verb} from all reachable states: {', '.join(values)}{end}"
 
@@ -521,6 +532,13 @@ def _executor(address: str | None) -> Iterator[tuple[Executor | None, int]]:
         raise UsageError(f"there is no Dask scheduler at {address}: {error}") from None
     with client:
         yield client.get_executor(), max(1, sum(client.nthreads().values()))
+
+
+def _except(names: list[str]) -> str:
+    """A note that names the properties to which a statement does not apply; "" if there are none."""
+    shown = ", ".join(f"`{name}`" for name in names[:MAX_NAMED])
+    more = f" and {len(names) - MAX_NAMED} more" if len(names) > MAX_NAMED else ""
+    return f" (not of {shown}{more})" if names else ""
 
 
 def _diagnostic(options: argparse.Namespace, fault: FaultError) -> Diagnostic | None:

@@ -14,6 +14,7 @@ from roaml.smc.choices import Choices
 from roaml.smc.end import End
 from roaml.smc.run import Answer, ratio_of
 from roaml.verification.expectations import NO_EXPECTATION
+from roaml.verification.growth import advice
 from roaml.verification.refusal import Refusal
 from roaml.verification.results import Result
 from roaml.verification.schedulers import may_differ
@@ -68,6 +69,9 @@ def _block(result: Result, place_of: PlaceOf, level: StuckLevel, shown: str, *, 
         lines.append(f"{result.name}: not answered: {_refusal_text(result.refusal)}")
     if result.undecided:
         lines.append(f"{result.name}: undecided: {result.undecided}, {result.seconds:.1f} s")
+        if result.growing:
+            growing = ", ".join(variable.text for variable in result.growing)
+            lines.append(f"  more and more values so far: {growing}; {advice(result.growing)}")
     if result.exact is not None:
         name = f"{result.name} ({PROBABILITY})" if result.includes_stuck else result.name
         estimate = _estimate(result.answer) if result.answer is not None and result.has_uniform_estimate else ""
@@ -225,6 +229,10 @@ def row(result: Result) -> dict[str, Any]:
         values["exact"] = exact_report.row(result.exact)
     if result.undecided:
         values["undecided"] = result.undecided
+        values["growing"] = [
+            {"variable": v.name, "automaton": v.automaton, "values": v.values, "least": v.least, "greatest": v.greatest}
+            for v in result.growing
+        ]
     values["interrupted"] = result.is_interrupted
     values["verdict"] = _verdict(result)
     values["expectations"] = [

@@ -58,17 +58,17 @@ class StateLimits(Record, frozen=True):
 
 
 class LimitError(Exception):
-    """A search has ended before all states were known.
+    """A search has ended before all states were known. The message is a phrase for users.
 
     Attributes:
         states: the number of states that were reached.
-        why: the limit, as a phrase for users.
+        search: the search; `None` if it has not begun.
     """
 
-    def __init__(self, states: int, why: str) -> None:
-        super().__init__(f"stopped at {states:,} {'state' if states == 1 else 'states'}: {why}")
+    def __init__(self, message: str, states: int, search: Any = None) -> None:
+        super().__init__(message)
         self.states = states
-        self.why = why
+        self.search = search
 
 
 class Space(Record, frozen=True):
@@ -128,9 +128,8 @@ def explore(
     """
     kernel_module, search_module = modules or _modules()
     if checker.initial_states > limits.states:
-        raise LimitError(
-            checker.initial_states, f"they are initial states, and more than {limits.states:,} (--max-states)"
-        )
+        many = f"there are {checker.initial_states:,} initial states, more than {limits.states:,} (--max-states)"
+        raise LimitError(many, checker.initial_states)
     compiled = checker.compiled(property_)
     goal = compiled.goal
     program = compiled.program
@@ -157,7 +156,7 @@ def explore(
             watch(search.count, search.expanded)
         match status:
             case codes.PART if limits.transitions is not None and transitions > limits.transitions:
-                raise LimitError(search.count, f"there are more than {limits.transitions:,} transitions")
+                raise _stopped(search, f", with more than {limits.transitions:,} transitions")
             case codes.PART:
                 continue
             case codes.COMPLETE:
@@ -166,13 +165,22 @@ def explore(
                 problem = TraceProblem(0, *search.fault())
                 return Space(checker, property_, search, search.problem, problem, is_reduced)
             case codes.STATES:
-                raise LimitError(search.count, f"there are more than {limits.states:,} (--max-states)")
+                raise _stopped(search, " (--max-states)")
             case codes.MEMORY:
-                size = search.memory_used() / (1 << 30)
-                raise LimitError(search.count, f"they occupy {size:.1f} GiB (--max-memory)")
+                share = ", half of the free memory" if limits.bytes is None else ""
+                raise _stopped(search, f", which occupy {_size(search.memory_used())}{share} (--max-memory)")
             case _:
-                many = f"one of them has more than {limits.combinations:,} combinations of edges"
-                raise LimitError(search.count, many)
+                raise _stopped(search, f": one of them has more than {limits.combinations:,} combinations of edges")
+
+
+def _size(many: int) -> str:
+    """A number of bytes for users."""
+    return f"{many / (1 << 30):.1f} GiB" if many >= 1 << 30 else f"{-(-many // (1 << 20)):,} MiB"
+
+
+def _stopped(search: Any, why: str) -> LimitError:
+    many = f"{search.count:,} {'state' if search.count == 1 else 'states'}"
+    return LimitError(f"stopped at {many}{why}", search.count, search)
 
 
 def search_tables(checker: ModelChecker, property_: CompiledProperty, limits: StateLimits) -> Tables:

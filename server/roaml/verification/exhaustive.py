@@ -15,6 +15,7 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.program import AT_END, FALSE, TRUE
 from roaml.smc.statistics import Bounds
 from roaml.verification.expectations import Expectation, Verdict
+from roaml.verification.growth import GrowingVariable, growing_variables
 from roaml.verification.results import Exact, Proof, ShortestTrace, is_same
 from roaml.verification.schedulers import is_minimised
 
@@ -30,7 +31,12 @@ _ESTIMATE = "omit --exhaustive to estimate the value from traces with uniform ch
 
 
 class UndecidedError(Exception):
-    """The states of the model do not answer a property; the message contains the reason."""
+    """The states of the model do not answer a property; the message contains the reason. `growing` are the variables
+    because of which there are so many states that a limit was reached."""
+
+    def __init__(self, message: str, growing: tuple[GrowingVariable, ...] = ()) -> None:
+        super().__init__(message)
+        self.growing = growing
 
 
 def exact_values(
@@ -59,7 +65,8 @@ def exact_values(
             return _partly(checker, property_, limits, watch)
         return values_from(explore(checker, property_, limits, watch), limits)
     except LimitError as error:
-        raise UndecidedError(f"{error}; {_ESTIMATE}") from None
+        variables = () if error.search is None else growing_variables(checker, error.search)
+        raise UndecidedError(f"{error}; {_ESTIMATE}", variables) from None
 
 
 def alone(checker: ModelChecker, property_: CompiledProperty) -> tuple[ModelChecker, CompiledProperty]:

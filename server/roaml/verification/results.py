@@ -19,6 +19,7 @@ from roaml.smc.run import Answer, Options
 from roaml.smc.statistics import Bounds
 from roaml.smc.story import Story, build_story
 from roaml.verification.expectations import Verdict
+from roaml.verification.growth import GrowingVariable
 from roaml.verification.refusal import Refusal
 from roaml.verification.schedulers import is_minimised
 from roaml.verification.stuck import Stuck
@@ -209,6 +210,7 @@ class Result(PartlyCompared, frozen=True):
             considered.
         refusal: the reason why there is no answer; `None` if there is one.
         undecided: the reason why the exploration of all states could not decide the property; "" if it could.
+        growing: the variables because of which the exploration has reached a limit.
         fault: the error that is the cause of `refusal`.
         traces: the traces of `answer`, which can be simulated again.
         comment: a description of what the property requires; "" if the model contains none.
@@ -228,6 +230,7 @@ class Result(PartlyCompared, frozen=True):
     choices: Choices | None = None
     refusal: Refusal | None = None
     undecided: str = ""
+    growing: tuple[GrowingVariable, ...] = ()
     fault: FaultError | None = None
     traces: Traces | None = None
     comment: str = ""

@@ -453,7 +453,13 @@ class Verifier(Record, frozen=True):
             open_ = tuple(Verdict(expectation, False, False, under="so far") for expectation in expectations)
             seconds = time.monotonic() - began
             return Result(
-                property_.question.name, None, open_, seconds, undecided=str(error), comment=_comment(property_)
+                property_.question.name,
+                None,
+                open_,
+                seconds,
+                undecided=str(error),
+                growing=error.growing,
+                comment=_comment(property_),
             )
         verdicts = tuple(check_exactly(expectation, exact, property_.question) for expectation in expectations)
         seconds = time.monotonic() - began

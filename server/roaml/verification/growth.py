@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Names the variables that make the states of a model many, for users whose search has ended at a limit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from roaml.explicit.spreads import Spread, growing
+from roaml.record import Record
+from roaml.scxml.names import CLOCK
+from roaml.smc.model import ModelChecker
+from roaml.views.ends import is_event, is_translation
+from roaml.views.variables import variable_phrases
+
+MAX_VARIABLES = 3
+"""The maximum number of variables that are named."""
+
+
+class GrowingVariable(Record, frozen=True):
+    """A variable with more and more values in the states that a search has reached.
+
+    Attributes:
+        name: the name of the variable for users.
+        automaton: the automaton that declares it; "" for a variable of the model.
+        values: the number of different values, at least; an array is one value.
+        least, greatest: the range of the values; of the elements of an array.
+        is_time: whether it contains the time of the clock.
+    """
+
+    name: str
+    automaton: str
+    values: int
+    least: float
+    greatest: float
+    is_time: bool = False
+
+    @property
+    def text(self) -> str:
+        """A phrase for users."""
+        if self.is_time:
+            return "the time of the clock"
+        owner = f" of `{self.automaton}`" if self.automaton else ""
+        return f"`{self.name}`{owner} ({_number(self.least)} to {_number(self.greatest)})"
+
+
+def growing_variables(checker: ModelChecker, search: Any) -> tuple[GrowingVariable, ...]:
+    """The variables that grow with a search: those with most values, and the time of the clock as the last one.
+
+    The variables of the model that the translation of a system adds contain the last message of an event. They are only
+    returned if no variable of an automaton grows, because their values come from one.
+    """
+    spreads = growing(checker, search)
+    named = [_named(checker, spread) for spread in spreads]
+    own = [variable for variable in named if not variable.is_time]
+    if is_translation(checker.model):
+        own = [variable for variable in own if variable.automaton] or [
+            variable for variable in own if not any(other.is_time for other in named)
+        ]
+    return (*own[:MAX_VARIABLES], *(variable for variable in named if variable.is_time))
+
+
+def advice(variables: Sequence[GrowingVariable]) -> str:
+    """What to do about such variables, as a phrase for users."""
+    remedies = []
+    if any(not variable.is_time for variable in variables):
+        remedies.append("give variables a maximum in the model")
+    if any(variable.is_time for variable in variables):
+        remedies.append("shorten the time (--max-time)")
+    return " or ".join(remedies)
+
+
+def _named(checker: ModelChecker, spread: Spread) -> GrowingVariable:
+    values, least, greatest = spread.values, spread.least, spread.greatest
+    if spread.instance is None:
+        return GrowingVariable(spread.name, "", values, least, greatest)
+    automaton = checker.legend.layout.instances[spread.instance].automaton
+    events = {automaton.name for automaton in checker.model.automata if is_event(automaton)}
+    name = variable_phrases(automaton, events.__contains__).get(spread.name, spread.name)
+    return GrowingVariable(name, automaton.name, values, least, greatest, automaton.name == CLOCK)
+
+
+def _number(value: float) -> str:
+    return f"{value:,}" if isinstance(value, int) else f"{value:.6g}"
