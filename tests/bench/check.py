@@ -170,7 +170,7 @@ BENCHMARKS: dict[str, Benchmark] = {
 
 _CHECK = """
 import sys, time
-from as2fm_lsp.__main__ import spare_the_collector
+from as2fm_lsp.collector import spare_the_collector
 from roaml import api
 spare_the_collector()
 before = time.perf_counter()

@@ -147,7 +147,7 @@ def _peak(runs: list[Run]) -> Row:
 
 _TRANSLATE = """
 import json, resource, sys, time
-from as2fm_lsp.__main__ import spare_the_collector
+from as2fm_lsp.collector import spare_the_collector
 from roaml import api
 from roaml.jani.writer import write
 from roaml.model.parameters import Overrides

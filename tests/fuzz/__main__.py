@@ -16,7 +16,7 @@ import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from as2fm_lsp.__main__ import spare_the_collector
+from as2fm_lsp.collector import spare_the_collector
 from fuzz.pairs import Outcome, choose, outcome
 from fuzz.runner import Ran, run, run_all
 from fuzz.strategies import plan, strategies

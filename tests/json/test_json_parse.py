@@ -25,6 +25,7 @@ from roaml.json_syntax import (
     Member,
     parse,
 )
+from roaml.json_syntax.parse import _Parser
 from roaml.text import Span, apply_edits
 
 
@@ -496,3 +497,31 @@ def test_half_typed_documents(document: Any, data: st.DataObject) -> None:
         value, findings = parse(damaged)
         assert all(0 <= start <= end <= len(damaged) for start, end in spans(value))
         assert list(findings) == sorted(findings, key=lambda finding: finding.span)
+
+
+PIECES = (
+    *("{", "}", "[", "]", ",", ":", " ", "\n", ";", "=", "//c\n", "'q'", '"', "x", "+1", "\ufeff"),
+    *('"a"', '"a":', '"b" :', "null", "null,null", "1", "-2.5", "true", "123456789012345678901", '"a":1,', '"\\n"'),
+)
+FRAGMENTS = st.lists(st.sampled_from(PIECES), max_size=8).map("".join)
+BRACKETS = st.recursive(
+    FRAGMENTS,
+    lambda inner: st.tuples(st.sampled_from(("[{}]", '{{"k":{}}}')), st.lists(inner, max_size=3)).map(
+        lambda parts: parts[0].format(",".join(parts[1]))
+    ),
+)
+
+
+class _WithoutFastForm(_Parser):
+    def frequent(self, at: int) -> int:
+        return at
+
+
+@given(BRACKETS)
+@example("][null,nullnull;1{")
+@example('{"a" {"b":1}}')
+@example('[[1,,{"a":1 "b":true}]')
+def test_the_fast_form_agrees_with_the_general_one(text: str) -> None:
+    general = _WithoutFastForm(text)
+    value = general.run()
+    assert parse(text) == (value, tuple(sorted(general.findings, key=lambda finding: finding.span)))

@@ -10,36 +10,45 @@ A recursive function is written as a generator. It yields each recursive call, a
         return below + 1
 
     run(depth(root))
+
+A function that needs no step for some arguments can return the result itself for these, which is much faster.
 """
 
 from __future__ import annotations
 
 from collections.abc import Generator
-from typing import Any, TypeAlias, TypeVar
+from types import GeneratorType
+from typing import Any, TypeAlias, TypeVar, overload
 
 T = TypeVar("T")
 
 Steps: TypeAlias = Generator[Any, Any, T]
-"""A computation whose result is a `T`. Each value that it yields is another computation whose result it needs."""
+"""A computation whose result is a `T`. Each value that it yields is another computation whose result it needs, or that
+result."""
 
 
-def run(steps: Steps[T]) -> T:
-    """The result of the computation `steps`."""
+@overload
+def run(steps: Steps[T]) -> T: ...
+
+
+@overload
+def run(steps: T) -> T: ...
+
+
+def run(steps: Any) -> Any:
+    """The result of the computation `steps`; the value itself if it is no generator."""
+    if not isinstance(steps, GeneratorType):
+        return steps
     stack: list[Steps[Any]] = [steps]
     result: Any = None
     while stack:
         try:
-            step = stack[-1].send(result)
+            result = stack[-1].send(result)
         except StopIteration as end:
             stack.pop()
             result = end.value
         else:
-            stack.append(step)
-            result = None
-    return result  # type: ignore[no-any-return]
-
-
-def done(result: T) -> Steps[T]:
-    """A computation that has the result `result` without any step."""
+            if isinstance(result, GeneratorType):
+                stack.append(result)
+                result = None
     return result
-    yield  # never reached: makes this a generator

@@ -122,7 +122,16 @@ class Inference:
 
     # ---------------------------------------------------------------- expressions
 
-    def type(self, node: Expression, bound: Bound) -> Steps[Type]:
+    def type(self, node: Expression, bound: Bound) -> Steps[Type] | Type:
+        if isinstance(node, Name):
+            return self.name(node, node.identifier, bound)
+        if isinstance(node, Integer):
+            return INT
+        if isinstance(node, Boolean):
+            return BOOL
+        return self._type(node, bound)
+
+    def _type(self, node: Expression, bound: Bound) -> Steps[Type]:
         match node:
             case Name(identifier):
                 return self.name(node, identifier, bound)

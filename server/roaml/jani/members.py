@@ -13,7 +13,17 @@ from typing import NamedTuple
 from roaml.diagnostics import Severity
 from roaml.jani.node import Origin
 from roaml.jani.notes import SYNTAX, Notes
-from roaml.json_syntax import JsonArray, JsonBool, JsonError, JsonNumber, JsonObject, JsonString, JsonValue, kind
+from roaml.json_syntax import (
+    JsonArray,
+    JsonBool,
+    JsonError,
+    JsonNumber,
+    JsonObject,
+    JsonString,
+    JsonValue,
+    Member,
+    kind,
+)
 from roaml.text import Span
 
 HARMLESS = frozenset(("comment", "metadata"))
@@ -70,32 +80,30 @@ class Members:
     """The members of one object. If names are repeated, the last member is used."""
 
     def __init__(self, value: JsonObject, form: ObjectShape, source: ValueSource) -> None:
-        self.object = value
         self.form = form
         self.notes = source.notes
         self.source = source
+        self.origin = Origin(source.path, Span(value.start, value.end))
         self.values: dict[str, JsonValue] = {}
-        missing = set(form.required)
         for member in value.members:
-            key = member.key
-            missing.discard(key)
-            if key not in form.allowed:
-                if not key and member.start == member.key_end:
-                    continue  # the parser has reported the missing name
-                if key in HARMLESS:
-                    continue
-                place, known = member.key_content_span, sorted(form.allowed)
-                severity = Severity.WARNING if form.is_open else None
-                self.notes.unknown("member", key, place, known, code=SYNTAX, severity=severity, owner=form.phrase)
+            if member.key not in form.allowed:
+                self._report_unknown(member)
             elif member.value is not None and not isinstance(member.value, JsonError):
-                self.values[key] = member.value
-        if missing:
-            names = " and ".join(f"`{name}`" for name in sorted(missing))
-            self.notes.syntax(Span(value.start, value.start + 1), f"{form.phrase} needs {names}")
+                self.values[member.key] = member.value
+        if not form.required <= self.values.keys():
+            missing = form.required.difference(member.key for member in value.members)
+            if missing:
+                names = " and ".join(f"`{name}`" for name in sorted(missing))
+                self.notes.syntax(Span(value.start, value.start + 1), f"{form.phrase} needs {names}")
 
-    @property
-    def origin(self) -> Origin:
-        return self.source.origin(self.object.span)
+    def _report_unknown(self, member: Member) -> None:
+        if not member.key and member.start == member.key_end:
+            return  # the parser has reported the missing name
+        if member.key in HARMLESS:
+            return
+        place, known = member.key_content_span, sorted(self.form.allowed)
+        severity = Severity.WARNING if self.form.is_open else None
+        self.notes.unknown("member", member.key, place, known, code=SYNTAX, severity=severity, owner=self.form.phrase)
 
     def string(self, key: str) -> JsonString | None:
         """The member `key`, which must be a non-empty string; `None` if it is missing, empty or not a string."""
@@ -114,7 +122,9 @@ class Members:
 
     def comment(self, key: str = "comment") -> str | None:
         """The member `key`, which must be a string and may be empty; `None` if it is missing or not a string."""
-        value = self.values.get(key)
+        if key not in self.values:
+            return None
+        value = self.values[key]
         if isinstance(value, JsonString):
             return value.value
         self.source.wrong_kind(value, f"`{key}` must be a string")

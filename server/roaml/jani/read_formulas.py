@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable
 from typing import NamedTuple, TypeVar
 
 from roaml.diagnostics import Finding, Fix
-from roaml.jani.deep import Steps, done, run
+from roaml.jani.deep import Steps, run
 from roaml.jani.expressions import (
     ArrayAccess,
     ArrayConstructor,
@@ -98,14 +98,21 @@ class FormulaReader(ValueSource):
 
     # ---------------------------------------------------------------- any kind
 
-    def _expression(self, value: JsonValue) -> Steps[Expression]:
-        formula: Formula = yield self._formula(value)
+    def _expression(self, value: JsonValue) -> Steps[Expression] | Expression:
+        return self._compound(value) if isinstance(value, JsonObject) else self._simple(value)
+
+    def _compound(self, value: JsonObject) -> Steps[Expression]:
+        formula: Formula = yield self._object(value)
         if not isinstance(formula, ProperFormula):
             return formula
         self.notes.syntax(value.span, "this is only allowed in a property, not in an expression")
         return Missing(origin=formula.origin)
 
-    def _formula(self, value: JsonValue) -> Steps[Formula]:
+    def _formula(self, value: JsonValue) -> Steps[Formula] | Formula:
+        return self._object(value) if isinstance(value, JsonObject) else self._simple(value)
+
+    def _simple(self, value: JsonValue) -> Expression:
+        """An expression that contains no others."""
         match value:
             case JsonString():
                 if not value.value:
@@ -115,9 +122,6 @@ class FormulaReader(ValueSource):
                 return self._number(value)
             case JsonBool():
                 return Boolean(value.value, origin=self.origin(value.span))
-            case JsonObject():
-                formula: Formula = yield self._object(value)
-                return formula
             case _:
                 self.wrong_kind(value, "an expression must be a number, true, false, a name or an object `{ }`")
                 return Missing(origin=self.origin(value.span))
@@ -131,16 +135,14 @@ class FormulaReader(ValueSource):
         self.notes.syntax(value.span, "this number is too large; the greatest real number is about 1.8e308")
         return Missing(origin=origin)
 
-    def _object(self, value: JsonObject) -> Steps[Formula]:
+    def _object(self, value: JsonObject) -> Steps[Formula] | Formula:
         op = value.get("op")
         if op is None and value.get("constant") is not None:
             return self._constant(Members(value, _CONSTANT, self))
         if op is None and value.get("distribution") is not None:
-            sample: Formula = yield self._sample(Members(value, _DISTRIBUTION, self))
-            return sample
+            return self._sample(Members(value, _DISTRIBUTION, self))
         if isinstance(op, JsonString) and (form := _FORMS.get(op.value)):
-            formula: Formula = yield form.build(self, Members(value, form.shape, self), op.value)
-            return formula
+            return form.build(self, Members(value, form.shape, self), op.value)
         if isinstance(op, JsonString):
             self._unknown_operator(op)
         elif op is not None:
@@ -160,25 +162,16 @@ class FormulaReader(ValueSource):
 
     # ---------------------------------------------------------------- members
 
-    def _part(self, members: Members, key: str) -> Steps[Expression]:
+    def _part(self, members: Members, key: str) -> Steps[Expression] | Expression:
         value = members.values.get(key)
-        if value is None:
-            return Missing(origin=members.origin)
-        part: Expression = yield self._expression(value)
-        return part
+        return Missing(origin=members.origin) if value is None else self._expression(value)
 
-    def _formula_part(self, members: Members, key: str) -> Steps[Formula]:
+    def _formula_part(self, members: Members, key: str) -> Steps[Formula] | Formula:
         value = members.values.get(key)
-        if value is None:
-            return Missing(origin=members.origin)
-        part: Formula = yield self._formula(value)
-        return part
+        return Missing(origin=members.origin) if value is None else self._formula(value)
 
-    def _optional(self, members: Members, key: str) -> Steps[Expression | None]:
-        if key not in members.values:
-            return None
-        part: Expression = yield self._part(members, key)
-        return part
+    def _optional(self, members: Members, key: str) -> Steps[Expression] | Expression | None:
+        return self._part(members, key) if key in members.values else None
 
     def _parts(self, members: Members, key: str) -> Steps[tuple[Expression, ...]]:
         parts: list[Expression] = []
@@ -285,8 +278,8 @@ class FormulaReader(ValueSource):
         content: Expression = yield self._part(members, "exp")
         return OptionValue(content, comment=members.comment(), origin=members.origin)
 
-    def _empty_option(self, members: Members, _op: str) -> Steps[Formula]:
-        return done(EmptyOption(comment=members.comment(), origin=members.origin))
+    def _empty_option(self, members: Members, _op: str) -> Formula:
+        return EmptyOption(comment=members.comment(), origin=members.origin)
 
     def _call(self, members: Members, _op: str) -> Steps[Formula]:
         function = members.text("function") or ""
@@ -298,12 +291,12 @@ class FormulaReader(ValueSource):
         condition: Expression = yield self._part(members, "exp")
         return Selection(variable, condition, comment=members.comment(), origin=members.origin)
 
-    def _derivative(self, members: Members, _op: str) -> Steps[Formula]:
+    def _derivative(self, members: Members, _op: str) -> Formula:
         variable = members.string("var")
         if variable is None:
-            return done(Missing(origin=members.origin))
+            return Missing(origin=members.origin)
         origin = self.origin(variable.content_span)
-        return done(Derivative(variable.value, comment=members.comment(), origin=origin))
+        return Derivative(variable.value, comment=members.comment(), origin=origin)
 
     # ---------------------------------------------------------------- properties
 
@@ -423,8 +416,8 @@ class FormulaReader(ValueSource):
         comment, origin = members.comment(), members.origin
         return RewardBound(reward, accumulate, bounds or Interval(), comment=comment, origin=origin)
 
-    def _predicate(self, members: Members, op: str) -> Steps[Formula]:
-        return done(Predicate(StatePredicate(op), comment=members.comment(), origin=members.origin))
+    def _predicate(self, members: Members, op: str) -> Formula:
+        return Predicate(StatePredicate(op), comment=members.comment(), origin=members.origin)
 
 
 def _root(target: LValue) -> Expression:
@@ -442,7 +435,7 @@ class _Form(NamedTuple):
     """The shape of the objects with a certain `op`, and the function that creates the node from them."""
 
     shape: ObjectShape
-    build: Callable[[FormulaReader, Members, str], Steps[Formula]]
+    build: Callable[[FormulaReader, Members, str], Steps[Formula] | Formula]
 
 
 def _symbols(operators: type[enum.Enum]) -> list[str]:
@@ -451,7 +444,7 @@ def _symbols(operators: type[enum.Enum]) -> list[str]:
 
 def _forms(
     ops: Iterable[str],
-    build: Callable[[FormulaReader, Members, str], Steps[Formula]],
+    build: Callable[[FormulaReader, Members, str], Steps[Formula] | Formula],
     required: str = "",
     optional: str = "",
 ) -> dict[str, _Form]:

@@ -46,6 +46,8 @@ def model_scope(model: Model) -> TypeScope:
 
 def automaton_scope(scope: TypeScope, automaton: Automaton) -> TypeScope:
     """The names that can be used in `automaton`, an automaton of the model with the scope `scope`."""
+    if not automaton.variables and not automaton.functions:
+        return scope
     local = {variable.name: variable.type for variable in automaton.variables}
     functions = {function.name: function for function in automaton.functions}
     return replace(

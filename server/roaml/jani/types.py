@@ -72,7 +72,7 @@ def value_type(type_: Type) -> Type:
 def fits(type_: Type, target: Type) -> bool:
     """Whether a value of type `type_` may be stored in a variable of type `target`. An int fits a real; there is no
     other conversion."""
-    while True:
+    while type_ is not target:
         type_, target = value_type(type_), value_type(target)
         match type_, target:
             case (UnknownType(), _) | (_, UnknownType()):
@@ -85,6 +85,7 @@ def fits(type_: Type, target: Type) -> bool:
                 return True
             case _:
                 return type_ == target
+    return True
 
 
 def join(left: Type, right: Type) -> Type | None:

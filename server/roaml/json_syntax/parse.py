@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NoReturn
 
 from roaml.diagnostics import Finding, Fix, Related
 from roaml.json_syntax.strings import quote, unescape
@@ -28,6 +28,7 @@ from roaml.json_syntax.values import (
     Member,
     Nulls,
 )
+from roaml.record import Record, replace
 from roaml.text import Span, TextEdit
 
 MAX_DEPTH = 1000
@@ -58,6 +59,23 @@ _TOKEN = re.compile(
 """An ordinary token with the comma before it. Always matches; `lastindex` identifies the token."""
 _STRING, _KEY, _INTEGER, _REAL, _BOOL, _NULLS, _OPEN, _CLOSE = 2, 3, 4, 5, 6, 7, 8, 9
 
+_MEMBER = re.compile(
+    rf'{_SPACE}(?:(?:(,){_SPACE})?"([^"\\\x00-\x1f]*)"{_SPACE}:{_SPACE}(?:'
+    rf'"([^"\\\x00-\x1f]*)"(?!{_SPACE}:)'
+    r"|([\[{])"
+    r"|(-?(?:0|[1-9][0-9]{0,17}))(?![\w.+-])"
+    r"|(true|false)(?!\w)"
+    r")?|(\}))"
+)
+"""A frequent token of an object with the comma before it: a member, up to a bracket that opens; a name, if its value is
+of another kind; or the end."""
+_MEMBER_STRING, _MEMBER_OPEN, _MEMBER_INTEGER, _MEMBER_BOOL, _MEMBER_CLOSE = 3, 4, 5, 6, 7
+_ITEM = re.compile(
+    rf'{_SPACE}(?:(?:(,){_SPACE})?(?:"([^"\\\x00-\x1f]*)"(?!{_SPACE}:)|([\[{{])|(null(?:,null)*)(?!\w))|(\]))'
+)
+"""A frequent token of a list with the comma before it: an item, up to a bracket that opens; or the end."""
+_ITEM_STRING, _ITEM_OPEN, _ITEM_CLOSE = 2, 3, 5
+
 _COLON = re.compile(rf"{_SPACE}:")
 _ASSIGNMENT = re.compile(r"=>?")
 _NAME_AND_COLON = re.compile(r"([\w-]+)\s*:")
@@ -80,7 +98,7 @@ _FOREIGN_LITERALS = {"True": "true", "TRUE": "true", "False": "false", "FALSE": 
 _NO_NUMBERS = {"nan", "infinity", "inf"}
 
 
-class _Key(NamedTuple):
+class _Key(Record, frozen=True):
     """The name of a member whose value has not been read yet. `quotes` are the lengths of the opening and closing
     quote. `colon` is false until the colon after the name has been read."""
 
@@ -94,7 +112,7 @@ class _Key(NamedTuple):
         return Member(self.text, self.start, self.end, value, self.quotes)
 
 
-class _Bracket(NamedTuple):
+class _Bracket(Record, frozen=True):
     """An open bracket that is not the innermost one, with the state of the parser inside it."""
 
     start: int
@@ -149,7 +167,11 @@ class _Parser:
         """Read up to the end of one value; return the offset after it."""
         text, match = self.text, _TOKEN.match
         at = 0
-        while self.root is None and (token := match(text, at)):
+        while self.root is None:
+            if self.stack and self.key is None and self.comma < 0:
+                at = self.frequent(at)
+            token = match(text, at)
+            assert token is not None
             kind, at, comma = token.lastindex, token.end(), token.start(1)
             if self.comma >= 0:
                 comma, self.comma = max(comma, self.comma), -1
@@ -172,6 +194,41 @@ class _Parser:
                 self.value(JsonNumber(token.start(4), at, float(number), number), comma)
             else:
                 at = self.unusual(at, comma)
+        return at
+
+    def frequent(self, at: int) -> int:
+        """Read the text inside a bracket as far as it is valid and consists of frequent tokens; return the offset after
+        it. This is a fast form of the methods below, which read all texts."""
+        text, match_member, match_item, stack = self.text, _MEMBER.match, _ITEM.match, self.stack
+        is_object, parts, key = self.is_object, self.parts, None
+        while token := (match_member if is_object else match_item)(text, at):
+            kind, end = token.lastindex, token.end()
+            if kind == (_MEMBER_CLOSE if is_object else _ITEM_CLOSE):
+                outer = stack[-1].key
+                if len(stack) == 1 or (outer is not None and not outer.colon):
+                    break
+                self.parts, self.key = parts, None
+                self.leave(end)
+                is_object, parts = self.is_object, self.parts
+            elif (token[1] is None) is bool(parts):
+                break
+            elif kind == (_MEMBER_OPEN if is_object else _ITEM_OPEN):
+                if len(stack) >= MAX_DEPTH:
+                    break
+                name = _Key(token[2], token.start(2) - 1, token.end(2) + 1) if is_object else None
+                stack.append(_Bracket(self.start, is_object, parts, name))
+                self.start, self.is_object = end - 1, text[end - 1] == "{"
+                is_object, parts = self.is_object, []
+            elif not is_object:
+                parts.append(_frequent_item(token, end))
+            elif (value := _frequent_value(token, end)) is not None:
+                parts.append(Member(token[2], token.start(2) - 1, token.end(2) + 1, value))
+            else:
+                key, at = _Key(token[2], token.start(2) - 1, token.end(2) + 1), end
+                break
+            at = end
+        self.parts, self.key = parts, key
+        self.wants_comma = key is None and bool(parts)
         return at
 
     # ---------------------------------------------------------------- structure
@@ -269,7 +326,8 @@ class _Parser:
                 self.duplicate_names()
         else:
             value = JsonArray(self.start, end, tuple(self.parts))
-        self.start, self.is_object, self.parts, self.key = self.stack.pop()
+        around = self.stack.pop()
+        self.start, self.is_object, self.parts, self.key = around.start, around.is_object, around.parts, around.key
         self.wants_comma = False
         self.value(value, -1)
 
@@ -303,10 +361,11 @@ class _Parser:
 
     def key_without_value(self) -> None:
         assert self.key is not None
-        text, start, end, _, colon = self.key
-        self.parts.append(self.key.member(None))
+        key = self.key
+        self.parts.append(key.member(None))
         self.key, self.wants_comma = None, True
-        self.report(Span(start, end), f"{'a value' if colon else '`:` and a value'} must follow `{text[:40]}`")
+        missing = "a value" if key.colon else "`:` and a value"
+        self.report(Span(key.start, key.end), f"{missing} must follow `{key.text[:40]}`")
 
     def value_without_name(self, value: JsonValue) -> None:
         """Read a value where an object requires a name; a string is read as a name without a colon."""
@@ -373,7 +432,7 @@ class _Parser:
         """Read a colon that is not directly after its name."""
         self.comma = comma
         if self.key is not None and not self.key.colon:
-            self.key = self.key._replace(colon=True)
+            self.key = replace(self.key, colon=True)
         elif self.text[span.start] == ":":
             self.report(span, "unexpected colon; remove it", _removal(span))
         return span.end
@@ -455,6 +514,26 @@ class _Parser:
     def give_up(self) -> NoReturn:
         self.hopeless = True
         raise _HopelessError
+
+
+def _frequent_item(token: re.Match[str], end: int) -> JsonValue | Nulls:
+    """The item in a match of `_ITEM`, which ends at `end`."""
+    if token.lastindex == _ITEM_STRING:
+        return JsonString(token.start(2) - 1, end, token[2])
+    start = token.start(4)
+    return JsonNull(start, end) if end - start == len("null") else Nulls(start, end)
+
+
+def _frequent_value(token: re.Match[str], end: int) -> JsonValue | None:
+    """The value in a match of `_MEMBER`, which ends at `end`; `None` if the match contains only the name."""
+    kind = token.lastindex
+    if kind == _MEMBER_STRING:
+        return JsonString(token.start(3) - 1, end, token[3])
+    if kind == _MEMBER_INTEGER:
+        return JsonNumber(token.start(5), end, int(token[5]), token[5])
+    if kind == _MEMBER_BOOL:
+        return JsonBool(token.start(6), end, token[6] == "true")
+    return None
 
 
 def _insertion(at: int, inserted: str) -> Fix:
