@@ -454,6 +454,45 @@ def test_interrupted_by_the_keyboard(tmp_path: Path) -> None:
     assert kept["traces"] == row["traces"] > 0
 
 
+@pytest.mark.parametrize("is_group", [False, True])
+def test_terminated(tmp_path: Path, is_group: bool) -> None:
+    """SIGTERM, for example of `timeout`, alone or also to the workers: the same, without warnings of Python."""
+    name = write(tmp_path, coin())
+    options = (name, "--property", "heads", "--method", "fixed", "--max-traces", "900000000", "--jobs", "2")
+    with started(tmp_path, *options, "--format", "json", stderr=subprocess.PIPE, start_new_session=True) as running:
+        while not has_workers(running.pid):
+            assert running.poll() is None
+            time.sleep(0.05)
+        (os.killpg if is_group else os.kill)(running.pid, signal.SIGTERM)
+        out, err = running.communicate(timeout=TIMEOUT_S)
+    assert (running.returncode, err) == (143, "")
+    row = rows(out)["heads"]
+    assert row["interrupted"]
+    assert row["lower"] < 0.3 < row["upper"]
+
+
+def has_workers(main: int) -> bool:
+    """Whether a process has workers: children of its only child, from which they are forked."""
+    rows = subprocess.run(["ps", "-A", "-o", "ppid=,pid="], capture_output=True, text=True, check=True).stdout
+    parents = {int(child): int(parent) for parent, child in (row.split() for row in rows.splitlines())}
+    return any(parents.get(parent) == main for parent in parents.values())
+
+
+def test_interrupted_while_traces_look_for_stuck_ones(
+    command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The values are known by then."""
+
+    def interrupted(*_: Any) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("roaml.verification.verifier.Verifier.check_stuck", interrupted)
+    monkeypatch.setattr("roaml.verification.stuck.can_be_stuck", lambda _: True)
+    done = command("verify", write(tmp_path, coin()), "--property", "heads")
+    assert done.status == 130
+    assert done.out.startswith("heads: = 0.3 for all schedulers")
+
+
 def test_a_bar_on_a_terminal(tmp_path: Path) -> None:
     name = write(tmp_path, coin())
     ours, theirs = pty.openpty()

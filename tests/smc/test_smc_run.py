@@ -13,6 +13,7 @@ import tracemalloc
 from array import array
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import suppress
 from threading import Barrier
 from typing import Any
 
@@ -230,6 +231,33 @@ def test_examples_are_remembered() -> None:
     assert len(examples[TRUE]) == answer.tally.successes
     assert len(examples[FALSE]) == answer.failures or len(examples[FALSE]) == 1000
     assert answer.tally.shortest[TRUE] == min(examples[TRUE], key=lambda seen: seen.steps)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("is_first", [True, False])
+def test_the_end_of_workers_is_not_interrupted(
+    number: signal.Signals, is_first: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A signal in the meantime is delivered after the end, unless an earlier one is being handled."""
+    events = []
+
+    def stop(_: Pool) -> None:
+        signal.raise_signal(number)
+        events.append("workers ended")
+
+    def handler(received: int, _: object) -> None:
+        events.append(signal.Signals(received).name)
+
+    monkeypatch.setattr(Pool, "_stop", stop)
+    previous = signal.signal(number, handler)
+    try:
+        with suppress(KeyboardInterrupt), Pool():
+            if not is_first:
+                raise KeyboardInterrupt
+        assert signal.getsignal(number) is handler
+    finally:
+        signal.signal(number, previous)
+    assert events == ["workers ended", *([number.name] if is_first else [])]
 
 
 def test_the_first_fault_is_reported_however_traces_are_distributed() -> None:

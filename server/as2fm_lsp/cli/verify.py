@@ -17,6 +17,7 @@ from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
 from as2fm_lsp.cli.formats import CheckReport, Format, render
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
+from as2fm_lsp.cli.interrupts import Interrupts
 from as2fm_lsp.cli.mock_options import MESSAGES, declarations_in
 from as2fm_lsp.cli.model_arguments import (
     UsageError,
@@ -71,7 +72,6 @@ if TYPE_CHECKING:
     from roaml.smc.story import Story
     from roaml.verification.tree_outcome import TreeOutcome
 
-INTERRUPTED = 130
 WIDTH_OF_TREES = 0.05
 """Half the width of the interval that the default number of traces of a tree guarantees for every probability."""
 MAX_NAMED = 3
@@ -83,8 +83,16 @@ longer than it saves."""
 
 def run(arguments: Sequence[str]) -> int:
     options = parser().parse_args(arguments)
+    with Interrupts() as interrupts:
+        try:
+            return _checked(options, interrupts)
+        except KeyboardInterrupt:  # before there are results
+            return interrupts.status
+
+
+def _checked(options: argparse.Namespace, interrupts: Interrupts) -> int:
     try:
-        return _run(options)
+        return _run(options, interrupts)
     except (UsageError, RangeError, api.ConstantError, StateError) as error:
         return _fail(str(error))
     except (api.PathError, api.PropertyError, WorkersLostError) as error:
@@ -95,13 +103,13 @@ def run(arguments: Sequence[str]) -> int:
         return _fail(f"{shown_path(str(error.filename or options.main))}: {error.strerror or error}")
 
 
-def _run(options: argparse.Namespace) -> int:
+def _run(options: argparse.Namespace, interrupts: Interrupts) -> int:
     expectations = expectations_in(options.expect)
     limits = limits_in(options)
     check_model_arguments(options)
     settings = settings_of(options.main)
     if names_tree(options.main):
-        return _run_tree(options, expectations, limits, settings)
+        return _run_tree(options, expectations, limits, settings, interrupts)
     only_uniform = settings.only_uniform if options.scheduler is None else options.scheduler is Scheduler.UNIFORM
     names = options.property or None
     try:
@@ -124,10 +132,16 @@ def _run(options: argparse.Namespace) -> int:
         return _fault(options, target, fault)
     if not verifier.names:
         raise UsageError(f"{shown_path(options.main)} has no properties; list a file of properties in the system")
-    return _Verification(options, verifier).run()
+    return _Verification(options, verifier, interrupts).run()
 
 
-def _run_tree(options: argparse.Namespace, expectations: list[Expectation], limits: Options, settings: Settings) -> int:
+def _run_tree(
+    options: argparse.Namespace,
+    expectations: list[Expectation],
+    limits: Options,
+    settings: Settings,
+    interrupts: Interrupts,
+) -> int:
     """Verify a tree without a system, with mocks (docs/spec/mocks.md)."""
     from roaml.verification.tree_outcome import (  # noqa: PLC0415 - systems start faster without it
         SUCCEEDS,
@@ -155,7 +169,7 @@ def _run_tree(options: argparse.Namespace, expectations: list[Expectation], limi
         raise UsageError(str(error)) from None
     except api.ModelError as error:
         return _errors(options, error_report(error))
-    return _Verification(options, verifier, (tree.mocked, outcome)).run()
+    return _Verification(options, verifier, interrupts, (tree.mocked, outcome)).run()
 
 
 class _Verification:
@@ -166,11 +180,13 @@ class _Verification:
         self,
         options: argparse.Namespace,
         verifier: Verifier,
+        interrupts: Interrupts,
         tree: tuple[MockedTree, TreeOutcome | None] | None = None,
     ) -> None:
         self.tree = tree
         self.options = options
         self.verifier = verifier
+        self.interrupts = interrupts
         self.target = verifier.target
         self.limits = verifier.options
         self.stuck_result: stuck.StuckResult | None = None
@@ -194,11 +210,15 @@ class _Verification:
             can_check = self.tree is None and not interrupted and not self.options.exhaustive
             if can_check and stuck.can_be_stuck(checker):
                 includes_stuck = any(property_.question.is_stuck for property_ in checker.compiled_properties)
-                self.stuck_result = self._check_stuck(None if includes_stuck or self.faults else bar)
+                try:
+                    self.stuck_result = self._check_stuck(None if includes_stuck or self.faults else bar)
+                except KeyboardInterrupt:
+                    self.interrupts.ignore()
+                    interrupted = True
         self._print()
         self._print_faults()
         is_met = all(r.is_met for r in self.results) and (self.stuck_result is None or self.stuck_result.is_met)
-        status = INTERRUPTED if interrupted else CLEAN if is_met else FOUND
+        status = self.interrupts.status if interrupted else CLEAN if is_met else FOUND
         if not interrupted and (self.options.traces is not None or self.options.explain):
             self._write_traces()
         return status
@@ -232,6 +252,7 @@ class _Verification:
         except NoThresholdError as error:
             raise UsageError(str(error)) from None
         except KeyboardInterrupt:
+            self.interrupts.ignore()
             seconds = time.monotonic() - began
             results = [verifier.interrupted(e, tally, seconds) for e, tally in zip(properties, tallies, strict=True)]
         if self.state is not None:
@@ -280,6 +301,7 @@ class _Verification:
         try:
             result = self.verifier.answer(property_, pool, tally, watch, bar.pulse)
         except KeyboardInterrupt:
+            self.interrupts.ignore()
             result = self.verifier.interrupted(property_, tally, time.monotonic() - began)
         if self.state is not None:
             self.state.keep(name, payload, tally, now=True)
@@ -291,6 +313,7 @@ class _Verification:
         try:
             self.verifier.checker.search(property_, self.limits, pool, search, bar.search, bar.pulse)
         except KeyboardInterrupt:
+            self.interrupts.ignore()
             interrupted = True
         return self.verifier.sampled(property_, search, time.monotonic() - began, is_interrupted=interrupted)
 
@@ -311,6 +334,7 @@ class _Verification:
                 property_, limits, lambda states, done: bar.states(property_.question, states, done)
             )
         except KeyboardInterrupt:
+            self.interrupts.ignore()
             return Result(property_.question.name, None, (), time.monotonic() - began, is_interrupted=True)
 
     def _print(self) -> None:

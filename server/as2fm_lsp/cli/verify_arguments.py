@@ -37,7 +37,7 @@ many traces have ended for each reason. A trace is stuck if its automata wait fo
 advance; a warning with an example reports this.
 
 exit status: 0 success; 1 an expectation is not met, a property cannot be answered, the model has errors, or a trace got
-stuck (with --stuck error); 2 usage error; 3 internal error; 130 interrupted
+stuck (with --stuck error); 2 usage error; 3 internal error; 130 interrupted (143 by SIGTERM)
 """
 TRACE_OPTIONS = (
     "confidence",

@@ -7,11 +7,14 @@ if a worker dies, its batch is run again.
 
 from __future__ import annotations
 
+import signal
+import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from itertools import islice
-from typing import TYPE_CHECKING, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 from roaml.smc.batch import BatchOutcome, Bundle, Simulator, Task, run, run_all, run_in_worker, run_on, start_worker
 from roaml.smc.program import Compiled
@@ -76,7 +79,8 @@ class Pool:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        self._stop()
+        with _uninterrupted(redelivers=kind is not KeyboardInterrupt):
+            self._stop()
 
     def outcomes(self, tasks: Iterable[Task], pulse: Pulse | None = None) -> Iterator[tuple[Task, BatchOutcome]]:
         """The outcome of each task, in the order of the tasks. The caller may stop the iteration at any time.
@@ -171,6 +175,31 @@ class Pool:
             self._stopping.set()
         self.executor.shutdown(wait=True, cancel_futures=True)
         self.executor = None
+
+
+@contextmanager
+def _uninterrupted(*, redelivers: bool) -> Iterator[None]:
+    """Delay SIGINT and SIGTERM while workers end, which takes a tenth of a second: if the end of `executor` is
+    interrupted, Python may wait for ever. Other threads than the main one receive no signals.
+
+    Args:
+        redelivers: whether such a signal is delivered after this, instead of ignored.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    received: list[int] = []
+    previous: dict[int, Any] = {}
+    for number in (int(signal.SIGINT), int(signal.SIGTERM)):
+        if signal.getsignal(number) is not None:  # a handler that Python has not set cannot be restored
+            previous[number] = signal.signal(number, lambda number, _: received.append(number))
+    try:
+        yield
+    finally:
+        for number, handler in previous.items():
+            signal.signal(number, handler)
+        if received and redelivers:
+            signal.raise_signal(received[0])
 
 
 def _next_size(size: int, seconds: float) -> int:
