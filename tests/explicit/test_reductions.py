@@ -186,6 +186,41 @@ def test_both_searches_leave_out_the_same(written: Json) -> None:
             assert one.search.choices_of(state) == other.search.choices_of(state)
 
 
+def test_paths_of_states_that_are_not_stored_are_remembered(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whether a path is known changes the number of steps, but neither the states nor their choices. With one place for
+    remembered states, most states find another one there. If short paths end at their maximum length, the choices may
+    differ, but not the values."""
+    engine = plain_search()
+    saved: list[int] = []
+
+    @given(networks())
+    @settings(max_examples=examples(60), deadline=None)
+    def run(written: Json) -> None:
+        checker, property_ = question_of(written)
+        compiled = checker.compiled(property_)
+        if not can_be_reduced(compiled.program, compiled.goal):
+            return
+        whole = explore(checker, property_, ALL)
+        for longest in (2, 1000):
+            monkeypatch.setattr(engine, "MAX_PASSED", longest)
+            found = []
+            for places in (1, 64):
+                monkeypatch.setattr(engine, "MAX_REMEMBERED", places)
+                modules = plain_kernel(), engine
+                found.append(explore(checker, property_, ALL, modules=modules, is_reduced=True))
+                check(whole, found[-1])
+        few, many = found
+        assert few.states == many.states
+        for state in range(few.search.expanded):
+            assert few.search.key(state) == many.search.key(state)
+            assert few.search.choices_of(state) == many.search.choices_of(state)
+        saved.append(few.search.passed - many.search.passed)
+
+    run()
+    assert min(saved) >= 0
+    assert max(saved) > 0
+
+
 def counters(number: int, choice: list[Json]) -> Json:
     """A model with 10ⁿ states for each state of an automaton with the edges `choice`, from which it goes to `m` or `n`.
     The property asks whether x becomes 1."""

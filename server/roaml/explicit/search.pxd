@@ -12,7 +12,7 @@ ctypedef long long i64
 cdef u64 UINT64_MASK, HASH_1, HASH_2, UINT32_MASK, MAX_INT64
 cdef i64 MAX_COUNTED_STATES, SPARE_BITS_FROM_STATES
 cdef int MAX_SPREAD_BITS
-cdef int SAMPLED_TRACES, SAMPLED_STEPS, MAX_PASSED, MAX_WAITING, WAITS
+cdef int SAMPLED_TRACES, SAMPLED_STEPS, MAX_PASSED, MAX_REMEMBERED, MAX_WAITING, WAITS
 cdef int FALSE, TRUE, UNKNOWN, FAULTY
 cdef int TIME, STUCK
 cdef int COMPLETE, PART, STATES, MEMORY, FAULT, CHOICES
@@ -40,7 +40,10 @@ cdef class StateSearch:
     cdef double[::1] chance
     cdef int[::1] edges, edge_from, slots, picks, ways, moved, pending
     cdef AmpleSets ample
-    cdef int leaves_out, has_passed
+    cdef int leaves_out, has_passed, layout
+    cdef int[::1] trail, passed_to, passed_left
+    cdef u64[::1] passed_keys
+    cdef u64 passed_mask
     cdef public i64 alone, passed
     cdef public u64[::1] keys
     cdef u64[::1] table
@@ -156,8 +159,14 @@ cdef class StateSearch:
     cdef void _pack_parts(self) noexcept
     @cython.locals(j=int, k=int, way=int, cell=int, move=int)
     cdef void _undo_parts(self) noexcept
-    @cython.locals(successor=i64)
+    @cython.locals(successor=i64, layout=int, steps=int, left=int, at=i64, has_moved=int, i=int)
     cdef int _pass_on(self, i64 state) except? -9
+    @cython.locals(left=int, first=i64, i=int)
+    cdef int _recalled(self, i64 at, int most) noexcept
+    @cython.locals(first=i64, i=int)
+    cdef void _remember(self, i64 at) noexcept
+    @cython.locals(size=i64)
+    cdef void _forget(self) except *
     cdef void _return(self, i64 state) noexcept
     @cython.locals(label=int, vector=int, count=int, i=int, slot=int, way=int, cell=int)
     cdef int _pass(self) except? -9

@@ -15,7 +15,8 @@
 - Without `leave_out`, successors *wait* until many can be looked up together: their accesses to the table and the keys
   then overlap, which takes half of the time. The states are numbered in the order in which successors were computed.
 - With `leave_out`, choices are left out as `ample` permits, and a state in which only one step is taken, without
-  chance, is not stored: the search goes on from its successor (docs/spec/reductions.md).
+  chance, is not stored: the search goes on from its successor (docs/spec/reductions.md). Some of these states are
+  remembered, each at an index that follows from its hash, with the stored state to which it leads.
 """
 
 from __future__ import annotations
@@ -49,6 +50,8 @@ WAITS = 0x7FFFFFFF
 """The number of a state that waits."""
 MAX_PASSED = 1000
 """The maximum number of states in sequence that are not stored, because they may form a cycle."""
+MAX_REMEMBERED = 1 << 17
+"""The maximum number of states that are remembered although they are not stored."""
 
 FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
 TIME, STUCK = 1, 3
@@ -88,7 +91,7 @@ class StateSearch:
         expanded: the number of states whose choices are known; they are the first ones.
         problem: the state whose choices could not be computed; -1 if there is none.
         alone: the number of stored states in which choices were left out.
-        passed: the number of times that a state was not stored.
+        passed: the number of steps from states that are not stored. A path that is remembered is not followed again.
     """
 
     def __init__(
@@ -167,6 +170,12 @@ class StateSearch:
         self.alone = 0
         self.passed = 0
         self.has_passed = 0
+        self.layout = 0
+        self.trail = array("i", [0] * MAX_PASSED)
+        self.passed_mask = 0
+        self.passed_keys = flat("Q", 1)
+        self.passed_to = flat("i", 1)
+        self.passed_left = flat("i", 1)
         self.pending = array("i", [0] * (len(self.kernel.enabled) + 1))
 
         self.keys = flat("Q", 64)
@@ -232,6 +241,7 @@ class StateSearch:
         """Leave out choices where `ample` finds a vector that may be taken alone."""
         self.ample = ample
         self.leaves_out = 1
+        self._forget()
 
     def run(self, states: int) -> int:
         """Expand about `states` further states; return the status of the search."""
@@ -563,6 +573,7 @@ class StateSearch:
                 code = (code + self.old_low[cell] - self.low[cell]) & UINT64_MASK
                 self.keys[target + self.word[cell]] |= code << self.shift[cell]
         self._rehash()
+        self._forget()
 
     def _spread(self) -> None:
         """Give half of the bits that would be unused in the last word to variables, those with most bits first. When
@@ -767,7 +778,14 @@ class StateSearch:
 
     def _used(self) -> int:
         """The bytes in use. Memory that was reserved but never written is not included."""
-        return self.count * (8 * self.words + 13) + 8 * (self.table_mask + 1) + 4 * self.code_end + 8 * self.real_count
+        remembered = (self.passed_mask + 1) * (8 * self.words + 8)
+        return (
+            self.count * (8 * self.words + 13)
+            + 8 * (self.table_mask + 1)
+            + 4 * self.code_end
+            + 8 * self.real_count
+            + remembered
+        )
 
     def _make_room(self) -> None:
         # During the copy, the memory exists twice.
@@ -780,6 +798,8 @@ class StateSearch:
         self.start = grown(self.start, self.state_room)
         self.parent = grown(self.parent, self.state_room)
         self.label = grown(self.label, self.state_room)
+        if self.passed_mask + 1 < MAX_REMEMBERED:
+            self._forget()
 
     def _emit(self, word: int) -> int:
         if self.code_end == self.code_room:
@@ -1225,21 +1245,70 @@ class StateSearch:
         successor = self._known()
         if successor >= 0:
             return successor
-        for _ in range(MAX_PASSED):
+        layout = self.layout
+        steps = 0
+        left = 0
+        at = -1
+        has_moved = 0
+        while successor < 0 and steps < MAX_PASSED:
+            at = self.tag & self.passed_mask
+            left = self._recalled(at, MAX_PASSED - steps)
+            if left != 0:
+                successor = self.passed_to[at]
+                break
+            self._remember(at)
+            has_moved = 1
             if self._pass() == 0:
                 break
-            self.has_passed = 1
-            self.passed += 1
+            self.trail[steps] = at
+            steps += 1
             successor = self._known()
-            if successor >= 0:
-                break
+        self.passed += steps
         if self.kernel.fault != 0:
             self.status = FAULT
             return -1
+        if steps + left != 0:
+            self.has_passed = 1
         if successor < 0:
             successor = self._find(state)
-        self._return(state)
+        if layout == self.layout and successor >= 0 and steps < MAX_PASSED:
+            # If several states of the path have the same index, the last of them is the one that is remembered. If this
+            # is the end of the path, which is stored, the number of steps does not matter.
+            for i in range(steps):
+                self.passed_to[self.trail[i]] = successor
+                self.passed_left[self.trail[i]] = steps + left - i
+        if has_moved != 0:
+            self._return(state)
         return successor
+
+    def _recalled(self, at: int, most: int) -> int:
+        """The number of steps from the state with the key `following` to a stored one, if an earlier path contained it,
+        and if there are at most `most`; 0 otherwise."""
+        left: int = self.passed_left[at]
+        if left == 0 or left > most:
+            return 0
+        first = at * self.words
+        for i in range(self.words):
+            if self.passed_keys[first + i] != self.following[i]:
+                return 0
+        return left
+
+    def _remember(self, at: int) -> None:
+        """Remember that a path contains the state with the key `following`."""
+        first = at * self.words
+        for i in range(self.words):
+            self.passed_keys[first + i] = self.following[i]
+        self.passed_left[at] = 0
+
+    def _forget(self) -> None:
+        """Forget the states that were not stored: keys have another layout, or there is room for more states."""
+        self.layout += 1
+        if self.leaves_out != 0:
+            size = min(self.state_room, MAX_REMEMBERED)
+            self.passed_mask = size - 1
+            self.passed_keys = flat("Q", size * self.words)
+            self.passed_to = flat("i", size)
+            self.passed_left = flat("i", size)
 
     def _return(self, state: int) -> None:
         """Go back to a state that is being expanded."""
