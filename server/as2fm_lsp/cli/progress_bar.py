@@ -8,6 +8,7 @@ import time
 from types import TracebackType
 
 from as2fm_lsp.cli.status_line import StatusLine
+from roaml.explicit.space import ExplorationProgress
 from roaml.record import replace
 from roaml.smc.goal import Question
 from roaml.smc.lss import Search
@@ -61,11 +62,11 @@ class ProgressBar:
             self._tally = side.tally
         self._show()
 
-    def states(self, question: Question, states: int, expanded: int) -> None:
-        """Update during an exploration of all states. `states` is the number of states found so far, `expanded` the
-        number of those whose successors have been computed."""
+    def states(self, question: Question, progress: ExplorationProgress) -> None:
+        """Update during an exploration of all states."""
         if self._line.is_due:
-            self._line.show(f"{question.name}: {states:,} states, {states - expanded:,} still to be expanded")
+            states, left = progress.states, progress.states - progress.expanded
+            self._line.show(f"{question.name}: {states:,} states, {left:,} still to be expanded")
 
     def pulse(self, trace: int, steps: int) -> None:
         """Update within a trace, with its number of steps."""

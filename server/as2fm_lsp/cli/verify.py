@@ -10,7 +10,7 @@ import os
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from typing import TYPE_CHECKING, Any
 
 from as2fm_lsp.atomic_write import write_file
@@ -60,6 +60,7 @@ from roaml.verification.counterexample import unwanted_trace, unwanted_verdict
 from roaml.verification.expectations import Expectation, RangeError
 from roaml.verification.refusal import fault_message
 from roaml.verification.results import Exact, Result
+from roaml.verification.searches import Searches
 from roaml.verification.small import EXAMPLE_TRACES
 from roaml.verification.target import VerificationTarget
 from roaml.verification.verifier import NoThresholdError, Verifier
@@ -193,10 +194,16 @@ class _Verification:
         self.state = None if options.resume is None else SavedState(options.resume, self.limits)
         self.results: list[Result] = []
         self.faults: list[FaultError] = []
+        self.searches: Searches | None = None
+        if options.exhaustive:
+            most = options.max_states or MAX_STATES
+            limits = StateLimits(most, options.max_memory, reduces=not options.no_reductions)
+            self.searches = verifier.searches(limits, options.jobs)
 
     def run(self) -> int:
         checker = self.verifier.checker
-        with _executor(self.options.dask) as (executor, workers), ProgressBar() as bar:
+        searches = self.searches or nullcontext()
+        with _executor(self.options.dask) as (executor, workers), ProgressBar() as bar, searches:
             with Pool(workers or self.options.jobs, executor) as pool:
                 shared = self._answer_shared(pool, bar)
             interrupted = any(result.is_interrupted for result in shared.values())
@@ -326,12 +333,11 @@ class _Verification:
 
     def _exhaustive(self, property_: CompiledProperty, bar: ProgressBar, began: float) -> Result:
         """The exact values from all states."""
-        limits = StateLimits(
-            self.options.max_states or MAX_STATES, self.options.max_memory, reduces=not self.options.no_reductions
-        )
+        searches = self.searches
+        assert searches is not None
         try:
             return self.verifier.exhaustive(
-                property_, limits, lambda states, done: bar.states(property_.question, states, done)
+                property_, searches.limits, lambda progress: bar.states(property_.question, progress), searches
             )
         except KeyboardInterrupt:
             self.interrupts.ignore()

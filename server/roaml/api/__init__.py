@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from roaml.api.verifying import ConstantError, as_target, checker, target, verifier, verify
     from roaml.comparison import Comparison
     from roaml.diagnostics import Diagnostic, Severity
-    from roaml.explicit.space import StateLimits
+    from roaml.explicit.space import ExplorationProgress, ExplorationWatch, StateLimits
     from roaml.jani.model import Model
     from roaml.jani.node import Origin
     from roaml.jani.properties import Property
@@ -65,8 +65,10 @@ if TYPE_CHECKING:
     from roaml.verification.counterexample import Counterexample, counterexample
     from roaml.verification.expectations import Expectation, RangeError, Verdict
     from roaml.verification.explorations import Explorations
+    from roaml.verification.growth import GrowingVariable
     from roaml.verification.refusal import Refusal
     from roaml.verification.results import Exact, Proof, Result, SampledResult, ShortestTrace, Traces
+    from roaml.verification.searches import Searches
     from roaml.verification.stuck import Stuck, StuckLevel, StuckResult
     from roaml.verification.target import LineColumn, VerificationTarget
     from roaml.verification.verifier import NoThresholdError, Verifier
@@ -107,7 +109,8 @@ else:
         "roaml.smc.model": ("ModelChecker",),
         "roaml.smc.pool": ("Pool", "Pulse", "WorkersLostError"),
         "roaml.smc.record": ("Recorder", "Recording", "TraceStep", "TraceVerdict"),
-        "roaml.explicit.space": ("StateLimits",),
+        "roaml.verification.growth": ("GrowingVariable",),
+        "roaml.explicit.space": ("ExplorationProgress", "ExplorationWatch", "StateLimits"),
         "roaml.smc.run": ("Answer", "EstimationMethod", "Options", "Tally", "Watch"),
         "roaml.smc.statistics": ("Bounds",),
         "roaml.smc.story": ("Story",),
@@ -116,6 +119,7 @@ else:
         "roaml.verification.explorations": ("Explorations",),
         "roaml.verification.refusal": ("Refusal",),
         "roaml.verification.results": ("Exact", "Proof", "Result", "SampledResult", "ShortestTrace", "Traces"),
+        "roaml.verification.searches": ("Searches",),
         "roaml.verification.stuck": ("StuckResult", "Stuck", "StuckLevel"),
         "roaml.verification.target": ("LineColumn", "VerificationTarget"),
         "roaml.verification.verifier": ("NoThresholdError", "Verifier"),
@@ -152,10 +156,13 @@ __all__ = [
     "EventState",
     "Exact",
     "Expectation",
+    "ExplorationProgress",
+    "ExplorationWatch",
     "Explorations",
     "Extreme",
     "ExtremeMethod",
     "FaultError",
+    "GrowingVariable",
     "InitialFold",
     "JaniError",
     "LineColumn",
@@ -191,6 +198,7 @@ __all__ = [
     "SampledResult",
     "SavedSession",
     "Search",
+    "Searches",
     "Session",
     "Settings",
     "Severity",

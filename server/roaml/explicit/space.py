@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from roaml.explicit import ample, codes
 from roaml.explicit import search as engine
@@ -20,8 +20,18 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.names import Storage
 from roaml.smc.program import AT_END, Goal
 
-Watch: TypeAlias = Callable[[int, int], None]
-"""Called during a search with the number of states, and the number of those that have been expanded."""
+
+class ExplorationProgress(NamedTuple):
+    """The progress of a search: the number of states, the number of those that have been expanded, and the memory in
+    use, in bytes."""
+
+    states: int
+    expanded: int
+    bytes: int
+
+
+ExplorationWatch: TypeAlias = Callable[[ExplorationProgress], None]
+"""Called during a search."""
 
 STRIDE = 16_384
 """The number of states that are expanded between two calls of a watch."""
@@ -110,7 +120,7 @@ def explore(
     checker: ModelChecker,
     property_: CompiledProperty,
     limits: StateLimits,
-    watch: Watch | None = None,
+    watch: ExplorationWatch | None = None,
     modules: Any = None,
     *,
     is_reduced: bool = False,
@@ -153,7 +163,7 @@ def explore(
         status = search.run(stride)
         transitions = search.transitions + search.passed
         if watch is not None:
-            watch(search.count, search.expanded)
+            watch(ExplorationProgress(search.count, search.expanded, search.memory_used()))
         match status:
             case codes.PART if limits.transitions is not None and transitions > limits.transitions:
                 raise _stopped(search, f", with more than {limits.transitions:,} transitions")

@@ -267,12 +267,16 @@ def start_worker(stopping: Event) -> None:
         stopping: set when the remaining batches are no longer needed. Workers then end by themselves: a worker
             that is killed may leave an incomplete result, for which the main process would wait for ever.
     """
-    import multiprocessing  # noqa: PLC0415 - most questions are answered without workers
-
     global _stopping  # noqa: PLW0603
     _stopping = stopping
-    # Only the main process handles interrupts from the keyboard, and notifies its workers. If the main process is
-    # killed, the workers end as well.
+    follow_main_process()
+
+
+def follow_main_process() -> None:
+    """Let this worker process ignore interrupts from the keyboard, which only the main process handles, and end when
+    the main process has ended, even if it was killed."""
+    import multiprocessing  # noqa: PLC0415 - most questions are answered without workers
+
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     main = multiprocessing.parent_process()
     if main is not None:

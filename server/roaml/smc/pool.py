@@ -21,6 +21,7 @@ from roaml.smc.program import Compiled
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor, Future
+    from multiprocessing.context import BaseContext
     from multiprocessing.synchronize import Event
 
 WORKER_START_DELAY_S = 0.4
@@ -140,12 +141,10 @@ class Pool:
 
     def _submit(self, tasks: list[Task]) -> Future[Bundle] | None:
         """Submit batches; return `None` if this fails because workers have just been lost."""
-        import multiprocessing  # noqa: PLC0415 - most questions are answered without workers
         from concurrent.futures import BrokenExecutor, ProcessPoolExecutor  # noqa: PLC0415
 
         if self.executor is None:
-            methods = multiprocessing.get_all_start_methods()
-            context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
+            context = process_context()
             self._stopping = context.Event()
             self.executor = ProcessPoolExecutor(self.jobs, context, start_worker, (self._stopping,))
         try:
@@ -200,6 +199,14 @@ def _uninterrupted(*, redelivers: bool) -> Iterator[None]:
             signal.signal(number, handler)
         if received and redelivers:
             signal.raise_signal(received[0])
+
+
+def process_context() -> BaseContext:
+    """How processes are started: by a server process where there is one, because threads do not survive a fork."""
+    import multiprocessing  # noqa: PLC0415 - most questions are answered without workers
+
+    methods = multiprocessing.get_all_start_methods()
+    return multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
 
 
 def _next_size(size: int, seconds: float) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from roaml.explicit.independence import can_be_reduced
 from roaml.explicit.path import shortest
-from roaml.explicit.space import LimitError, Space, StateLimits, Watch, explore, search_tables
+from roaml.explicit.space import ExplorationWatch, LimitError, Space, StateLimits, explore, search_tables
 from roaml.explicit.values import GoalValues, NoValueError, values_of
 from roaml.jani.operators import BinaryOperator
 from roaml.record import replace
@@ -43,7 +43,7 @@ def exact_values(
     checker: ModelChecker,
     property_: CompiledProperty,
     limits: StateLimits,
-    watch: Watch | None = None,
+    watch: ExplorationWatch | None = None,
 ) -> Exact:
     """The exact values of a property, from all states.
 
@@ -75,7 +75,9 @@ def alone(checker: ModelChecker, property_: CompiledProperty) -> tuple[ModelChec
     return (checker, property_) if reduced is checker else (reduced, reduced.compiled_properties[0])
 
 
-def _partly(checker: ModelChecker, property_: CompiledProperty, limits: StateLimits, watch: Watch | None) -> Exact:
+def _partly(
+    checker: ModelChecker, property_: CompiledProperty, limits: StateLimits, watch: ExplorationWatch | None
+) -> Exact:
     """The exact values, from as few states as possible."""
     tables = search_tables(checker, property_, limits)
 

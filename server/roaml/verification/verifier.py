@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 
-from roaml.explicit.space import StateLimits
+from roaml.explicit.space import ExplorationWatch, StateLimits
 from roaml.jani.properties import Property
 from roaml.jani.selection import PropertyError, select
 from roaml.record import Record, field, replace
@@ -22,10 +22,11 @@ from roaml.suggest import alternatives, close_names
 from roaml.verification import stuck
 from roaml.verification.exhaustive import UndecidedError, check_exactly, exact_values
 from roaml.verification.expectations import Expectation, Verdict, check_expectation, check_range, is_possible
-from roaml.verification.explorations import Explorations
+from roaml.verification.explorations import Explorations, subject_of
 from roaml.verification.refusal import refusal
 from roaml.verification.results import Exact, Result, SampledResult, Traces
 from roaml.verification.schedulers import is_minimised, under_all_schedulers
+from roaml.verification.searches import Searches
 from roaml.verification.small import choices_of, values_if_small
 from roaml.verification.stuck import StuckLevel, StuckResult
 from roaml.verification.target import VerificationTarget
@@ -431,39 +432,59 @@ class Verifier(Record, frozen=True):
             comment=_comment(property_),
         )
 
+    def searches(self, limits: StateLimits, jobs: int = 1) -> Searches:
+        """The searches for all properties, at most `jobs` of them at the same time."""
+        properties: dict[Hashable, CompiledProperty] = {}
+        for property_ in self.checker.compiled_properties:
+            if not property_.question.is_conditional:
+                properties.setdefault(subject_of(self.checker, property_) or property_.question.name, property_)
+        return Searches(self.checker, properties.values(), limits, jobs)
+
     def exhaustive(
-        self, property_: CompiledProperty, limits: StateLimits, watch: Callable[[int, int], None] | None = None
+        self,
+        property_: CompiledProperty,
+        limits: StateLimits,
+        watch: ExplorationWatch | None = None,
+        searches: Searches | None = None,
     ) -> Result:
         """The exact values of a property, from all states; `Result.undecided` if there are none (see `exact_values`).
 
         Args:
-            watch: called with the number of states, and the number of those whose steps are known.
+            watch: called several times during the search.
+            searches: those of this verifier with the same limits, if the following properties may be explored at the
+                same time.
 
         Raises:
             FaultError: the model executes an undefined operation in some state.
         """
         began = time.monotonic()
         expectations = self.expected(property_)
+
+        def seconds() -> float:
+            elsewhere = 0.0 if searches is None else searches.seconds.get(property_.question.name, 0.0)
+            return max(time.monotonic() - began, elsewhere)
+
+        def computed() -> Exact:
+            if searches is not None:
+                return searches.exact_values(property_, watch)
+            return exact_values(self.checker, property_, limits, watch)
+
         try:
-            exact = self.explorations.exact(
-                self.checker, property_, limits, lambda: exact_values(self.checker, property_, limits, watch)
-            )
+            exact = self.explorations.exact(self.checker, property_, limits, computed)
             assert exact is not None
         except UndecidedError as error:
             open_ = tuple(Verdict(expectation, False, False, under="so far") for expectation in expectations)
-            seconds = time.monotonic() - began
             return Result(
                 property_.question.name,
                 None,
                 open_,
-                seconds,
+                seconds(),
                 undecided=str(error),
                 growing=error.growing,
                 comment=_comment(property_),
             )
         verdicts = tuple(check_exactly(expectation, exact, property_.question) for expectation in expectations)
-        seconds = time.monotonic() - began
-        return Result(property_.question.name, None, verdicts, seconds, exact=exact, comment=_comment(property_))
+        return Result(property_.question.name, None, verdicts, seconds(), exact=exact, comment=_comment(property_))
 
     def check_stuck(self, level: StuckLevel = StuckLevel.WARNING, pulse: Pulse | None = None) -> StuckResult:
         """Generate traces to check whether the system gets stuck. `stuck.can_be_stuck` must be true for the model."""
