@@ -4,6 +4,8 @@ their initial values; choices, labels and values are the same."""
 
 from __future__ import annotations
 
+import gc
+import weakref
 from typing import Any
 
 import pytest
@@ -12,10 +14,10 @@ from hypothesis import strategies as st
 from smc_models import Json, at, automaton, document, edge, model, op, probability, variable, way, ways
 from smc_random import networks
 
-from roaml.explicit.liveness import liveness_of
 from roaml.explicit.path import PathRecorder, shortest
 from roaml.explicit.plain import plain_kernel, plain_search
-from roaml.explicit.space import Space, StateLimits, _bounds, _transient, explore
+from roaml.explicit.preparation import preparation_of
+from roaml.explicit.space import Space, StateLimits, _bounds, explore
 from roaml.explicit.tables import _cells
 from roaml.explicit.uses import bits
 from roaml.explicit.values import NoValueError, values_of
@@ -43,7 +45,7 @@ def marks_of(read: Model) -> dict[tuple[str, str], End]:
 def dead_in(space: Space, key: Key) -> set[int]:
     """The cells that are dead in a state."""
     checker, property_ = space.checker, space.compiled_property
-    liveness = liveness_of(checker.legend, checker.observed(property_), _transient(checker))
+    liveness = preparation_of(checker).liveness(checker.observed(property_))
     dead = liveness.unobserved
     for place in key[: checker.program.instances]:
         dead |= liveness.dead[place]
@@ -363,3 +365,35 @@ def test_a_variable_is_live_if_its_copy_is_live() -> None:
 def test_without_reductions_all_states_are_explored() -> None:
     checker = checker_of(delivered(*IS_THREE))
     assert explore(checker, checker.compiled_properties[0], ALL).states == 9
+
+
+def test_the_analyses_of_a_model_serve_all_its_properties() -> None:
+    """`x` is live for the property that reads the transient variable `t`, which gets its value, and dead for the other
+    one."""
+    toss = [way("m", 0.5, x=1), way("m", 0.5, x=2)]
+    edges = [edge("l", *toss), edge("m", way("l", t="x")), edge("m", way("n", y=1)), edge("n", "l")]
+    written = document(
+        automaton("a", "l m n", edges),
+        variables=[variable("x"), variable("y"), variable("t", transient=True)],
+        properties={name: probability(op("F", op("=", name, 2))) for name in ("y", "t")},
+    )
+    alone = []
+    for number in range(2):
+        checker = checker_of(written)
+        alone.append(preparation_of(checker).liveness(checker.observed(checker.compiled_properties[number])))
+    x = next(number for number, storage in enumerate(checker.legend.layout.storages) if storage.name == "x")
+    assert [liveness.unobserved >> x & 1 for liveness in alone] == [1, 0]
+    for order in ((0, 1), (1, 0)):
+        checker = checker_of(written)
+        for number in order:
+            observed = checker.observed(checker.compiled_properties[number])
+            assert preparation_of(checker).liveness(observed) == alone[number]
+
+
+def test_the_analyses_end_with_their_model() -> None:
+    checker = checker_of(delivered(*IS_THREE))
+    preparation = weakref.ref(preparation_of(checker))
+    assert preparation_of(checker) is preparation()
+    del checker
+    gc.collect()
+    assert preparation() is None

@@ -84,11 +84,6 @@ def _can_idle(program: Program) -> bool:
     )
 
 
-def independence_of(program: Program, goal: Goal, legend: Legend) -> Independence:
-    """The tables of a program with a goal that can be reduced."""
-    return _Analysis(program, goal, legend).tables()
-
-
 class _Group(NamedTuple):
     """The variables that the edges of a group use. `fragile` are those in guards that can be undefined."""
 
@@ -98,14 +93,14 @@ class _Group(NamedTuple):
     fragile: int
 
 
-class _Analysis:
-    """Sets of vectors are integers, as the sets of variables of `uses`."""
+class IndependenceAnalysis:
+    """Determines the tables of a program for goals. Sets of vectors are integers, as the sets of variables of
+    `uses`."""
 
-    def __init__(self, program: Program, goal: Goal, legend: Legend) -> None:
+    def __init__(self, program: Program, legend: Legend, uses: VariableUses) -> None:
         self.program = program
-        self.goal = goal
         self.legend = legend
-        self.uses = VariableUses(legend)
+        self.uses = uses
         reads, writes = [0] * len(legend.slots), [0] * len(legend.slots)
         self.groups: list[_Group] = []
         for location in range(len(legend.locations)):
@@ -140,8 +135,9 @@ class _Analysis:
                     writes |= self.uses.written_by(assignment, instance)
         return _Group(reads | guards, writes, guards, fragile)
 
-    def tables(self) -> Independence:
-        program, goal = self.program, self.goal
+    def tables(self, goal: Goal) -> Independence:
+        """The tables for a goal that can be reduced."""
+        program = self.program
         visible = self.uses.of(
             storage
             for storage in self.legend.layout.storages

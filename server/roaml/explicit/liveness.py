@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from roaml.explicit.uses import VariableUses, bits
 from roaml.jani.expressions import ArrayAccess, Name
-from roaml.jani.model import Destination
+from roaml.jani.model import Assignment, Destination
 from roaml.record import Record
 from roaml.smc.compile import Legend
 from roaml.smc.names import Storage
@@ -36,22 +36,12 @@ class Liveness(Record, frozen=True):
     dead: list[int]
 
 
-def liveness_of(legend: Legend, observed: Iterable[str], transient: Iterable[Storage]) -> Liveness:
-    """The dead variables of a model.
-
-    Args:
-        observed: the names of the variables that the goal reads.
-        transient: the transient variables.
-    """
-    return _Analysis(legend, frozenset(observed), transient).liveness()
-
-
 def all_live(legend: Legend) -> Liveness:
     """The result if no variable is treated as dead."""
     return Liveness(0, [0] * len(legend.layout.instances), [0] * len(legend.locations))
 
 
-class _Way(NamedTuple):
+class _Way(Record, frozen=True):
     """A destination.
 
     Attributes:
@@ -66,7 +56,7 @@ class _Way(NamedTuple):
     whole: int
 
 
-class _Edge(NamedTuple):
+class _Edge(Record, frozen=True):
     """An edge.
 
     Attributes:
@@ -79,7 +69,7 @@ class _Edge(NamedTuple):
     kept: int
 
 
-class _Part(NamedTuple):
+class _Part(Record, frozen=True):
     """The contribution of some slots to a step, whichever of their edges are taken; see `_Way` and `_Edge`."""
 
     always: int
@@ -88,10 +78,17 @@ class _Part(NamedTuple):
     kept: int
 
 
-class _Analysis:
-    def __init__(self, legend: Legend, observed: frozenset[str], transient: Iterable[Storage]) -> None:
+class LivenessAnalysis:
+    """Determines the dead variables of a model for goals.
+
+    Args:
+        transient: the transient variables.
+        seen: the transient variables that the goals read.
+    """
+
+    def __init__(self, legend: Legend, uses: VariableUses, transient: Iterable[Storage], seen: int) -> None:
         self.legend = legend
-        self.uses = VariableUses(legend)
+        self.uses = uses
         self.instances = legend.layout.instances
         self.locations: list[list[int]] = [[] for _ in self.instances]
         for location, (number, _) in enumerate(legend.locations):
@@ -101,8 +98,8 @@ class _Analysis:
             self.slots[slot.instance].append(number)
         self.location_of = {key: number for number, key in enumerate(legend.locations)}
         self.transient = self.uses.of(transient)
-        self.observed = self.uses.of(storage for storage in legend.layout.shared if storage.name in observed)
-        self.observed |= self._in_locations()
+        self.in_locations = self._in_locations()
+        self.always_read = seen | self.in_locations
         self.late = self._late()
         self.written = 0
         self.fragile = [0] * len(self.instances)
@@ -117,9 +114,11 @@ class _Analysis:
         self.parts = [_part([edge for several in edges.values() for edge in several]) for edges in self.edges]
         self.others: dict[int, dict[int, _Part]] = {}
 
-    def liveness(self) -> Liveness:
-        unobserved = self._unobserved()
-        owned = self._owned(unobserved)
+    def liveness(self, observed: int) -> Liveness:
+        """The dead variables for a goal that reads the variables `observed`."""
+        observed |= self.in_locations
+        unobserved = self._unobserved(observed)
+        owned = self._owned(observed, unobserved)
         dead = [0] * len(self.legend.locations)
         for instance, variables in enumerate(owned):
             if variables:
@@ -181,7 +180,11 @@ class _Analysis:
         """A destination, and all variables that it writes."""
         always, whole, written = 0, 0, 0
         values: list[tuple[int, int]] = []
-        for _, group in groupby(sorted(destination.assignments, key=_INDEX), _INDEX):
+        assignments = destination.assignments
+        groups: Iterable[tuple[int, Iterable[Assignment]]] = ((0, assignments),)
+        if len(assignments) > 1:
+            groups = groupby(sorted(assignments, key=_INDEX), _INDEX)
+        for _, group in groups:
             replaced = whole
             for assignment in group:
                 variable = self.uses.written_by(assignment, number)
@@ -191,7 +194,7 @@ class _Analysis:
                 read = self.uses.read_by(assignment, number) & ~replaced
                 if not read:
                     continue
-                if variable & (self.observed | self.late) or self.uses.can_assignment_fail(assignment, number):
+                if variable & (self.always_read | self.late) or self.uses.can_assignment_fail(assignment, number):
                     always |= read
                 elif not variable & self.transient:
                     values.append((variable, read))
@@ -199,10 +202,10 @@ class _Analysis:
 
     # ------------------------------------------------------------ slicing
 
-    def _unobserved(self) -> int:
+    def _unobserved(self, observed: int) -> int:
         """The variables that influence neither the goal nor any guard or probability."""
         values: dict[int, int] = {}
-        needed = self.observed | self.transient
+        needed = observed | self.transient
         for part in self.parts:
             needed |= part.always
             for variable, read in part.values.items():
@@ -221,9 +224,9 @@ class _Analysis:
                     is_growing = True
         return self.written & ~needed
 
-    def _owned(self, unobserved: int) -> list[int]:
+    def _owned(self, observed: int, unobserved: int) -> list[int]:
         """For each instance, the variables that are read only in steps in which it takes part."""
-        candidates = self.written & ~(unobserved | self.observed | self.transient)
+        candidates = self.written & ~(unobserved | observed | self.transient)
         owners: dict[int, int] = {}
         for slots, _ in self.legend.vectors:
             taking_part = 0
@@ -257,6 +260,10 @@ class _Analysis:
         if others is None:
             slots = self.legend.vectors[vector][0]
             parts = [self.parts[number] for number in slots]
+            if len(slots) == 2:
+                others = {slots[0]: parts[1], slots[1]: parts[0]}
+                self.others[vector] = others
+                return others
             before = accumulate(parts[:-1], _together, initial=_NOTHING)
             after = [*accumulate(parts[:0:-1], _together, initial=_NOTHING)][::-1]
             others = dict(zip(slots, map(_together, before, after), strict=True))
@@ -268,20 +275,22 @@ class _Analysis:
         live = dict.fromkeys(self.locations[instance], 0)
         flows: dict[int, dict[_Flow, None]] = {location: {} for location in live}
         for number in self.slots[instance]:
-            for vector in self.legend.slots[number].vectors:
-                other = self._others(vector)[number]
-                read_by_other, copied_by_other = _split(other.values.items(), owned)
-                for location, edges in self.edges[number].items():
-                    for edge in edges:
-                        read = edge.reads | other.always | read_by_other
+            others = {_owned_part(self._others(vector)[number], owned) for vector in self.legend.slots[number].vectors}
+            for location, edges in self.edges[number].items():
+                for edge in edges:
+                    reads = edge.reads
+                    copies = []
+                    for way in edge.ways:
+                        read_by_way, copied = _split(way.values, owned)
+                        reads |= way.always | read_by_way
+                        copies.append((way.target, owned & ~way.whole, copied))
+                    for other in others:
+                        read = reads | other.always
                         if edge.kept >= 0 and other.kept >= 0:
                             read |= edge.kept | other.kept
-                        for way in edge.ways:
-                            read_by_way, copied = _split(way.values, owned)
-                            read |= way.always | read_by_way
-                            keeps = owned & ~(way.whole | other.whole)
-                            flows[location][_Flow(way.target, keeps, copied + copied_by_other)] = None
                         live[location] |= read & owned
+                        for target, keeps, copied in copies:
+                            flows[location][_Flow(target, keeps & ~other.whole, copied + other.copied)] = None
         is_growing = True
         while is_growing:
             is_growing = False
@@ -312,18 +321,36 @@ class _Flow(NamedTuple):
     copied: tuple[tuple[int, int], ...]
 
 
+class _OwnedPart(NamedTuple):
+    """A part, restricted to the variables of an instance. `always` contains those on which other variables depend;
+    `copied` is as in `_Flow`."""
+
+    always: int
+    copied: tuple[tuple[int, int], ...]
+    whole: int
+    kept: int
+
+
+def _owned_part(part: _Part, owned: int) -> _OwnedPart:
+    read, copied = _split(part.values.items(), owned) if part.values else (0, ())
+    return _OwnedPart(
+        (part.always | read) & owned, copied, part.whole & owned, part.kept & owned if part.kept >= 0 else -1
+    )
+
+
 def _split(values: Iterable[tuple[int, int]], owned: int) -> tuple[int, tuple[tuple[int, int], ...]]:
     """Of pairs of a variable that is written and of what its new value depends on: the `owned` variables on which the
     other ones depend, and the pairs of two of the `owned` ones."""
-    always, copied = 0, []
+    always = 0
+    copied: tuple[tuple[int, int], ...] = ()
     for variable, read in values:
         if not read & owned:
             continue
         if variable & owned:
-            copied.append((variable, read & owned))
+            copied += ((variable, read & owned),)
         else:
             always |= read
-    return always, tuple(copied)
+    return always, copied
 
 
 _INDEX = attrgetter("index")
@@ -349,8 +376,10 @@ def _together(one: _Part, other: _Part) -> _Part:
     """Both parts at the same time."""
     if one is _NOTHING:
         return other
-    values = other.values
-    if one.values:
+    if other is _NOTHING:
+        return one
+    values = other.values or one.values
+    if one.values and other.values:
         values = {**one.values, **values}
         for variable in one.values.keys() & other.values.keys():
             values[variable] |= one.values[variable]

@@ -8,16 +8,14 @@ from typing import Any, NamedTuple, TypeAlias
 
 from roaml.explicit import ample, codes
 from roaml.explicit import search as engine
-from roaml.explicit.independence import independence_of
-from roaml.explicit.liveness import all_live, liveness_of
 from roaml.explicit.memory import available
-from roaml.explicit.tables import Tables, tables_of
+from roaml.explicit.preparation import preparation_of
+from roaml.explicit.tables import Tables
 from roaml.record import Record
 from roaml.smc import kernel
 from roaml.smc.batch import TraceProblem
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
-from roaml.smc.names import Storage
 from roaml.smc.program import AT_END, Goal
 
 
@@ -156,7 +154,7 @@ def explore(
         limits.combinations,
     )
     if is_reduced:
-        independence = independence_of(program, goal, checker.legend)
+        independence = preparation_of(checker).independence.tables(goal)
         search.leave_out(_ample_module(search_module).AmpleSets(simulator, independence))
     stride = STRIDE if limits.transitions is None else SHORT_STRIDE
     while True:
@@ -195,10 +193,7 @@ def _stopped(search: Any, why: str) -> LimitError:
 
 def search_tables(checker: ModelChecker, property_: CompiledProperty, limits: StateLimits) -> Tables:
     """The tables that a search needs. They are the same with and without choices that are left out."""
-    legend, transient = checker.legend, _transient(checker)
-    observed = checker.observed(property_)
-    liveness = liveness_of(legend, observed, transient) if limits.reduces else all_live(legend)
-    return tables_of(checker.program, property_.goal, legend, transient, liveness)
+    return preparation_of(checker).tables(property_, checker.observed(property_), reduces=limits.reduces)
 
 
 def _bounds(goal: Goal) -> tuple[int, int, int]:
@@ -211,14 +206,6 @@ def _bounds(goal: Goal) -> tuple[int, int, int]:
     if len(goal.left) == 1:
         return 0, lower[0], goal.upper[0]
     return max(*lower, *goal.upper) + 1, 0, -1
-
-
-def _transient(checker: ModelChecker) -> list[Storage]:
-    layout = checker.legend.layout
-    names = {variable.name for variable in checker.model.variables if variable.transient}
-    shared = [storage for storage in layout.shared if storage.name in names]
-    own = [storage for i in layout.instances for storage in i.own if storage.name in i.transient]
-    return shared + own
 
 
 def _modules() -> tuple[Any, Any]:

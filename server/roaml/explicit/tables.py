@@ -48,8 +48,32 @@ class Tables(Record, frozen=True, eq=False):
     is_dead: Ints
 
 
-def tables_of(program: Program, goal: Goal, legend: Legend, transient: Iterable[Storage], liveness: Liveness) -> Tables:
-    """The tables of a program with a goal."""
+def tables_of(
+    program: Program,
+    goal: Goal,
+    legend: Legend,
+    transient: Iterable[Storage],
+    liveness: Liveness,
+    written: tuple[Ints, Ints],
+) -> Tables:
+    """The tables of a program with a goal.
+
+    Args:
+        written: the result of `cells_written`.
+    """
+    settled = [cell for storage in transient for cell in _cells(storage, program)]
+    settled += [program.instances + program.int_count + register for register in goal.sum_register]
+    return Tables(
+        *written,
+        array("i", settled),
+        array("i", [-1]) * program.instances + program.cell_watch,
+        *_dropped(program, legend, liveness),
+        *_owners(program, legend, liveness),
+    )
+
+
+def cells_written(program: Program, legend: Legend) -> tuple[Ints, Ints]:
+    """`way_start` and `way_cell` of the tables of a program."""
     way_start, way_cell = [0], list[int]()
     instance_of = [number for number, _ in legend.locations]
     for way, (_, destination) in enumerate(legend.ways):
@@ -61,16 +85,7 @@ def tables_of(program: Program, goal: Goal, legend: Legend, transient: Iterable[
             written.update(dict.fromkeys(_cells(storage, program)))
         way_cell += written
         way_start.append(len(way_cell))
-    settled = [cell for storage in transient for cell in _cells(storage, program)]
-    settled += [program.instances + program.int_count + register for register in goal.sum_register]
-    return Tables(
-        array("i", way_start),
-        array("i", way_cell),
-        array("i", settled),
-        array("i", [-1]) * program.instances + program.cell_watch,
-        *_dropped(program, legend, liveness),
-        *_owners(program, legend, liveness),
-    )
+    return array("i", way_start), array("i", way_cell)
 
 
 def _dropped(program: Program, legend: Legend, liveness: Liveness) -> tuple[Ints, Ints]:

@@ -20,7 +20,7 @@ from roaml.jani.expressions import (
     NamedNumber,
     Real,
     Unary,
-    walk,
+    children,
 )
 from roaml.jani.model import Assignment
 from roaml.jani.operators import BinaryOperator, UnaryOperator
@@ -44,7 +44,8 @@ _TOTAL = frozenset(
     )
 )
 """The operators that have a value for all operands. Integers are limited to 64 bits, so sums are not among them."""
-_DEFINED = frozenset((Integer, Boolean, Real, NamedNumber, Name, Conditional, ArrayValue))
+_DEFINED_ATOMS = frozenset((Integer, Boolean, Real, NamedNumber, Name))
+_DEFINED = frozenset((Conditional, ArrayValue))
 """The classes of expressions that have a value if their subexpressions have one."""
 
 
@@ -61,6 +62,7 @@ class VariableUses:
 
     def __init__(self, legend: Legend) -> None:
         layout = legend.layout
+        self._failing: dict[tuple[int, int], bool] = {}
         self._names = legend.reads
         self._instances = layout.instances
         self._bits = {id(storage): 1 << number for number, storage in enumerate(layout.storages)}
@@ -87,16 +89,25 @@ class VariableUses:
         return self._scopes[instance][assignment.variable]
 
     def can_fail(self, expression: Expression, instance: int) -> bool:
-        """Whether an expression has no value in some states. In doubt, it can fail."""
-        for node in walk(expression):
+        """Whether an expression of the model has no value in some states. In doubt, it can fail."""
+        key = id(expression), instance  # The model keeps the expression alive.
+        known = self._failing.get(key)
+        if known is None:
+            known = self._failing[key] = self._can_fail(expression, instance)
+        return known
+
+    def _can_fail(self, expression: Expression, instance: int) -> bool:
+        nodes = [expression]
+        for node in nodes:  # which grows
             kind = type(node)
-            if kind in _DEFINED:
+            if kind in _DEFINED_ATOMS:
                 continue
             if isinstance(node, (Unary, Binary)):
                 if node.operator not in _TOTAL:
                     return True
-            elif not (isinstance(node, ArrayAccess) and self._is_element(node, instance)):
+            elif kind not in _DEFINED and not (isinstance(node, ArrayAccess) and self._is_element(node, instance)):
                 return True
+            nodes += children(node)
         return False
 
     def can_assignment_fail(self, assignment: Assignment, instance: int) -> bool:
