@@ -175,8 +175,8 @@ def explore(
             case codes.STATES:
                 raise _stopped(search, " (--max-states)")
             case codes.MEMORY:
-                share = ", half of the free memory" if limits.bytes is None else ""
-                raise _stopped(search, f", which occupy {_size(search.memory_used())}{share} (--max-memory)")
+                size = _size(search.memory_used())
+                raise _stopped(search, f", which occupy {size} (--max-memory; half of the free memory by default)")
             case _:
                 raise _stopped(search, f": one of them has more than {limits.combinations:,} combinations of edges")
 
