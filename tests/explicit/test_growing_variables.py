@@ -3,17 +3,21 @@
 
 from __future__ import annotations
 
+import json
+import re
 from pathlib import Path
 from typing import Any
 
 import pytest
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
+from as2fm_lsp.cli.main import run
+from as2fm_lsp.cli.progress_bar import ProgressBar
 from roaml import api
-from roaml.explicit.space import LimitError, StateLimits, explore
+from roaml.explicit.space import ExplorationProgress, LimitError, StateLimits, explore
 from roaml.explicit.spreads import growing
 from roaml.smc.model import ModelChecker
-from roaml.verification.exhaustive import UndecidedError, exact_values
+from roaml.verification.exhaustive import ExplorationInterruptedError, UndecidedError, exact_values
 from roaml.verification.growth import GrowingVariable, advice
 
 SYSTEM = {
@@ -129,3 +133,38 @@ def test_at_most_three_variables_are_named() -> None:
     written = counting(*(variable(name) for name in names), **{name: op("+", name, 1) for name in names})
     checker = ModelChecker(model(written))
     assert [v.name for v in limited(checker, 100, reduces=False)] == ["n", "v0", "v1"]
+
+
+def test_an_interrupt_names_them_as_well() -> None:
+    """Those in the states that were reached until then."""
+    checker = ModelChecker(model(counting()))
+
+    def watch(progress: ExplorationProgress) -> None:
+        if progress.states > 20_000:
+            raise KeyboardInterrupt
+
+    with pytest.raises(ExplorationInterruptedError) as caught:
+        exact_values(checker, checker.compiled_properties[0], StateLimits(reduces=False), watch)
+    (variable_,) = caught.value.growing
+    assert variable_.text == f"`n` (0 to {caught.value.states - 1:,})"
+
+
+def test_an_interrupted_exploration_on_the_command_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "model.jani"
+    file.write_text(json.dumps(counting()), encoding="utf-8")
+
+    def states(_: ProgressBar, __: object, progress: ExplorationProgress) -> None:
+        if progress.states > 20_000:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(ProgressBar, "states", states)
+    assert run(["verify", str(file), "--exhaustive", "--no-reductions"]) == 130
+    lines = capsys.readouterr().out.splitlines()
+    assert re.fullmatch(r"p: interrupted after [\d,]+ states, \d+\.\d s; there is no result so far", lines[0])
+    assert re.match(r"  more and more values so far: `n` \(0 to [\d,]+\); give variables a maximum", lines[1])
+    assert run(["verify", str(file), "--exhaustive", "--no-reductions", "--format", "json"]) == 130
+    (row,) = json.loads(capsys.readouterr().out)["results"]
+    assert row["interrupted"]
+    assert [grown["greatest"] for grown in row["growing"]] == [row["explored"] - 1]

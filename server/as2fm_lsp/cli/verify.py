@@ -57,6 +57,7 @@ from roaml.smc.tally import Tally
 from roaml.text import Location, SourceFile, Span
 from roaml.verification import stuck
 from roaml.verification.counterexample import unwanted_trace, unwanted_verdict
+from roaml.verification.exhaustive import ExplorationInterruptedError
 from roaml.verification.expectations import Expectation, RangeError
 from roaml.verification.refusal import fault_message
 from roaml.verification.results import Exact, Result
@@ -339,9 +340,12 @@ class _Verification:
             return self.verifier.exhaustive(
                 property_, searches.limits, lambda progress: bar.states(property_.question, progress), searches
             )
-        except KeyboardInterrupt:
+        except KeyboardInterrupt as interrupt:
             self.interrupts.ignore()
-            return Result(property_.question.name, None, (), time.monotonic() - began, is_interrupted=True)
+            result = Result(property_.question.name, None, (), time.monotonic() - began, is_interrupted=True)
+            if isinstance(interrupt, ExplorationInterruptedError):
+                result = replace(result, explored=interrupt.states, growing=interrupt.growing)
+            return result
 
     def _print(self) -> None:
         text = self._text()

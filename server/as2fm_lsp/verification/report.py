@@ -69,9 +69,6 @@ def _block(result: Result, place_of: PlaceOf, level: StuckLevel, shown: str, *, 
         lines.append(f"{result.name}: not answered: {_refusal_text(result.refusal)}")
     if result.undecided:
         lines.append(f"{result.name}: undecided: {result.undecided}, {result.seconds:.1f} s")
-        if result.growing:
-            growing = ", ".join(variable.text for variable in result.growing)
-            lines.append(f"  more and more values so far: {growing}; {advice(result.growing)}")
     if result.exact is not None:
         name = f"{result.name} ({PROBABILITY})" if result.includes_stuck else result.name
         estimate = _estimate(result.answer) if result.answer is not None and result.has_uniform_estimate else ""
@@ -104,7 +101,11 @@ def _block(result: Result, place_of: PlaceOf, level: StuckLevel, shown: str, *, 
             lines.append("  the interval is wider than requested (--epsilon)")
     if result.is_interrupted:
         clause = "this is the result so far" if result.answer or result.sampled else "there is no result so far"
-        lines.append(f"  interrupted; {clause}" if lines else f"{result.name}: interrupted; {clause}")
+        after = f" after {result.explored:,} states, {result.seconds:.1f} s" if result.explored else ""
+        lines.append(f"  interrupted; {clause}" if lines else f"{result.name}: interrupted{after}; {clause}")
+    if result.growing:
+        growing = ", ".join(variable.text for variable in result.growing)
+        lines.append(f"  more and more values so far: {growing}; {advice(result.growing)}")
     for verdict in result.verdicts:
         if result.undecided:
             lines.append(f"  expected {verdict.expectation.text}: undecided")
@@ -229,6 +230,9 @@ def row(result: Result) -> dict[str, Any]:
         values["exact"] = exact_report.row(result.exact)
     if result.undecided:
         values["undecided"] = result.undecided
+    if result.explored:
+        values["explored"] = result.explored
+    if result.undecided or result.explored:
         values["growing"] = [
             {"variable": v.name, "automaton": v.automaton, "values": v.values, "least": v.least, "greatest": v.greatest}
             for v in result.growing

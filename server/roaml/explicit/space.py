@@ -79,6 +79,14 @@ class LimitError(Exception):
         self.search = search
 
 
+class SearchInterruptedError(KeyboardInterrupt):
+    """A search was interrupted. `search` is the search, which cannot be continued."""
+
+    def __init__(self, search: Any) -> None:
+        super().__init__()
+        self.search = search
+
+
 class Space(Record, frozen=True):
     """All states of a model that are reached before a goal is decided.
 
@@ -133,6 +141,7 @@ def explore(
 
     Raises:
         LimitError: a limit was exceeded.
+        SearchInterruptedError: Ctrl-C was pressed.
     """
     kernel_module, search_module = modules or _modules()
     if checker.initial_states > limits.states:
@@ -156,6 +165,22 @@ def explore(
     if is_reduced:
         independence = preparation_of(checker).independence.tables(goal)
         search.leave_out(_ample_module(search_module).AmpleSets(simulator, independence))
+    try:
+        return _searched(checker, property_, limits, watch, search, is_reduced=is_reduced)
+    except KeyboardInterrupt:
+        raise SearchInterruptedError(search) from None
+
+
+def _searched(
+    checker: ModelChecker,
+    property_: CompiledProperty,
+    limits: StateLimits,
+    watch: ExplorationWatch | None,
+    search: Any,
+    *,
+    is_reduced: bool,
+) -> Space:
+    """All states that a search reaches; see `explore`."""
     stride = STRIDE if limits.transitions is None else SHORT_STRIDE
     while True:
         status = search.run(stride)

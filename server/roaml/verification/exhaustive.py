@@ -5,7 +5,15 @@ from __future__ import annotations
 
 from roaml.explicit.independence import can_be_reduced
 from roaml.explicit.path import shortest
-from roaml.explicit.space import ExplorationWatch, LimitError, Space, StateLimits, explore, search_tables
+from roaml.explicit.space import (
+    ExplorationWatch,
+    LimitError,
+    SearchInterruptedError,
+    Space,
+    StateLimits,
+    explore,
+    search_tables,
+)
 from roaml.explicit.values import GoalValues, NoValueError, values_of
 from roaml.jani.operators import BinaryOperator
 from roaml.record import replace
@@ -39,6 +47,15 @@ class UndecidedError(Exception):
         self.growing = growing
 
 
+class ExplorationInterruptedError(KeyboardInterrupt):
+    """The exploration was interrupted after `states` states; `growing` as for `UndecidedError`."""
+
+    def __init__(self, states: int, growing: tuple[GrowingVariable, ...]) -> None:
+        super().__init__()
+        self.states = states
+        self.growing = growing
+
+
 def exact_values(
     checker: ModelChecker,
     property_: CompiledProperty,
@@ -53,6 +70,7 @@ def exact_values(
     Raises:
         UndecidedError: a limit was reached, or the property has assumptions or no value that can be computed.
         FaultError: an undefined operation is executed in a reachable state.
+        ExplorationInterruptedError: Ctrl-C was pressed.
 
     Unless `limits.reduces` is false, choices are left out if there are many states
     (docs/spec/reductions.md#when).
@@ -67,6 +85,9 @@ def exact_values(
     except LimitError as error:
         variables = () if error.search is None else growing_variables(checker, error.search)
         raise UndecidedError(f"{error}; {_ESTIMATE}", variables) from None
+    except SearchInterruptedError as interrupt:
+        variables = growing_variables(checker, interrupt.search)
+        raise ExplorationInterruptedError(interrupt.search.count, variables) from None
 
 
 def alone(checker: ModelChecker, property_: CompiledProperty) -> tuple[ModelChecker, CompiledProperty]:

@@ -210,7 +210,8 @@ class Result(PartlyCompared, frozen=True):
             considered.
         refusal: the reason why there is no answer; `None` if there is one.
         undecided: the reason why the exploration of all states could not decide the property; "" if it could.
-        growing: the variables because of which the exploration has reached a limit.
+        growing: the variables because of which the exploration has reached a limit or was interrupted.
+        explored: the number of states after which the exploration was interrupted; 0 if it was not.
         fault: the error that is the cause of `refusal`.
         traces: the traces of `answer`, which can be simulated again.
         comment: a description of what the property requires; "" if the model contains none.
@@ -231,6 +232,7 @@ class Result(PartlyCompared, frozen=True):
     refusal: Refusal | None = None
     undecided: str = ""
     growing: tuple[GrowingVariable, ...] = ()
+    explored: int = 0
     fault: FaultError | None = None
     traces: Traces | None = None
     comment: str = ""
