@@ -39,6 +39,7 @@ from as2fm_lsp.cli.verify_arguments import (
 )
 from as2fm_lsp.mocked_models import load_mocked_tree, names_tree
 from as2fm_lsp.verification import stuck_report
+from as2fm_lsp.verification.doubts import can_get_stuck
 from as2fm_lsp.verification.node_names import explained
 from as2fm_lsp.verification.report import as_json, as_text
 from as2fm_lsp.verification.saved_state import SavedState, StateError
@@ -226,6 +227,8 @@ class _Verification:
         self._print()
         self._print_faults()
         is_met = all(r.is_met for r in self.results) and (self.stuck_result is None or self.stuck_result.is_met)
+        if self.options.stuck is stuck.StuckLevel.ERROR and any(map(can_get_stuck, self.results)):
+            is_met = False
         status = self.interrupts.status if interrupted else CLEAN if is_met else FOUND
         if not interrupted and (self.options.traces is not None or self.options.explain):
             self._write_traces()
@@ -516,8 +519,13 @@ class _Verification:
         if trace is not None:
             yield trace.story(self.target.clock)
         elif self.options.explain:
-            what = "fails" if verdict == FALSE else "holds"
-            print_text(f"{result.name}: there is no trace in which it {what}\n", stream=sys.stderr)
+            verb = "fails" if verdict == FALSE else "holds"
+            is_possible = exact.least < 1 if verdict == FALSE else exact.greatest > 0
+            is_reward = self.verifier.question(result.name).question.is_reward
+            text = f"there is no trace in which it {verb}"
+            if is_possible and not is_reward:
+                text = f"every trace in which it {verb} repeats some states for ever, so none can be shown to its end"
+            print_text(f"{result.name}: {text}\n", stream=sys.stderr)
 
     def _story_texts(self, stories: Sequence[Story]) -> str:
         """The text of all explanations. Parts that several of them share are written once."""

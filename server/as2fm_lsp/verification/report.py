@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from as2fm_lsp.verification import activity_report, ends, exact_report, scheduler_report, stuck_report
+from as2fm_lsp.verification.doubts import CAN_GET_STUCK, can_get_stuck, doubts
 from as2fm_lsp.verification.stuck_report import PROBABILITY
 from roaml.smc.choices import Choices
 from roaml.smc.end import End
@@ -103,9 +104,8 @@ def _block(result: Result, place_of: PlaceOf, level: StuckLevel, shown: str, *, 
         clause = "this is the result so far" if result.answer or result.sampled else "there is no result so far"
         after = f" after {result.explored:,} states, {result.seconds:.1f} s" if result.explored else ""
         lines.append(f"  interrupted; {clause}" if lines else f"{result.name}: interrupted{after}; {clause}")
-    if result.growing:
-        growing = ", ".join(variable.text for variable in result.growing)
-        lines.append(f"  more and more values so far: {growing}; {advice(result.growing)}")
+    lines += _growing_lines(result)
+    lines += _doubt_lines(result, level)
     for verdict in result.verdicts:
         if result.undecided:
             lines.append(f"  expected {verdict.expectation.text}: undecided")
@@ -134,6 +134,18 @@ def _refusal_row(refusal: Refusal) -> dict[str, Any]:
 
 def _stuck_lines(stuck: Stuck, place_of: PlaceOf, level: StuckLevel, shown: str) -> list[str]:
     return [f"  {line}" for line in stuck_report.stuck_lines(stuck, place_of, level, shown)]
+
+
+def _growing_lines(result: Result) -> list[str]:
+    if not result.growing:
+        return []
+    growing = ", ".join(variable.text for variable in result.growing)
+    return [f"  more and more values so far: {growing}; {advice(result.growing)}"]
+
+
+def _doubt_lines(result: Result, level: StuckLevel) -> list[str]:
+    lines = [f"  warning: {doubt}" for doubt in doubts(result)]
+    return [*lines, f"  {level}: {CAN_GET_STUCK}"] if can_get_stuck(result) else lines
 
 
 def _estimate(answer: Answer) -> str:
@@ -269,6 +281,9 @@ def warning(result: Result) -> str:
         parts.append(activity_report.warning(result.answer))
     if result.answer is not None and result.exact is None:
         parts.append(scheduler_report.warning(result.answer.question, result.choices))
+    parts += doubts(result)
+    if can_get_stuck(result):
+        parts.append(CAN_GET_STUCK)
     return "; ".join(filter(None, parts))
 
 

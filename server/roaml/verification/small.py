@@ -58,7 +58,7 @@ def choices_of(exact: Exact, agreement: str = "") -> Choices:
     """
     asks_for_extreme_state = exact.initial_states > 1 and exact.fold is not InitialFold.MEAN
     states = "1 state" if exact.states == 1 else f"{exact.states:,} states"
-    explored = f"all {states} were explored"
+    explored = "the only state was explored" if exact.states == 1 else f"all {states} were explored"
     if exact.is_reduced:
         explored = f"all states were explored, {states} after reductions"
     return Choices(

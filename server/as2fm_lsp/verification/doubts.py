@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reasons why a value says little about the system, although it is correct: the property is decided before the first
+step, or no time passes any more, or the system can get stuck."""
+
+from __future__ import annotations
+
+from roaml.scxml.names import FIELD_PREFIX, flag_of
+from roaml.smc.end import End
+from roaml.smc.goal import Question
+from roaml.verification.results import Result
+
+CAN_GET_STUCK = (
+    "the system can get stuck before the property is decided, and then F is false and G is true; `verify` without "
+    "--exhaustive shows where"
+)
+
+
+def doubts(result: Result) -> list[str]:
+    """The reasons, as phrases for users."""
+    reasons = []
+    question = _question_decided_at_once(result)
+    if question is not None:
+        reasons.append(f"the initial state decides the property, before any step{_default_values(question)}")
+    rounds = 0 if result.answer is None else result.answer.tally.ended(End.ROUND)
+    if rounds and result.answer is not None and result.traces is not None and result.traces.target.clock is not None:
+        reasons.append(
+            f"time stops in {rounds:,} of {result.answer.tally.traces:,} traces: machines exchange events for ever, so "
+            "no timer ticks any more"
+        )
+    return reasons
+
+
+def can_get_stuck(result: Result) -> bool:
+    """Whether an exploration of all states has shown that the system can get stuck. Traces show more: the automata that
+    wait (`stuck_report`)."""
+    exact = None if result.includes_stuck or result.answer is not None else result.exact
+    return exact is not None and exact.can_get_stuck
+
+
+def _question_decided_at_once(result: Result) -> Question | None:
+    """The question of a result if no trace has a step before it is decided."""
+    if result.answer is not None:
+        ends, question = result.answer.tally.ends, result.answer.question
+        is_at_once = set(ends) == {End.DECIDED} and ends[End.DECIDED].shortest.steps == 0
+        return question if is_at_once and question.initial_states == 1 else None
+    if result.exact is None or result.exact.initial_states > 1 or result.exact.states > 1:
+        return None
+    questions = [trace.compiled_property.question for trace in result.exact.traces if trace.steps == 0]
+    return questions[0] if questions else None
+
+
+def _default_values(question: Question) -> str:
+    """What to do if the property reads fields of messages without checking whether there is one."""
+    events = {name.partition(f"__{FIELD_PREFIX}")[0] for name in question.variables if f"__{FIELD_PREFIX}" in name}
+    flag = next((flag_of(event) for event in sorted(events) if flag_of(event) not in question.variables), None)
+    if flag is None:
+        return ""
+    return f"; fields have default values until the first message, so the property may have to require `{flag}` as well"
