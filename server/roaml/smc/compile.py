@@ -24,6 +24,7 @@ from roaml.smc.names import Storage, StorageNames
 from roaml.smc.network import CompiledNetwork, EdgeStep, Reads, Slot
 from roaml.smc.program import Ints, Program
 from roaml.smc.registers import REAL, Tape, product
+from roaml.smc.updates import Updates, UpdateTables, write_updates
 
 SUPPORTED = (ModelType.DTMC, ModelType.MDP, ModelType.LTS)
 
@@ -233,36 +234,32 @@ class Compilation:
                 known[source, target] = len(known)
             self.way_move.append(known[source, target])
 
-    def _updates(self, slot_vector: list[int]) -> tuple[Ints, Ints]:
-        """`Program.way_update` and `Program.updates`."""
-        known: dict[int, int] = {-1: -1}
-        records = array("i")
-        for move, source, target in zip(self.way_move, self.way_source, self.way_target, strict=True):
-            if move not in known:
-                known[move] = len(records)
-                before, after = self._groups(source), self._groups(target)
-                left = sorted(before.keys() - after.keys())
-                entered = sorted(slot for slot in after.keys() - before.keys() if self._count(after[slot]) == 1)
-                others = sorted(after.keys() - set(entered))
-                instance, _ = self.network.locations[target]
-                records.extend((instance, target, len(left), len(entered), len(others)))
-                for slot in left:
-                    records.extend((slot, slot_vector[slot]))
-                for slot in entered:
-                    records.extend((slot, slot_vector[slot], after[slot]))
-                for slot in others:
-                    first = self.edge_start[after[slot]]
-                    guard = self.guard[first] if len(self.group_steps[after[slot]]) == 1 else -1
-                    records.extend((slot, after[slot], self._count(after[slot]), guard))
-        return _ints(known[move] for move in self.way_move), records
-
-    def _groups(self, location: int) -> dict[int, int]:
-        """The slots of a location, with their groups."""
-        return {self.group_slot[g]: g for g in range(self.group_start[location], self.group_start[location + 1])}
+    def _updates(self, slot_vector: list[int], active: list[list[int]]) -> Updates:
+        return write_updates(
+            UpdateTables(
+                [number for number, _ in self.network.locations],
+                self.group_start,
+                self.group_slot,
+                self.group_way,
+                [self._count(group) for group in range(len(self.group_slot))],
+                self.edge_start,
+                self.way_start,
+                self.way_source,
+                self.way_target,
+                self.way_code,
+                self.way_move,
+                slot_vector,
+                active,
+                self.entangled,
+            )
+        )
 
     def _count(self, group: int) -> int:
-        """The number of enabled edges of a group, or -1 if that number depends on guards."""
+        """The number of enabled edges of a group, see `UpdateTables.counts`."""
         steps = self.group_steps[group]
+        if len(steps) == 1:
+            guard = self.guard[self.edge_start[group]]
+            return 1 if guard < 0 else -2 - guard
         return -1 if any(step.guard is not None for step in steps) else len(steps)
 
     # ------------------------------------------------------------ the end
@@ -287,9 +284,10 @@ class Compilation:
             gate_missing.append(len(slots))
             for vector in vectors:
                 vector_missing[vector] += 1
-        way_update, updates = self._updates(slot_vector)
         inert = [all(s.is_inert for steps in slot.steps.values() for s in steps) for slot in self.network.slots]
-        active_start, active_slot = _ranges([[s for s in slots if not inert[s]] for slots, _ in self.network.vectors])
+        active = [[s for s in slots if not inert[s]] for slots, _ in self.network.vectors]
+        active_start, active_slot = _ranges(active)
+        updates = self._updates(slot_vector, active)
         all_start, all_slot = _ranges([slots for slots, _ in self.network.vectors])
         settle, location_code = self._write_transient()
         indexes = Indexes()
@@ -330,8 +328,10 @@ class Compilation:
             way_sum=array("d", self.way_sum),
             way_chance=_ints(self.way_chance),
             way_move=_ints(self.way_move),
-            way_update=way_update,
-            updates=updates,
+            way_update=updates.way_update,
+            vector_update=updates.vector_update,
+            group_update=updates.group_update,
+            updates=updates.updates,
             slot_instance=_ints([slot.instance for slot in self.network.slots]),
             slot_vector=_ints(slot_vector),
             gate_start=_ints(gate_start),

@@ -11,7 +11,6 @@ cdef u64 UINT64_MASK, GOLDEN, MIX_1, MIX_2
 cdef i64 MAX_INT64, MIN_INT64
 cdef double TO_UNIT, MASS_UNIT, MASS_UNIT_INVERSE
 cdef u64 MAX_DRAWN_COMBINATIONS
-cdef int ORDERS
 cdef int FALSE, TRUE, UNKNOWN, FAULTY, GOES_ON, ASKED
 cdef int DECIDED, TIME, FINISHED, STUCK, QUIET, DEADLOCK, IDLE, ROUND
 
@@ -33,7 +32,7 @@ cdef class Kernel:
     cdef public u64 roots
     cdef int[::1] group_start, group_slot, group_way, edge_start, guard, way_start, way_target, way_code, way_chance, way_move
     cdef double[::1] way_sum
-    cdef int[::1] way_update, updates
+    cdef int[::1] way_update, vector_update, group_update, updates
     cdef int[::1] slot_instance, slot_vector, gate_start, gate_vector
     cdef int[::1] active_start, active_slot, all_start, all_slot, entangled
     cdef int[::1] phase_start, phase_index, phase_read, phase_write
@@ -54,7 +53,7 @@ cdef class Kernel:
     cdef int enabled_count, enabled_count_0, plural, plural_0, fault_0
     cdef int[::1] noted, notes, part_slot, part_way
     cdef public int parts, vector
-    cdef int note_count, moved, must_look, fault, fault_at
+    cdef int update, note_count, moved, must_look, fault, fault_at
     cdef i64 fault_value, fault_size
     cdef double fault_real
     cdef u64 key, drawn, scheduler, choice, tossed, loop_state, loop_drawn
@@ -67,137 +66,143 @@ cdef class Kernel:
     cdef public double reward
     cdef double added
 
-    @cython.locals(a=int, i=int)
+    @cython.locals(a=i64, i=i64)
     cdef void _prepare(self) noexcept
-    @cython.locals(i=int)
+    @cython.locals(i=i64)
     cdef void _reset(self) noexcept
-    @cython.locals(rest=u64, choice=int, first=int, end=int, at=i64, k=int, cell=int, slot=int, a=int, group=int, i=int)
+    @cython.locals(rest=u64, choice=i64, first=i64, end=i64, at=i64, k=i64, cell=i64, slot=i64, a=i64, group=i64, i=i64)
     cdef void _enter(self, u64 number) noexcept
     cpdef void root(self, u64 number) noexcept
-    @cython.locals(i=int)
+    @cython.locals(i=i64)
     cdef void _forget_conditions(self) noexcept
-    @cython.locals(i=int)
+    @cython.locals(i=i64)
     cdef void _reset_goal(self) noexcept
     cdef void _seed(self, u64 seed, u64 trace) noexcept
     cdef u64 _root_number(self) noexcept
     @cython.locals(z=u64)
     cdef u64 _mixed(self, u64 value) noexcept
     cdef u64 _draw(self) noexcept
-    @cython.locals(old=int, vector=int)
-    cdef void _set_ready(self, int slot, int count) noexcept
-    @cython.locals(gate=int, i=int, vector=int)
-    cdef void _add_to_gate(self, int number) noexcept
-    @cython.locals(gate=int, i=int, vector=int)
-    cdef void _remove_from_gate(self, int number) noexcept
-    @cython.locals(at=int)
-    cdef void _enable(self, int vector) noexcept
-    @cython.locals(at=int, following=int, moved=int)
-    cdef void _disable(self, int vector) noexcept
-    @cython.locals(group=int)
-    cdef void _arrive(self, int location) noexcept
-    @cython.locals(count=int, edge=int, at=int, i=int)
-    cdef int _count(self, int group) noexcept
-    @cython.locals(op=int, x=i64, y=i64, result=int)
-    cdef int _is_true(self, int pc) noexcept
-    @cython.locals(at=int, i=int, value=i64)
-    cdef int _list(self, int index) noexcept
-    @cython.locals(at=int, i=int, value=i64)
-    cdef int _list_before(self, int index) noexcept
-    @cython.locals(variable=int)
+    @cython.locals(old=i64, vector=i64)
+    cdef void _set_ready(self, i64 slot, i64 count) noexcept
+    @cython.locals(gate=i64, i=i64, vector=i64)
+    cdef void _add_to_gate(self, i64 number) noexcept
+    @cython.locals(gate=i64, i=i64, vector=i64)
+    cdef void _remove_from_gate(self, i64 number) noexcept
+    @cython.locals(at=i64)
+    cdef void _enable(self, i64 vector) noexcept
+    @cython.locals(at=i64, following=i64, moved=i64)
+    cdef void _disable(self, i64 vector) noexcept
+    @cython.locals(group=i64)
+    cdef void _arrive(self, i64 location) noexcept
+    @cython.locals(count=i64, edge=i64, at=i64, i=i64)
+    cdef int _count(self, i64 group) noexcept
+    @cython.locals(op=i64, x=i64, y=i64, result=i64)
+    cdef int _is_true(self, i64 pc) noexcept
+    @cython.locals(at=i64, i=i64, value=i64)
+    cdef int _list(self, i64 index) noexcept
+    @cython.locals(at=i64, i=i64, value=i64)
+    cdef int _list_before(self, i64 index) noexcept
+    @cython.locals(variable=i64)
     cdef void _keep_values(self) noexcept
-    @cython.locals(total=u64, i=int)
+    @cython.locals(total=u64, i=i64)
     cdef u64 _total(self) noexcept
-    @cython.locals(weight=u64, i=int, count=int)
-    cdef u64 _weight(self, int vector) noexcept
-    @cython.locals(i=int)
-    cdef void _weigh(self, int vector) noexcept
-    cdef double _share(self, int vector, int top) noexcept
-    @cython.locals(rest=u64, apart=int, vector=int, total=u64, weight=u64, i=int)
+    @cython.locals(weight=u64, i=i64, count=i64)
+    cdef u64 _weight(self, i64 vector) noexcept
+    @cython.locals(i=i64)
+    cdef void _weigh(self, i64 vector) noexcept
+    cdef double _share(self, i64 vector, i64 top) noexcept
+    @cython.locals(rest=u64, apart=i64, vector=i64, total=u64, weight=u64, i=i64, update=i64)
     cdef void _step(self) noexcept
-    @cython.locals(top=int, i=int, total=double, aim=double, chosen=int, share=double)
+    @cython.locals(top=i64, i=i64, total=double, aim=double, chosen=i64, share=double)
     cdef int _heavy(self) noexcept
     cdef u64 _toss(self) noexcept
-    @cython.locals(bias=int, chosen=int, chosen_rank=int, greatest=u64, i=int, vector=int, rank=int, value=u64)
+    @cython.locals(bias=i64, chosen=i64, chosen_rank=i64, greatest=u64, i=i64, vector=i64, rank=i64, value=u64)
     cdef int _scheduled(self) noexcept
-    @cython.locals(i=int)
-    cdef int _takes_part(self, int vector, int instance) noexcept
+    @cython.locals(i=i64)
+    cdef int _takes_part(self, i64 vector, i64 instance) noexcept
     cdef void _notice(self, u64 state) noexcept
-    @cython.locals(state=u64, i=int)
+    @cython.locals(state=u64, i=i64)
     cdef u64 _state_hash(self) noexcept
-    @cython.locals(i=int, slot=int, count=int, pick=int, edge=int, way=int)
-    cdef void _take(self, int vector, u64 rest, int apart) noexcept
-    @cython.locals(i=int, slot=int, edge=int)
-    cdef void _take_given(self, int vector, list picks, list ways) noexcept
-    @cython.locals(i=int, update=int, code=int)
-    cdef void _apply(self, int vector) noexcept
-    @cython.locals(at=int, end=int, slot=int, group=int, guard=int, count=int, old=int, vector=int, missing=int)
-    cdef void _move(self, int update) noexcept
-    @cython.locals(i=int)
-    cdef void _execute_ways(self, int vector) noexcept
-    @cython.locals(group=int, edge=int, i=int)
-    cdef int _edge(self, int slot, int pick) noexcept
-    @cython.locals(first=int, end=int, unit=double, low=int, high=int, middle=int)
-    cdef int _way(self, int edge) noexcept
-    @cython.locals(first=int, end=int, unit=double, total=double, drawn=int, last=int, way=int, register=int, chance=double)
-    cdef int _way_computed(self, int edge) noexcept
-    @cython.locals(way=int, before=double)
-    cdef list _chances(self, int edge)
-    @cython.locals(index=i64, following=i64, i=int, k=int, way=int)
+    @cython.locals(i=i64, slot=i64, count=i64, pick=i64, edge=i64, way=i64, parts=i64)
+    cdef void _take(self, i64 vector, u64 rest, i64 apart) noexcept
+    @cython.locals(update=i64)
+    cdef i64 _fixed(self, i64 vector) noexcept
+    @cython.locals(at=i64, end=i64)
+    cdef void _take_fixed(self, i64 vector, i64 update) noexcept
+    @cython.locals(at=i64, i=i64)
+    cdef void _list_parts(self, i64 update) noexcept
+    @cython.locals(i=i64, slot=i64, edge=i64, update=i64)
+    cdef void _take_given(self, i64 vector, list picks, list ways) noexcept
+    @cython.locals(i=i64, update=i64, code=i64)
+    cdef void _apply(self, i64 vector) noexcept
+    @cython.locals(at=i64, end=i64, slot=i64, group=i64, count=i64, vector=i64, missing=i64)
+    cdef void _move(self, i64 update) noexcept
+    @cython.locals(i=i64)
+    cdef void _execute_ways(self, i64 vector) noexcept
+    @cython.locals(group=i64, edge=i64, i=i64)
+    cdef int _edge(self, i64 slot, i64 pick) noexcept
+    @cython.locals(first=i64, end=i64, unit=double, low=i64, high=i64, middle=i64)
+    cdef int _way(self, i64 edge) noexcept
+    @cython.locals(first=i64, end=i64, unit=double, total=double, drawn=i64, last=i64, way=i64, register=i64, chance=double)
+    cdef int _way_computed(self, i64 edge) noexcept
+    @cython.locals(way=i64, before=double)
+    cdef list _chances(self, i64 edge)
+    @cython.locals(index=i64, following=i64, i=i64, k=i64, way=i64)
     cdef void _execute_phases(self) noexcept
-    @cython.locals(i=int, k=int, m=int, variable=int, instance=int, at=int, index=int, group=int)
+    @cython.locals(i=i64, k=i64, m=i64, variable=i64, instance=i64, at=i64, index=i64, group=i64)
     cdef void _look_around(self) noexcept
-    @cython.locals(before=int, now=int, i=int, group=int)
-    cdef void _look_up(self, int index) noexcept
-    @cython.locals(code=int)
-    cdef void _settle_location(self, int instance) noexcept
-    @cython.locals(i=int, k=int, vector=int, slot=int, pick=int, edge=int, way=int)
+    @cython.locals(before=i64, now=i64, i=i64, group=i64)
+    cdef void _look_up(self, i64 index) noexcept
+    @cython.locals(code=i64)
+    cdef void _settle_location(self, i64 instance) noexcept
+    @cython.locals(i=i64, k=i64, vector=i64, slot=i64, pick=i64, edge=i64, way=i64)
     cdef int _can_leave(self) noexcept
-    @cython.locals(is_open=int, i=int, parts=int, changes=int, vector=int)
+    @cython.locals(is_open=i64, i=i64, parts=i64, changes=i64, vector=i64)
     cdef int _can_change(self) noexcept
-    @cython.locals(slot=int, pick=int, edge=int, way=int, changes=int)
-    cdef int _changes_from(self, int vector, int at) noexcept
-    cdef int _changes_variables(self, int vector) noexcept
-    @cython.locals(i=int)
+    @cython.locals(slot=i64, pick=i64, edge=i64, way=i64, changes=i64)
+    cdef int _changes_from(self, i64 vector, i64 at) noexcept
+    cdef int _changes_variables(self, i64 vector) noexcept
+    @cython.locals(i=i64)
     cdef void _store(self) noexcept
-    @cython.locals(i=int, changed=int)
+    @cython.locals(i=i64, changed=i64)
     cdef int _restored(self) noexcept
-    @cython.locals(register=int)
-    cdef int _is_possible(self, int way) noexcept
-    @cython.locals(i=int)
-    cdef int _changes(self, int slot, int way) noexcept
-    @cython.locals(status=int)
+    @cython.locals(register=i64)
+    cdef int _is_possible(self, i64 way) noexcept
+    @cython.locals(i=i64)
+    cdef int _changes(self, i64 slot, i64 way) noexcept
+    @cython.locals(status=i64)
     cdef int _advance(self, i64 limit) noexcept
-    @cython.locals(status=int)
+    @cython.locals(status=i64)
     cdef int _after_step(self) noexcept
-    cdef int _finish(self, int status) noexcept
-    @cython.locals(i=int, decided=int)
+    cdef int _finish(self, i64 status) noexcept
+    @cython.locals(i=i64, decided=i64)
     cdef int _look(self) noexcept
-    cdef int _holds(self, int code) noexcept
+    cdef int _holds(self, i64 code) noexcept
     cdef int _is_deadlock(self) noexcept
-    cdef int _ends(self, int repeats) noexcept
-    @cython.locals(i=int)
-    cdef int _ends_for(self, int reason, int repeats) noexcept
-    @cython.locals(i=int)
+    cdef int _ends(self, i64 repeats) noexcept
+    @cython.locals(i=i64)
+    cdef int _ends_for(self, i64 reason, i64 repeats) noexcept
+    @cython.locals(i=i64)
     cdef int _goes_round(self) noexcept
     cdef int _returns(self, i64 most) noexcept
-    @cython.locals(i=int)
+    @cython.locals(i=i64)
     cdef int _is_marked(self) noexcept
-    @cython.locals(reason=int, i=int, mark=int)
-    cdef int _reason(self, int repeats) noexcept
-    @cython.locals(status=int, is_open=int, i=int)
+    @cython.locals(reason=i64, i=i64, mark=i64)
+    cdef int _reason(self, i64 repeats) noexcept
+    @cython.locals(status=i64, is_open=i64, i=i64)
     cdef int _combined(self) noexcept
-    cdef int _active(self, int code) noexcept
-    @cython.locals(i=int)
-    cdef void _drop(self, int question) noexcept
-    @cython.locals(top=int, i=int, item=int, a=int, b=int, decisive=int)
-    cdef int _value(self, int start, int end) noexcept
-    @cython.locals(register=int)
-    cdef void _add_reward(self, int code) noexcept
-    @cython.locals(i=int, register=int, reward=double, total=double)
+    cdef int _active(self, i64 code) noexcept
+    @cython.locals(i=i64)
+    cdef void _drop(self, i64 question) noexcept
+    @cython.locals(top=i64, i=i64, item=i64, a=i64, b=i64, decisive=i64)
+    cdef int _value(self, i64 start, i64 end) noexcept
+    @cython.locals(register=i64)
+    cdef void _add_reward(self, i64 code) noexcept
+    @cython.locals(i=i64, register=i64, reward=double, total=double)
     cdef void _accumulate(self, int[::1] codes) noexcept
-    cdef void _fail(self, int fault, int at) noexcept
-    cdef void _fail_with(self, int fault, int at, i64 value, i64 size, double real) noexcept
-    cdef void _note(self, int variable) noexcept
-    cdef int _call(self, int function, int real, int target, int at) noexcept
-    @cython.locals(op=int, d=int, a=int, b=int, c=int, x=i64, y=i64, z=i64, at=i64, i=int, changed=int)
-    cdef i64 _execute(self, int pc) noexcept
+    cdef void _fail(self, i64 fault, i64 at) noexcept
+    cdef void _fail_with(self, i64 fault, i64 at, i64 value, i64 size, double real) noexcept
+    cdef void _note(self, i64 variable) noexcept
+    cdef int _call(self, i64 function, i64 real, i64 target, i64 at) noexcept
+    @cython.locals(op=i64, d=i64, a=i64, b=i64, c=i64, x=i64, y=i64, z=i64, at=i64, i=i64, changed=i64)
+    cdef i64 _execute(self, i64 pc) noexcept

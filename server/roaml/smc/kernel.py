@@ -7,8 +7,9 @@
   it is ready if an edge of the automaton for this action is enabled. A vector counts its slots that are not ready.
   Slots that take part in the same vectors, if these are several, share a *gate*, which counts the slots that are not
   ready; it is open if all of them are ready, and a vector counts its gates that are not open. A step updates only the
-  slots of the locations that it leaves and enters, from a record that the compiler prepares for each pair of locations,
-  and the guards that read a variable that has changed. The enabled vectors are sorted by their numbers, so that what a
+  slots of the locations that it leaves and enters, and the guards that read a variable that has changed. The compiler
+  prepares the changes of slots for each pair of locations, and for whole steps if the vector determines all ways, or
+  if these depend on a single location (`updates`). The enabled vectors are sorted by their numbers, so that what a
   random number selects depends on the state only, not on the trace before it. Few of them are enabled at the same time.
 - A model with several initial states starts in one of them, which random number 0 of the trace selects.
 - A *way* is a destination of an edge. A *part* of a step is a slot with the way that it takes.
@@ -36,9 +37,6 @@ TO_UNIT = 1.0 / 9007199254740992.0
 MAX_DRAWN_COMBINATIONS = 4096
 """The maximum number of combinations from which one random number of 32 bits selects: the relative error of each
 probability is then at most one in a million."""
-ORDERS = 0x3152
-"""For `=`, `≠`, `<` and `≤`, 4 bits each, beginning with the lowest ones: the results for which the comparison is true.
-They are 1 if the left number is less than the right one, 2 if they are equal, 4 if it is greater."""
 MASS_UNIT = 2.0**512
 MASS_UNIT_INVERSE = 2.0**-512
 
@@ -99,6 +97,8 @@ class Kernel:
         self.way_chance = program.way_chance
         self.way_move = program.way_move
         self.way_update = program.way_update
+        self.vector_update = program.vector_update
+        self.group_update = program.group_update
         self.updates = program.updates
         self.slot_instance = program.slot_instance
         self.slot_vector = program.slot_vector
@@ -197,6 +197,7 @@ class Kernel:
         self.tried = 0
         self.parts = 0
         self.vector = -1
+        self.update = -1
         self.moved = 0
         self.must_look = 0
         self.fault = 0
@@ -282,6 +283,8 @@ class Kernel:
 
     def taken(self) -> list[tuple[int, int]]:
         """The instance and the way of each part of the last step that has an effect."""
+        if self.update >= 0:
+            self._list_parts(self.update)
         return [(self.slot_instance[self.part_slot[i]], self.part_way[i]) for i in range(self.parts)]
 
     def outcome(self) -> tuple[int, int, float]:
@@ -495,6 +498,7 @@ class Kernel:
         self.note_count = 0
         self.fault = self.fault_0
         self.vector = -1
+        self.update = -1
         self.looped = 0
         self.loop_drawn = UINT64_MASK
         self.parts = 0
@@ -583,7 +587,8 @@ class Kernel:
         if old == count:
             return
         self.ready[slot] = count
-        self.plural += (count > 1) - (old > 1)
+        if (old | count) > 1:
+            self.plural += (count > 1) - (old > 1)
         vector = self.slot_vector[slot]
         if old == 0:
             if vector < 0:
@@ -668,18 +673,21 @@ class Kernel:
         return count
 
     def _is_true(self, pc: int) -> int:
-        """Whether the guard at `pc` is true. Most guards consist of comparisons, which need not be distinguished by
-        jumps here."""
+        """Whether the guard at `pc` is true. Most guards consist of comparisons, which their operand c distinguishes
+        without jumps."""
         op = self.code[pc]
-        while op >= 53:  # FAIL_EQ, FAIL_NE, FAIL_LT, FAIL_LE, IS_EQ, IS_NE, IS_LT, IS_LE
+        while op >= 51 or 2 <= op <= 7:  # the comparisons: FAIL_..., IS_..., JUMP_...
             x = self.ints[self.code[pc + 2]]
             y = self.ints[self.code[pc + 3]]
-            result = (ORDERS >> (((op - 53) & 3) * 4)) & (1 << ((x > y) + (x >= y)))
+            result = (self.code[pc + 4] >> ((x > y) + (x >= y))) & 1
             if op >= 57:
-                return 1 if result != 0 else 0
-            if result != 0:
+                return result
+            if result == 0:
+                pc += 5
+            elif op >= 51:
                 return 0
-            pc += 5
+            else:
+                pc = self.code[pc + 1]
             op = self.code[pc]
         return 1 if self._execute(pc) != 0 else 0
 
@@ -777,7 +785,13 @@ class Kernel:
                     i += 1
                     vector = self.enabled[i]
                     weight = self._weight(vector)
-        self._take(vector, rest, apart)
+        if self.exit_reward >= 0:
+            self._add_reward(self.exit_reward)
+        update = self._fixed(vector)
+        if update >= 0:
+            self._take_fixed(vector, update)
+        else:
+            self._take(vector, rest, apart)
 
     def _heavy(self) -> int:
         """A vector drawn by weights that need not fit into an integer."""
@@ -873,10 +887,9 @@ class Kernel:
     def _take(self, vector: int, rest: int, apart: int) -> None:
         """Take combination number `rest` of `vector`; with `apart`, draw the edge of each slot separately."""
         self.vector = vector
-        self.parts = 0
+        self.update = -1
         self.moved = 0
-        if self.exit_reward >= 0:
-            self._add_reward(self.exit_reward)
+        parts = 0
         for i in range(self.active_start[vector], self.active_start[vector + 1]):
             slot = self.active_slot[i]
             count = self.ready[slot]
@@ -894,14 +907,62 @@ class Kernel:
                 if self.way_start[edge + 1] - way > 1:
                     way = self._way(edge)
                     if way < 0:
+                        self.parts = parts
                         return
-            self.part_slot[self.parts] = slot
-            self.part_way[self.parts] = way
-            self.parts += 1
+            self.part_slot[parts] = slot
+            self.part_way[parts] = way
+            parts += 1
+        self.parts = parts
         self._apply(vector)
 
-    def _take_given(self, vector: int, picks: list[int], ways: list[int]) -> None:
+    def _fixed(self, vector: int) -> int:
+        """The index in `Program.updates` of the step that takes a vector, -1 if its ways are to be chosen."""
+        update = self.vector_update[vector]
+        return update if update >= -1 else self.group_update[self.slot_group[-2 - update]]
+
+    def _take_fixed(self, vector: int, update: int) -> None:
+        """Take a vector whose ways need not be chosen. `update`: the result of `_fixed`, which is not negative."""
         self.vector = vector
+        self.update = update
+        self.parts = 0
+        self.moved = 0
+        at = update + 2
+        end = self.updates[update]
+        if self.is_plain == 0:
+            self._list_parts(update)
+            self._execute_ways(vector)
+            at = end
+        while at < end:
+            self._execute(self.updates[at])
+            at += 1
+        if self.fault != 0:
+            return
+        end = self.updates[update + 1]
+        if at < end:
+            self.vector_missing[vector] = end - at
+            self._disable(vector)
+            while at < end:
+                self.ready[self.updates[at]] = 0
+                at += 1
+        self._move(at)
+        if self.note_count != 0:
+            self._look_around()
+
+    def _list_parts(self, update: int) -> None:
+        """Store the parts of a step in `Program.updates`."""
+        at = self.updates[self.updates[update + 1] + 3]
+        self.parts = self.updates[at]
+        for i in range(self.parts):
+            self.part_slot[i] = self.updates[at + 1 + 2 * i]
+            self.part_way[i] = self.updates[at + 2 + 2 * i]
+
+    def _take_given(self, vector: int, picks: list[int], ways: list[int]) -> None:
+        update = self._fixed(vector)
+        if update >= 0:
+            self._take_fixed(vector, update)
+            return
+        self.vector = vector
+        self.update = -1
         self.parts = 0
         self.moved = 0
         for i in range(self.active_start[vector], self.active_start[vector + 1]):
@@ -931,18 +992,18 @@ class Kernel:
             self._look_around()
 
     def _move(self, update: int) -> None:
-        """Let an instance go from one location to another. `update`: an index in `Program.updates`."""
-        self.moved = 1
-        self.place[self.updates[update]] = self.updates[update + 1]
-        at = update + 5
-        end = at + 2 * self.updates[update + 2]
+        """Let instances go from one location to another. `update`: the index of a move in `Program.updates`."""
+        at = update + 4
+        end = self.updates[update]
+        while at < end:
+            self.place[self.updates[at]] = self.updates[at + 1]
+            self.moved = 1
+            at += 2
+        end = self.updates[update + 1]
         while at < end:
             slot = self.updates[at]
-            old = self.ready[slot]
-            if old != 0:
+            if self.ready[slot] != 0:
                 self.ready[slot] = 0
-                if old > 1:
-                    self.plural -= 1
                 vector = self.updates[at + 1]
                 if vector < 0:
                     self._remove_from_gate(vector)
@@ -952,7 +1013,7 @@ class Kernel:
                     if missing == 0:
                         self._disable(vector)
             at += 2
-        end = at + 3 * self.updates[update + 3]
+        end = self.updates[update + 2]
         while at < end:
             slot = self.updates[at]
             self.ready[slot] = 1
@@ -966,17 +1027,17 @@ class Kernel:
                 if missing == 0:
                     self._enable(vector)
             at += 3
-        end = at + 4 * self.updates[update + 4]
+        end = self.updates[update + 3]
         while at < end:
             slot = self.updates[at]
             group = self.updates[at + 1]
             count = self.updates[at + 2]
             if count < 0:
-                guard = self.updates[at + 3]
-                count = self._is_true(guard) if guard >= 0 else self._count(group)
+                count = self._count(group) if count == -1 else self._is_true(-2 - count)
             self.slot_group[slot] = group
-            self._set_ready(slot, count)
-            at += 4
+            if self.ready[slot] != count:
+                self._set_ready(slot, count)
+            at += 3
 
     def _execute_ways(self, vector: int) -> None:
         """Execute the assignments of the chosen ways, and change the locations."""

@@ -19,8 +19,8 @@ class Op(enum.IntEnum):
 
     RETURN = 0  # the value is I[a]
     JUMP = 1  # to d
-    JUMP_TRUE = 2  # to d if I[a]
-    JUMP_FALSE = 3  # to d unless I[a]
+    JUMP_TRUE = 2  # to d if I[a]; I[b] is 1
+    JUMP_FALSE = 3  # to d unless I[a]; I[b] is 0
     JUMP_EQ = 4  # to d if I[a] = I[b]
     JUMP_NE = 5
     JUMP_LT = 6
@@ -68,8 +68,8 @@ class Op(enum.IntEnum):
     CALL_REAL = 48
     ARGUMENT = 49  # append I[a] to the arguments of the next call
     ARGUMENT_REAL = 50
-    FAIL_TRUE = 51  # the value is 0 if I[a]; continue otherwise
-    FAIL_FALSE = 52
+    FAIL_TRUE = 51  # the value is 0 if I[a]; continue otherwise; I[b] is 1
+    FAIL_FALSE = 52  # I[b] is 0
     FAIL_EQ = 53  # the value is 0 if I[a] = I[b]; continue otherwise
     FAIL_NE = 54
     FAIL_LT = 55
@@ -78,6 +78,29 @@ class Op(enum.IntEnum):
     IS_NE = 58
     IS_LT = 59
     IS_LE = 60
+
+
+_LESS, _EQUAL, _GREATER = 1, 2, 4
+
+ORDERS = {
+    Op.JUMP_TRUE: _EQUAL,
+    Op.JUMP_FALSE: _EQUAL,
+    Op.JUMP_EQ: _EQUAL,
+    Op.JUMP_NE: _LESS | _GREATER,
+    Op.JUMP_LT: _LESS,
+    Op.JUMP_LE: _LESS | _EQUAL,
+    Op.FAIL_TRUE: _EQUAL,
+    Op.FAIL_FALSE: _EQUAL,
+    Op.FAIL_EQ: _EQUAL,
+    Op.FAIL_NE: _LESS | _GREATER,
+    Op.FAIL_LT: _LESS,
+    Op.FAIL_LE: _LESS | _EQUAL,
+    Op.IS_EQ: _EQUAL,
+    Op.IS_NE: _LESS | _GREATER,
+    Op.IS_LT: _LESS,
+    Op.IS_LE: _LESS | _EQUAL,
+}
+"""The comparisons of ints -> their operand c: for which orders of I[a] and I[b] they hold."""
 
 
 class FaultCode(enum.IntEnum):

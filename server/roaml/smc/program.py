@@ -44,14 +44,21 @@ class Program(Record, frozen=True, eq=False):
         way_chance: code that returns the register of the probability of a way, if it depends on the state.
         way_move: the move of a way: the number of its pair of a source and a target location; -1 if both are equal.
         group_way: the way of a group that consists of one edge with one way; -1 for other groups.
-        way_update: for each way, the index in `updates` of the change of what is enabled; -1 if its source and its
+        vector_update: the index in `updates` of the step that takes a vector, if each of its slots has one group with
+            one way; -2 - s if only slot s may have several groups and takes part in no other vector; -1 for other
+            vectors, and for entangled ones.
+        group_update: for each group of such a slot s, the index of the step that takes its way and the vector of s; -1
+            if the group has several ways, and for other slots.
+        way_update: for each way that other vectors take, the index in `updates` of its move; -1 if its source and its
             target are equal.
-        updates: one record after the other. It contains the instance, its target location, the numbers of slots in
-            the three parts of the record, and these parts:
-            slots that have edges only in the source location, with their `slot_vector`; slots that have one edge
-            without a guard in the target location and none in the source location, with their `slot_vector` and their
-            group; and the other slots that have edges in the target location, with their group, the number of their
-            enabled edges, -1 if it depends on guards, and the guard of a single edge, otherwise -1.
+        updates: steps and moves, one after the other.
+            A step contains the ends of its first two parts (indices in `updates`), and its parts: the code of its ways;
+            the slots that are left and take part in no other vector than the one that is taken; the move of all of its
+            instances; the number of its ways, and its slots with their ways.
+            A move contains the ends of its four parts, and these parts: instances with their target locations; slots
+            that are left, with their `slot_vector`; slots that are entered and have one edge without a guard, with
+            their `slot_vector` and their group; and other slots, with their group and the number of their enabled
+            edges, which is encoded as in `updates.UpdateTables`.
         slot_vector: the vector of each slot; -1 if there is none; -2 - g if there are several, where g is the gate of
             the slot (`roaml.smc.kernel` defines gates). gate_vector: the vectors of a gate.
         gate_missing, vector_missing: the number of slots of each gate; for each vector, the number of its slots that
@@ -104,6 +111,8 @@ class Program(Record, frozen=True, eq=False):
     way_chance: Ints
     way_move: Ints
     way_update: Ints
+    vector_update: Ints
+    group_update: Ints
     updates: Ints
     slot_instance: Ints
     slot_vector: Ints

@@ -8,7 +8,7 @@ from typing import TypeAlias
 from roaml.jani.node import Origin
 from roaml.jani.operators import Operator
 from roaml.record import Record
-from roaml.smc.opcodes import WIDTH, Op
+from roaml.smc.opcodes import ORDERS, WIDTH, Op
 
 BOOL, INT, REAL = "bool", "int", "real"
 """Kinds of values. Bools and ints share the same registers."""
@@ -23,6 +23,8 @@ _FAILING = {
 }
 """A jump -> the instruction that returns 0 instead of jumping."""
 _DECIDING = {
+    Op.FAIL_TRUE: (Op.IS_NE, False),
+    Op.FAIL_FALSE: (Op.IS_NE, False),
     Op.FAIL_EQ: (Op.IS_NE, False),
     Op.FAIL_NE: (Op.IS_EQ, False),
     Op.FAIL_LT: (Op.IS_LE, True),
@@ -100,7 +102,9 @@ class Tape:
 
     def jump(self, op: Op, label: Label, a: int = 0, b: int = 0) -> None:
         label.uses.append(len(self.code) + 1)
-        self.emit(op, label.at, a, b)
+        if op in (Op.JUMP_TRUE, Op.JUMP_FALSE):
+            b = self.constant(INT, 1 if op is Op.JUMP_TRUE else 0).register
+        self.emit(op, label.at, a, b, ORDERS.get(op, 0))
 
     def mark(self, label: Label) -> None:
         label.at = len(self.code)
@@ -118,7 +122,9 @@ class Tape:
                 continue
             self.code[at : at + 2] = op, 0
             if at + WIDTH == returns_1 and op in _DECIDING:
-                self.code[at], is_swapped = _DECIDING[op]
+                op, is_swapped = _DECIDING[op]
+                self.code[at] = op
+                self.code[at + 4] = ORDERS[op]
                 if is_swapped:
                     self.code[at + 2], self.code[at + 3] = self.code[at + 3], self.code[at + 2]
 
