@@ -4,7 +4,7 @@ for.
 
 - Depends on `roaml.jani`, not on SCXML, XML, robots or the disk.
 - `compile` turns a model into flat arrays once; `kernel` simulates them. `kernel.py` is plain Python and is compiled by
-  Cython, with the types in `kernel.pxd`, if there is a compiler. Both generate the same traces. A step takes 0.05 to
+  Cython, with the types in `kernel.pxd`, if there is a compiler. Both generate the same traces. A step takes 0.03 to
   0.06 µs compiled in ROS systems, and 10 µs as Python. Numba was measured as an alternative: it takes 0.5 s to import,
   0.3 s to load a cached function and 305 MB (two cores of an AMD EPYC), while a whole verification takes 0.8 s.
 - A *question* is what a property asks about all traces (`goal.Question`); an *answer* is the estimate. A *goal* is what

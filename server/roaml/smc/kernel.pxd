@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # The C types of kernel.py. This file contains types only: without them the same code runs as plain Python.
+# Numbers that are used as indices are i64, because C would have to extend an int, which wraps around, in each access.
 # cython: language_level=3
 
 cimport cython
@@ -83,7 +84,7 @@ cdef class Kernel:
     cdef u64 _mixed(self, u64 value) noexcept
     cdef u64 _draw(self) noexcept
     @cython.locals(old=i64, vector=i64)
-    cdef void _set_ready(self, i64 slot, i64 count) noexcept
+    cdef inline void _set_ready(self, i64 slot, i64 count) noexcept
     @cython.locals(gate=i64, i=i64, vector=i64)
     cdef void _add_to_gate(self, i64 number) noexcept
     @cython.locals(gate=i64, i=i64, vector=i64)
@@ -115,7 +116,7 @@ cdef class Kernel:
     cdef void _step(self) noexcept
     @cython.locals(top=i64, i=i64, total=double, aim=double, chosen=i64, share=double)
     cdef int _heavy(self) noexcept
-    cdef u64 _toss(self) noexcept
+    cdef inline u64 _toss(self) noexcept
     @cython.locals(bias=i64, chosen=i64, chosen_rank=i64, greatest=u64, i=i64, vector=i64, rank=i64, value=u64)
     cdef int _scheduled(self) noexcept
     @cython.locals(i=i64)
@@ -124,19 +125,19 @@ cdef class Kernel:
     @cython.locals(state=u64, i=i64)
     cdef u64 _state_hash(self) noexcept
     @cython.locals(i=i64, slot=i64, count=i64, pick=i64, edge=i64, way=i64, parts=i64)
-    cdef void _take(self, i64 vector, u64 rest, i64 apart) noexcept
+    cdef inline void _take(self, i64 vector, u64 rest, i64 apart) noexcept
     @cython.locals(update=i64)
-    cdef i64 _fixed(self, i64 vector) noexcept
+    cdef inline i64 _fixed(self, i64 vector) noexcept
     @cython.locals(at=i64, end=i64)
-    cdef void _take_fixed(self, i64 vector, i64 update) noexcept
+    cdef inline void _take_fixed(self, i64 vector, i64 update) noexcept
     @cython.locals(at=i64, i=i64)
     cdef void _list_parts(self, i64 update) noexcept
     @cython.locals(i=i64, slot=i64, edge=i64, update=i64)
     cdef void _take_given(self, i64 vector, list picks, list ways) noexcept
     @cython.locals(i=i64, update=i64, code=i64)
-    cdef void _apply(self, i64 vector) noexcept
+    cdef inline void _apply(self, i64 vector) noexcept
     @cython.locals(at=i64, end=i64, slot=i64, group=i64, count=i64, vector=i64, missing=i64)
-    cdef void _move(self, i64 update) noexcept
+    cdef inline void _move(self, i64 update) noexcept
     @cython.locals(i=i64)
     cdef void _execute_ways(self, i64 vector) noexcept
     @cython.locals(group=i64, edge=i64, i=i64)
