@@ -107,6 +107,60 @@ def test_the_number_of_transitions_is_limited(monkeypatch: pytest.MonkeyPatch) -
     assert values_if_small(checker, property_) is None
 
 
+def count_to(end: int) -> list[Json]:
+    """`end` states in a row, then the end. Every hundredth one has two successors."""
+    is_hundredth = op("=", op("%", "n", 100), 0)
+    following = op("+", "n", 1)
+    return [
+        edge("l", way("l", n=following), guard=op("∧", op("<", "n", end), op("¬", is_hundredth))),
+        edge("l", way("l", 0.5, n=following), way("m", 0.5), guard=op("∧", op("<", "n", end), is_hundredth)),
+        edge("l", way("m", x=1), guard=op("=", "n", end)),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("end", "parts", "searches", "is_reduced"),
+    [
+        (11, 2, ["all"], False),
+        (101, 2, ["all", "reduced", "all"], False),
+        (11, 7, ["all", "reduced", "all"], True),
+        (60_001, 1, ["all", "reduced"], True),
+        (200_001, 1, ["all", "reduced"], None),
+    ],
+)
+def test_all_states_are_explored_unless_reductions_show_that_there_are_many(
+    monkeypatch: pytest.MonkeyPatch, end: int, parts: int, searches: list[str], is_reduced: bool | None
+) -> None:
+    seen: list[str] = []
+
+    def recorded(*arguments: Any, is_reduced: bool = False, **options: Any) -> Any:
+        seen.append("reduced" if is_reduced else "all")
+        return explore(*arguments, is_reduced=is_reduced, **options)
+
+    monkeypatch.setattr(small, "explore", recorded)
+    written = counters(count_to(end), parts)
+    written["variables"].append(variable("n"))
+    checker = ModelChecker(model(written))
+    exact = values_if_small(checker, checker.compiled_properties[0])
+    assert seen == searches
+    assert (None if exact is None else exact.is_reduced) is is_reduced
+
+
+def test_states_of_cycles_do_not_make_a_model_large() -> None:
+    """A path of steps without end is followed up to a limit: the states in it are passed repeatedly."""
+    turn = edge("s", way("s", c=op("%", op("+", "c", 1), 100)))
+    written = document(
+        automaton("busy", "s", [turn], [variable("c")]),
+        automaton("worker", "l m", count_to(150)),
+        variables=[variable("n"), variable("x")],
+        properties={"p": probability(op("F", op("=", "x", 1)), "Pmax")},
+    )
+    checker = ModelChecker(model(written))
+    exact = values_if_small(checker, checker.compiled_properties[0])
+    assert exact is not None
+    assert (exact.is_reduced, exact.states) == (False, 15_300)
+
+
 def test_properties_that_cannot_be_reduced_are_left_to_traces() -> None:
     written = counters(TOSS)
     bounded = {**op("F", op("=", "x", 1)), "step-bounds": {"upper": 10_000}}

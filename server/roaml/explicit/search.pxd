@@ -44,7 +44,7 @@ cdef class StateSearch:
     cdef int[::1] trail, passed_to, passed_left
     cdef u64[::1] passed_keys
     cdef u64 passed_mask
-    cdef public i64 alone, passed
+    cdef public i64 alone, passed, circled
     cdef public u64[::1] keys
     cdef u64[::1] table
     cdef u64 table_mask, tag

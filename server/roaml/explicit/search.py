@@ -92,6 +92,7 @@ class StateSearch:
         problem: the state whose choices could not be computed; -1 if there is none.
         alone: the number of stored states in which choices were left out.
         passed: the number of steps from states that are not stored. A path that is remembered is not followed again.
+        circled: the number of these steps on paths that were ended because they may form a cycle.
     """
 
     def __init__(
@@ -169,6 +170,7 @@ class StateSearch:
         self.leaves_out = 0
         self.alone = 0
         self.passed = 0
+        self.circled = 0
         self.has_passed = 0
         self.layout = 0
         self.trail = array("i", [0] * MAX_PASSED)
@@ -1264,6 +1266,8 @@ class StateSearch:
             steps += 1
             successor = self._known()
         self.passed += steps
+        if steps == MAX_PASSED:
+            self.circled += steps
         if self.kernel.fault != 0:
             self.status = FAULT
             return -1
