@@ -363,6 +363,26 @@ def test_only_guards_that_can_be_undefined_are_reads_of_other_steps(value: Any, 
     assert is_smaller(*spaces) == is_independent
 
 
+@pytest.mark.parametrize("value", [0, 1])
+@pytest.mark.parametrize("has_chance", [False, True])
+def test_writes_are_invisible_if_they_keep_the_value(value: int, *, has_chance: bool) -> None:
+    """A step that writes a variable of the property is only taken alone if each destination keeps the value 0. The step
+    is independent of a choice between two edges, which cannot be taken alone."""
+    ways = [way("m", x=value)]
+    if has_chance:
+        ways = [way("m", 0.5, x=0), way("n", 0.5, x=value)]
+    written = document(
+        automaton("a", "l m n", [edge("l", *ways)]),
+        automaton("b", "l m n", [edge("l", way("m", y=1)), edge("l", "n")]),
+        variables=[variable("x"), variable("y")],
+        properties={"p": probability(op("U", op("≤", "y", "x"), op("=", "y", 1)))},
+    )
+    spaces = both(*question_of(written))
+    assert spaces is not None
+    check(*spaces)
+    assert (len(spaces[1].search.choices_of(0)) == 1) == (value == 0)
+
+
 def test_steps_that_change_nothing_can_avoid_an_end() -> None:
     """They can be taken for ever, but not at the end. So `stuck` has a smaller minimum than after reductions."""
     idle = automaton("i", "l", [edge("l", way("l", 0.5), way("l", 0.5))])

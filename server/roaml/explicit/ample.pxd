@@ -7,6 +7,7 @@ from roaml.smc.kernel cimport Kernel
 
 ctypedef long long i64
 
+cdef int NEVER, HIDDEN, WRITES
 cdef int SEVERAL
 
 @cython.final
@@ -15,12 +16,14 @@ cdef class AmpleSets:
     cdef int[::1] slot_start, slot_vector, hidden, dependent_start, dependent_vector, guard_start, guard_vector
     cdef int[::1] open_guards, frozen_at, candidates, busy_with
     cdef int[::1] own_start, own_slot, gates_start, gates, gate_slot_start, gate_slot, list_end, list_slot
-    cdef int is_fleeting, count, alone, chosen, is_chosen_open
+    cdef int writes_seen, is_fleeting, count, alone, chosen, is_chosen_open
     cdef i64 runs, searches
     cdef i64[::1] frozen, waits, listed, busy
 
     @cython.locals(count=int, i=int, k=int, vector=int)
     cpdef int find(self) noexcept
+    @cython.locals(kind=int, i=int, hidden=int)
+    cdef int _kind(self, int vector) noexcept
     @cython.locals(i=int, vector=int, k=int, instance=int)
     cdef void _mark_busy(self) noexcept
     @cython.locals(i=int)

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from roaml.explicit.independence import Independence
     from roaml.smc.kernel import Kernel
 
+NEVER, HIDDEN, WRITES = 0, 1, 2
+"""The values of `Independence.hidden`."""
 SEVERAL = -2
 """The vector with which an instance is busy that takes part in several enabled vectors."""
 
@@ -67,11 +69,15 @@ class AmpleSets:
         self.busy_with = array("i", [0] * self.kernel.instances)
         self.chosen = -1
         self.is_chosen_open = 0
+        self.writes_seen = 0
         self.candidates = array("i", [0] * (len(self.kernel.enabled) + 1))
 
     def find(self) -> int:
-        """The vector with the smallest number among those that may be taken alone; -1 if there is none."""
+        """The vector with the smallest number among those that may be taken alone; -1 if there is none. If all of these
+        write variables that the goal reads, `writes_seen` is 1: the vector may be taken alone only if no value of them
+        changes."""
         count = self.kernel.enabled_count
+        self.writes_seen = 0
         if count == 0:
             return -1
         if count == 1 and self.is_fleeting != 0:
@@ -87,9 +93,25 @@ class AmpleSets:
         self._mark_busy()
         for i in range(count):
             vector = self.candidates[i]
-            if self._is_single(vector) != 0 and self._is_alone(vector) != 0:
+            if self._kind(vector) == HIDDEN and self._is_single(vector) != 0 and self._is_alone(vector) != 0:
+                return vector
+        for i in range(count):
+            vector = self.candidates[i]
+            if self._kind(vector) == WRITES and self._is_single(vector) != 0 and self._is_alone(vector) != 0:
+                self.writes_seen = 1
                 return vector
         return -1
+
+    def _kind(self, vector: int) -> int:
+        """NEVER, HIDDEN or WRITES."""
+        kind = HIDDEN
+        for i in range(self.kernel.all_start[vector], self.kernel.all_start[vector + 1]):
+            hidden = self.hidden[self._group(self.kernel.all_slot[i])]
+            if hidden == NEVER:
+                return NEVER
+            if hidden == WRITES:
+                kind = WRITES
+        return kind
 
     def _mark_busy(self) -> None:
         """Mark the participants of enabled vectors."""
@@ -119,7 +141,7 @@ class AmpleSets:
         """Whether an enabled vector may be taken alone."""
         for i in range(self.kernel.all_start[vector], self.kernel.all_start[vector + 1]):
             slot = self.kernel.all_slot[i]
-            if self.busy_with[self.kernel.slot_instance[slot]] != vector or self.hidden[self._group(slot)] == 0:
+            if self.busy_with[self.kernel.slot_instance[slot]] != vector:
                 return 0
         self.runs += 1
         self.count = 0

@@ -19,6 +19,8 @@ from roaml.smc.goal import DEADLOCK, NO_DEADLOCK, STUCK
 from roaml.smc.network import EdgeStep
 from roaml.smc.program import AT_END, Goal, Ints, Program
 
+NEVER, HIDDEN, WRITES = 0, 1, 2
+"""Whether a vector may be taken alone: never; always, as far as the goal can see it; if it changes no value."""
 MAX_DEPENDENT_VECTORS = 64
 """The maximum number of vectors of other instances that depend on the edges of a location for a reduction there."""
 
@@ -28,9 +30,11 @@ class Independence(Record, frozen=True, eq=False):
 
     Attributes:
         slot_start, slot_vector: the vectors of each slot.
-        hidden: for each group, whether a vector may be taken alone because of it: none of its edges writes a variable
-            that the goal reads, and at most MAX_DEPENDENT_VECTORS vectors of other instances depend on it.
-        dependent_start, dependent_vector: for each of these groups, the vectors of other instances that depend on it.
+        hidden: for each group, whether a vector may be taken alone because of it: NEVER if more than
+            MAX_DEPENDENT_VECTORS vectors of other instances depend on it, WRITES if its edges write a variable that the
+            goal reads, and HIDDEN otherwise.
+        dependent_start, dependent_vector: for each group that is not NEVER, the vectors of other instances that depend
+            on it.
         guard_start, guard_vector: for each group, the vectors of other instances that write a variable in its guards.
         open_guards: for each slot, whether one of its groups has such vectors.
         own_start, own_slot: the slots of each vector that are in no other vector.
@@ -158,9 +162,11 @@ class IndependenceAnalysis:
                 dependent = _union(self.writers, group.reads | group.writes | fragile)
                 dependent |= _union(self.readers, group.writes)
                 dependent &= ~own
-                is_hidden = not group.writes & visible and dependent.bit_count() <= MAX_DEPENDENT_VECTORS
-                hidden.append(int(is_hidden))
-                dependent_lists.append(bits(dependent) if is_hidden else ())
+                kind = NEVER
+                if dependent.bit_count() <= MAX_DEPENDENT_VECTORS:
+                    kind = WRITES if group.writes & visible else HIDDEN
+                hidden.append(kind)
+                dependent_lists.append(bits(dependent) if kind != NEVER else ())
                 writers = _union(self.writers, group.guards) & ~own
                 guard_lists.append(bits(writers))
                 if writers:

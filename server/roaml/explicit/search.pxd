@@ -40,7 +40,7 @@ cdef class StateSearch:
     cdef double[::1] chance
     cdef int[::1] edges, edge_from, slots, picks, ways, moved, pending
     cdef AmpleSets ample
-    cdef int leaves_out, has_passed, layout
+    cdef int leaves_out, has_passed, looks_at, is_seen, layout
     cdef int[::1] trail, passed_to, passed_left
     cdef u64[::1] passed_keys
     cdef u64 passed_mask
@@ -134,7 +134,7 @@ cdef class StateSearch:
     @cython.locals(label=int, leads_on=int, combinations=double, many=double, most=int, exit_reward=double, i=int, vector=int, count=int, pending=int,
                    weight=double, k=int, j=int)
     cdef void _expand(self, i64 state) except *
-    @cython.locals(at=i64, transitions=i64, count=int, j=int, is_new=int, k=int)
+    @cython.locals(at=i64, transitions=i64, count=int, j=int, may_leave_out=int, k=int)
     cdef int _take_alone(self, int vector, i64 state) except? -9
     @cython.locals(reason=int, added=int, leaf=int)
     cdef int _end(self) noexcept
@@ -167,6 +167,8 @@ cdef class StateSearch:
     cdef void _remember(self, i64 at) noexcept
     @cython.locals(size=i64)
     cdef void _forget(self) except *
+    @cython.locals(j=int, way=int, k=int, cell=int, watch=int)
+    cdef int _is_seen(self) noexcept
     cdef void _return(self, i64 state) noexcept
     @cython.locals(label=int, vector=int, count=int, i=int, slot=int, way=int, cell=int)
     cdef int _pass(self) except? -9

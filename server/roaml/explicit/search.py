@@ -172,6 +172,8 @@ class StateSearch:
         self.passed = 0
         self.circled = 0
         self.has_passed = 0
+        self.looks_at = 0
+        self.is_seen = 0
         self.layout = 0
         self.trail = array("i", [0] * MAX_PASSED)
         self.passed_mask = 0
@@ -995,8 +997,9 @@ class StateSearch:
         self.expanded = state + 1
 
     def _take_alone(self, vector: int, state: int) -> int:
-        """Write the choices of one vector, if all of them lead to states that have not been expanded. So each cycle of
-        states contains one whose choices are all known. Return whether the choices were written."""
+        """Write the choices of one vector, if the goal cannot see it, and if all choices lead to states that have not
+        been expanded. So each cycle of states contains one whose choices are all known. Return whether the choices were
+        written."""
         at = self.code_end
         transitions = self.transitions
         count = self._open(vector)
@@ -1005,17 +1008,21 @@ class StateSearch:
             return 0
         for j in range(count):
             self.picks[j] = self.edge_from[j]
+        self.is_seen = 0
+        self.looks_at = self.ample.writes_seen
         self._choose(vector, count, state, 1.0, 0.0)
+        self.looks_at = 0
         if self.status != PART:
             return 0
-        is_new = 1
+        may_leave_out = 1 - self.is_seen
         if self.code[at] >= 0:
-            is_new = 1 if self.code[at] > state else 0
+            if self.code[at] <= state:
+                may_leave_out = 0
         else:
             for k in range(-self.code[at]):
                 if self.code[at + 3 + 2 * k] <= state:
-                    is_new = 0
-        if is_new == 0:
+                    may_leave_out = 0
+        if may_leave_out == 0:
             self.code_end = at
             self.transitions = transitions
             return 0
@@ -1201,6 +1208,8 @@ class StateSearch:
         self.kernel.parts = count
         self.kernel.reward = 0.0
         self.kernel._execute_ways(vector)
+        if self.looks_at != 0 and self.kernel.fault == 0 and self._is_seen() != 0:
+            self.is_seen = 1
 
     def _pack_parts(self) -> None:
         """Put the key of the state after a step into `following`. The kernel has executed the step."""
@@ -1344,6 +1353,9 @@ class StateSearch:
         self.kernel._execute_ways(vector)
         if self.kernel.fault != 0:
             return 0
+        if self.ample.writes_seen != 0 and self._is_seen() != 0:
+            self._undo_parts()
+            return 0
         self._pack_parts()
         if self.misfit >= 0:
             while self.misfit >= 0:
@@ -1357,6 +1369,21 @@ class StateSearch:
         for i in range(self.words):
             if self.following[i] != self.now[i]:
                 return 1
+        return 0
+
+    def _is_seen(self) -> int:
+        """Whether the step that the kernel has executed has changed the value of a variable that the goal reads."""
+        for j in range(self.kernel.parts):
+            way = self.kernel.part_way[j]
+            for k in range(self.way_start[way], self.way_start[way + 1]):
+                cell = self.way_cell[k]
+                watch = self.cell_watch[cell]
+                if (
+                    watch >= 0
+                    and self.kernel.seen_start[watch] < self.kernel.seen_start[watch + 1]
+                    and self._current(cell) != self.value[cell]
+                ):
+                    return 1
         return 0
 
     def _only_way(self, slot: int) -> int:
