@@ -17,6 +17,7 @@ SCHEMAS = Path(__file__).parent / "schemas"
 COMPILED = (
     "roaml.smc.kernel",
     "roaml.smc.counts",
+    "roaml.smc.packing",
     "roaml.smc.states",
     "roaml.explicit.ample",
     "roaml.explicit.search",

@@ -25,7 +25,7 @@ MODULES = sorted(SERVER.rglob("*.py"))
 # Who may touch the disk: the user's files, or the package's own resources; or asks the system for its free memory.
 READS_USER_FILES = ("roaml/disk.py", "roaml/project/", "roaml/api/", "roaml/interfaces/search.py", "as2fm_lsp/")
 READS_RESOURCES = (
-    "roaml/explicit/memory.py",
+    "roaml/smc/memory.py",
     "roaml/explicit/plain.py",
     "roaml/figures/themes.py",
     "roaml/language/resources.py",

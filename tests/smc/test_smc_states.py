@@ -60,14 +60,14 @@ def assert_same(compiled: Compiled, traces: int, steps: int, memory: int = state
             break
         run_on(nodes, task._replace(size=2, scheduler=3))
     assert alone.batch is not None
-    assert alone.batch.nodes == 0
+    assert alone.batch.count == 0
     return nodes.batch
 
 
 def test_every_attribute_has_a_c_type() -> None:
     """A name without a declaration would fail only in the extension."""
     text = (FOLDER / "states.py").read_text(encoding="utf-8")
-    declared = (FOLDER / "states.pxd").read_text(encoding="utf-8")
+    declared = "".join((FOLDER / name).read_text(encoding="utf-8") for name in ("states.pxd", "packing.pxd"))
     for name in set(re.findall(r"self\.(\w+)(?: =|\[)", text)):
         assert re.search(rf"\b{name}\b", declared), name
 
@@ -128,7 +128,7 @@ def test_the_extension_and_python_agree(written: Json) -> None:
     assert results(run_on(both[0], task)) == results(run_on(both[1], task))
     assert both[0].batch is not None
     assert both[1].batch is not None
-    assert both[0].batch.nodes == both[1].batch.nodes
+    assert both[0].batch.count == both[1].batch.count
 
 
 def expected(names: dict[str, Any], path: Any, **more: Any) -> dict[str, Json]:
@@ -158,14 +158,14 @@ def dice(**more: Any) -> Json:
 def test_several_dice_in_a_step() -> None:
     written = dice(properties={"p": probability(op("F", op("∧", op("=", "x", 6), op("=", "y", 1))))})
     nodes = assert_same(compiled_model(written), 500, 300)
-    assert 20 < nodes.nodes < 80
+    assert 20 < nodes.count < 80
 
 
 @pytest.mark.parametrize("accumulate", [["steps"], ["exit"], ["steps", "exit"]])
 def test_rewards_are_added_in_the_same_order(accumulate: list[str]) -> None:
     names = {"exp": op("/", op("+", "x", 0.1), 3), "accumulate": accumulate}
     nodes = assert_same(compiled_model(dice(properties=expected(names, op("=", "x", 6)))), 500, 300)
-    assert nodes.nodes > 20
+    assert nodes.count > 20
 
 
 @pytest.mark.parametrize("accumulate", [["steps"], ["exit"], ["steps", "exit"]])
@@ -213,7 +213,7 @@ def test_several_initial_states() -> None:
         **{"restrict-initial": {"exp": op("<", "x", 20)}},
     )
     nodes = assert_same(compiled_model(written), 300, 200)
-    assert 50 < nodes.nodes <= 60
+    assert 50 < nodes.count <= 60
 
 
 def test_very_many_choices_are_left_to_the_kernel() -> None:
@@ -243,7 +243,7 @@ def test_states_that_do_not_repeat_switch_the_nodes_off() -> None:
         assert results(run_on(simulators[0], task)) == results(run_on(simulators[1], task))
     batch = simulators[1].batch
     assert batch is not None
-    assert (batch.is_on, batch.nodes) == (0, 0)
+    assert (batch.is_on, batch.count) == (0, 0)
 
 
 def test_few_states_are_kept() -> None:
@@ -252,4 +252,4 @@ def test_few_states_are_kept() -> None:
     run_on(simulator, Task(NO_PAYLOAD, 7, 0, 5000, 300))
     assert simulator.batch is not None
     assert simulator.batch.is_on
-    assert simulator.batch.nodes > 20
+    assert simulator.batch.count > 20

@@ -23,6 +23,7 @@ PACKAGE = Path(roaml.__file__).parent
 MODULES = (
     "smc/kernel",
     "smc/counts",
+    "smc/packing",
     "smc/states",
     "explicit/ample",
     "explicit/search",

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from roaml.explicit.memory import flat
+from roaml.smc.memory import flat
 
 MAXIMUM, MINIMUM = 0, 1
 INFINITE = float("inf")

@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 import importlib.util
+import sys
 from functools import cache
 from importlib.machinery import SourceFileLoader
 from pathlib import Path
 from types import ModuleType
 
 import roaml.smc
+from roaml.smc import packing
 
 
 @cache
@@ -25,15 +27,21 @@ def plain_counts() -> ModuleType:
 
 
 @cache
+def plain_packing() -> ModuleType:
+    """The module of packed states as plain Python, even if it is compiled. It needs a plain kernel."""
+    return _loaded("plain_packing", Path(roaml.smc.__file__).with_name("packing.py"))
+
+
+@cache
 def plain_states() -> ModuleType:
     """The module of the nodes as plain Python, even if it is compiled. It needs a plain kernel."""
-    return _loaded("plain_states", Path(roaml.smc.__file__).with_name("states.py"))
+    return _on_plain_packing("plain_states", Path(roaml.smc.__file__).with_name("states.py"))
 
 
 @cache
 def plain_search() -> ModuleType:
-    """The module of the search as plain Python, even if the search is compiled."""
-    return _loaded("plain_search", Path(__file__).with_name("search.py"))
+    """The module of the search as plain Python, even if the search is compiled. It needs a plain kernel."""
+    return _on_plain_packing("plain_search", Path(__file__).with_name("search.py"))
 
 
 @cache
@@ -50,6 +58,16 @@ def plain_solver() -> ModuleType:
     elimination = _loaded("plain_elimination", Path(__file__).with_name("elimination.py"))
     module.SmallProcess = elimination.SmallProcess  # type: ignore[attr-defined]
     return module
+
+
+def _on_plain_packing(name: str, path: Path) -> ModuleType:
+    """A module whose class inherits from `PackedStates` as plain Python."""
+    plain = plain_packing()
+    sys.modules[packing.__name__] = plain
+    try:
+        return _loaded(name, path)
+    finally:
+        sys.modules[packing.__name__] = packing
 
 
 def _loaded(name: str, path: Path) -> ModuleType:

@@ -2,11 +2,8 @@
 """The search through all states of a program, breadth first.
 
 - Plain Python; Cython compiles it with the types in `search.pxd`, like the kernel, whose code computes the successors.
-- A state is packed into words of 64 bits. A *cell* (see `tables`) gets as many bits as its values so far require: none
-  while its value does not change. If a value does not fit, the cell gets more bits, for which all states may have to be
-  packed again.
-- A hash table with open addressing contains the numbers of the states, each with half of the hash of the state. Its
-  upper bits are the index at which the search for the state begins.
+- `smc.packing` packs the states, numbers them and looks them up. After the cells of the kernel, a state has cells for
+  the status of each until of the goal, and for the number of steps.
 - The choices of a state are a sequence of 32-bit words. A word that is not negative is a choice with one destination.
   Other choices have n destinations, a weight other than 1, or a reward. These choices consist of `-n`, the number of
   its weight, the number of its reward, and for each destination a state and the number of its probability. These
@@ -24,22 +21,18 @@ from __future__ import annotations
 from array import array
 from typing import TYPE_CHECKING, Any
 
-from roaml.explicit.memory import flat, grown
+from roaml.smc.memory import flat, grown
+from roaml.smc.packing import PackedStates
 
 if TYPE_CHECKING:
     from roaml.explicit.ample import AmpleSets
     from roaml.explicit.tables import Tables
     from roaml.smc.kernel import Kernel
 
-UINT64_MASK = 0xFFFFFFFFFFFFFFFF
-HASH_1 = 0x9E3779B97F4A7C15
-HASH_2 = 0xBF58476D1CE4E5B9
 UINT32_MASK = 0xFFFFFFFF
-MAX_INT64 = 0x7FFFFFFFFFFFFFFF
-SPARE_BITS_FROM_STATES = 4096
-"""With more states than this, cells get more bits than they need, because packing all states again is slow."""
-MAX_SPREAD_BITS = 40
-"""Cells with more bits than this get no unused ones."""
+LEARNED_FROM_STATES = 4096
+"""With more states than this, cells get bits for the values that they have in random traces, because packing all states
+again is slow."""
 SAMPLED_TRACES, SAMPLED_STEPS = 32, 1000
 """The numbers of random traces, and of steps in each, from which the values that cells will have are estimated."""
 MAX_COUNTED_STATES = 0x7FFFFFF0
@@ -73,7 +66,7 @@ def compiled() -> bool:
     return not __file__.endswith(".py")
 
 
-class StateSearch:
+class StateSearch(PackedStates):
     """The states that have been reached, and the choices of those that have been expanded.
 
     Args:
@@ -100,22 +93,18 @@ class StateSearch:
         most_choices: int,
     ) -> None:  # fmt: skip
         self.kernel: Kernel = kernel
+        self.leaves = self.kernel.leaves
+        super().__init__(kernel, tables.cell_watch, self.leaves + 1)
         self.way_start = tables.way_start
         self.way_cell = tables.way_cell
         self.settled = tables.settled
-        self.cell_watch = tables.cell_watch
         self.drop_start = tables.drop_start
         self.drop_cell = tables.drop_cell
         self.owner_start = tables.owner_start
         self.owner_instance = tables.owner_instance
         self.owner_table = tables.owner_table
         self.is_dead = tables.is_dead
-        self.places = self.kernel.instances
-        self.first_real = self.places + self.kernel.int_count
-        self.variables = self.first_real + self.kernel.real_count
-        self.leaves = self.kernel.leaves
         self.counter = self.variables + self.leaves
-        self.cells = self.counter + 1
         self.most_steps = steps
         self.lower_bound = lower
         self.remembers = 1 if self.leaves > 1 or steps > 0 else 0
@@ -126,31 +115,10 @@ class StateSearch:
         self.most_depth = depth
         self.layer_end = 1
 
-        box = array("d", [0.0])
-        self.box = box
-        self.box_bits = memoryview(box).cast("B").cast("q")
-        self.initial = array("q", [0] * self.cells)
-        self.low = array("q", [0] * self.cells)
-        self.bits = array("i", [0] * self.cells)
-        self.mask = array("Q", [0] * self.cells)
-        self.word = array("i", [0] * self.cells)
-        self.shift = array("i", [0] * self.cells)
-        self.live_start = array("i", [0, 0])
-        self.live = array("i", [0] * self.cells)
-        self.room = array("Q", [0] * self.cells)
-        self.old_words = 1
-        self.old_mask = array("Q", [0] * self.cells)
-        self.old_low = array("q", [0] * self.cells)
-        self.old_word = array("i", [0] * self.cells)
-        self.old_shift = array("i", [0] * self.cells)
-        self.words = 1
-        self.value = array("q", [0] * self.cells)
-        self.memory = array("q", [0] * (self.leaves + 1))
-        self.now = array("Q", [0])
-        self.following = array("Q", [0])
-        self.misfit = -1
-        self.misfit_value = 0
-        self.unused = 0
+        self.initial = array("q", [0]) * self.cell_count
+        # The ways of a step, and their moves, are different ones.
+        written = len(tables.way_cell) + len(tables.drop_cell) + len(tables.settled)
+        self.changed = array("i", [0]) * (self.cell_count + written)
         self.has_learned = 0
 
         ways = len(self.kernel.way_target)
@@ -166,7 +134,6 @@ class StateSearch:
         self.slots = array("i", [0] * slots)
         self.picks = array("i", [0] * slots)
         self.ways = array("i", [0] * slots)
-        self.moved = array("i", [0] * slots)
         self.leaves_out = 0
         self.alone = 0
         self.passed = 0
@@ -182,16 +149,9 @@ class StateSearch:
         self.passed_left = flat("i", 1)
         self.pending = array("i", [0] * (len(self.kernel.enabled) + 1))
 
-        self.keys = flat("Q", 64)
-        self.table_mask = 255
-        self.table_shift = 24
-        self.tag = 0
-        self.table = flat("Q", 256)
-        self.start = flat("q", 64)
-        self.parent = flat("i", 64)
-        self.label = flat("B", 64)
-        self.state_room = 64
-        self.key_room = 64
+        self.start = flat("q", self.state_room)
+        self.parent = flat("i", self.state_room)
+        self.label = flat("B", self.state_room)
         self.code = flat("i", 256)
         self.code_room = 256
         self.code_end = 0
@@ -199,7 +159,6 @@ class StateSearch:
         self.reals_room = 64
         self.number_of: dict[float, int] = {}
         self.real_count = 0
-        self.count = 0
         self.expanded = 0
         self.problem = -1
         self.status = PART
@@ -211,22 +170,10 @@ class StateSearch:
         self.kernel.root(0)
         for leaf in range(self.leaves):
             self.memory[leaf] = UNKNOWN
-        for cell in range(self.cells):
-            self.initial[cell] = self._current(cell)
-            self.low[cell] = self.initial[cell]
-            self.value[cell] = self.initial[cell]
         if self.kernel.fault != 0:
             self.status = FAULT
-        for cell in range(self.places):
-            self._fit(cell, self.low[cell])
-        self._lay_out()
-        self.now = array("Q", [0] * self.words)
-        self.following = array("Q", [0] * self.words)
-        for cell in range(self.cells):
-            self._pack(cell)
-        self.now[:] = self.following
-        self.key_room = self.state_room * self.words
-        self.keys = flat("Q", self.key_room)
+        self._start()
+        self.initial[:] = self.value
         self._find(-1)
         self.roots = flat("i", 64)
         self.root_room = 64
@@ -260,7 +207,7 @@ class StateSearch:
                     self._find_waiting()
                     if self.expanded == self.count or self.status != PART:
                         break
-                if self.count > SPARE_BITS_FROM_STATES and self.has_learned == 0:
+                if self.count > LEARNED_FROM_STATES and self.has_learned == 0:
                     self.has_learned = 1
                     self._find_waiting()
                     if self.status != PART:
@@ -276,7 +223,7 @@ class StateSearch:
 
     def key(self, state: int) -> list[int]:
         """The values of all cells of a state."""
-        return [self._decoded(state, cell) for cell in range(self.cells)]
+        return [self._decoded(state, cell) for cell in range(self.cell_count)]
 
     def number(self, index: int) -> float:
         """The weight, reward or probability at an index of `reals`."""
@@ -347,8 +294,8 @@ class StateSearch:
     ) -> list[tuple[int, list[int], list[int]]] | None:
         """The single steps after the choice in `ways` until `successor` is reached; `None` if it is not reached."""
         self._execute_choice(vector, count)
-        self._pack_parts()
-        self._undo_parts()
+        self._pack_step()
+        self._undo()
         if self.leaves_out == 0:
             return [] if self._known() == successor else None
         steps: list[tuple[int, list[int], list[int]]] = []
@@ -381,12 +328,9 @@ class StateSearch:
             for cell in range(self.places, self.variables):
                 if self._is_dead(cell) != 0:
                     self._set_current(cell, self.initial[cell])
-            for cell in range(self.cells):
-                self._pack(cell)
-            while self.misfit >= 0:
-                self._widen()
-                for cell in range(self.cells):
-                    self._pack(cell)
+            self._pack_all()
+            if self.misfit >= 0:
+                self._widen_all()
             state = self._find(-1)
             if state < 0:
                 return
@@ -395,38 +339,10 @@ class StateSearch:
                 self.roots = grown(self.roots, self.root_room)
             self.roots[self.entered] = state
             self.entered += 1
-        # The kernel is in the state that `value` and `now` describe.
-        self.kernel.root(0)
-        for i in range(self.words):
-            self.now[i] = self.keys[i]
+        self.kernel.root(0)  # `value` and `now` describe this state.
         self.layer_end = self.count
 
     # ------------------------------------------------------------ packing
-
-    def _current(self, cell: int) -> int:
-        """The value of a cell in the kernel; for a real number, its bit pattern as an integer."""
-        value: int
-        if cell < self.places:
-            value = self.kernel.place[cell]
-        elif cell < self.first_real:
-            value = self.kernel.ints[cell - self.places]
-        elif cell < self.variables:
-            self.box[0] = self.kernel.reals[cell - self.first_real]
-            value = self.box_bits[0]
-        else:
-            value = self.memory[cell - self.variables]
-        return value
-
-    def _set_current(self, cell: int, value: int) -> None:
-        if cell < self.places:
-            self.kernel.place[cell] = value
-        elif cell < self.first_real:
-            self.kernel.ints[cell - self.places] = value
-        elif cell < self.variables:
-            self.box_bits[0] = value
-            self.kernel.reals[cell - self.first_real] = self.box[0]
-        else:
-            self.memory[cell - self.variables] = value
 
     def _is_dead(self, cell: int) -> int:
         """Whether the value of a variable does not matter in the current locations."""
@@ -435,70 +351,57 @@ class StateSearch:
                 return 1
         return 0
 
-    def _reset_dead(self) -> None:
-        """Give the dead cells their initial values that the step of the kernel has written, or that were not dead
-        before it."""
+    def _pack_step(self) -> None:
+        """Put the key of the state after a step into `following`. The kernel has executed the step."""
+        self._end_step()
+        self._pack_changed()
+
+    def _end_step(self) -> None:
+        """Collect the cells that a step of the kernel may have changed. Those that are dead now get their initial
+        values, if the step has written them or if they were not dead before it."""
+        count = 0
         for j in range(self.kernel.parts):
             way = self.kernel.part_way[j]
+            self.changed[count] = self.kernel.slot_instance[self.kernel.part_slot[j]]
+            count += 1
             for k in range(self.way_start[way], self.way_start[way + 1]):
-                if self._is_dead(self.way_cell[k]) != 0:
-                    self._set_current(self.way_cell[k], self.initial[self.way_cell[k]])
+                cell = self.way_cell[k]
+                if self._is_dead(cell) != 0:
+                    self._set_current(cell, self.initial[cell])
+                self.changed[count] = cell
+                count += 1
             move = self.kernel.way_move[way]
             if move >= 0:
                 for k in range(self.drop_start[move], self.drop_start[move + 1]):
-                    self._set_current(self.drop_cell[k], self.initial[self.drop_cell[k]])
+                    cell = self.drop_cell[k]
+                    self._set_current(cell, self.initial[cell])
+                    self.changed[count] = cell
+                    count += 1
+        for k in range(len(self.settled)):
+            self.changed[count] = self.settled[k]
+            count += 1
+        if self.remembers != 0:
+            for cell in range(self.variables, self.cell_count):
+                self.changed[count] = cell
+                count += 1
+        self.changed_count = count
 
-    def _pack(self, cell: int) -> None:
-        """Put the current value of a cell into `following`. If the value does not fit, store the cell in `misfit`."""
-        value = self._current(cell)
-        code = (value - self.low[cell]) & UINT64_MASK
-        if code > self.mask[cell]:
-            self.misfit = cell
-            self.misfit_value = value
+    def _widen_all(self) -> None:
+        """Give cells more bits until the current state of the kernel fits, and put its key into `following`. The
+        waiting successors are found before; if a limit is reached, this is the status."""
+        self._find_waiting()
+        if self.status != PART:
             return
-        if self.mask[cell] == 0:
-            return
-        at = self.word[cell]
-        shift = self.shift[cell]
-        self.following[at] = (self.following[at] & (UINT64_MASK ^ (self.mask[cell] << shift))) | (code << shift)
+        while self.misfit >= 0:
+            if self._widen() != 0:
+                self._renew_layout()
+            self._pack_all()
 
-    def _decoded(self, state: int, cell: int) -> int:
-        code = (self.keys[state * self.words + self.word[cell]] >> self.shift[cell]) & self.mask[cell]
-        return self._signed((code + self.low[cell]) & UINT64_MASK)
-
-    def _signed(self, value: int) -> int:
-        return value - UINT64_MASK - 1 if value > MAX_INT64 else value
-
-    def _widen(self) -> None:
-        """Give the cell `misfit` enough bits for `misfit_value`. All states are packed again, unless the cell had no
-        bits and finds unused ones."""
-        cell = self.misfit
-        self.misfit = -1
-        self._keep_layout()
-        self._fit(cell, self.misfit_value)
-        # The code of a cell that has not changed so far is 0 in all states, wherever its bits are.
-        if self.old_mask[cell] != 0 or self.low[cell] != self.old_low[cell] or self._squeeze_in(cell) == 0:
-            self._repack()
-
-    def _squeeze_in(self, cell: int) -> int:
-        """Find unused bits for a cell that has none; return whether there are any."""
-        for at in range(self.words):
-            used = 0
-            for i in range(self.live_start[at], self.live_start[at + 1]):
-                used += self.bits[self.live[i]]
-            if used + self.bits[cell] <= 64:
-                i = self.live_start[self.words]
-                while i > self.live_start[at + 1]:
-                    self.live[i] = self.live[i - 1]
-                    i -= 1
-                self.live[i] = cell
-                for k in range(at + 1, self.words + 1):
-                    self.live_start[k] += 1
-                self.word[cell] = at
-                self.shift[cell] = used
-                self.mask[cell] = self.room[cell]
-                return 1
-        return 0
+    def _renew_layout(self) -> None:
+        """Pack all states again (`_repack`), and forget all other keys."""
+        self._repack()
+        self.waiting_keys = array("Q", [0]) * (MAX_WAITING * self.words)
+        self._forget()
 
     def _learn(self) -> None:
         """Give all cells enough bits for the values that they have in some random traces."""
@@ -509,206 +412,17 @@ class StateSearch:
                 if self.kernel.step() != UNKNOWN:
                     break
                 for cell in range(self.variables):
-                    value = self._current(cell)
-                    if self._is_dead(cell) == 0 and ((value - self.low[cell]) & UINT64_MASK) > self.room[cell]:
-                        self._fit(cell, value)
-        self._repack()
+                    if self._is_dead(cell) == 0:
+                        self._admit(cell)
+        self._renew_layout()
         self.kernel.root(0)
-        for cell in range(self.cells):
-            value = self._decoded(0, cell)
-            self.value[cell] = value
-            self._set_current(cell, value)
+        for cell in range(self.cell_count):
+            self.value[cell] = self._decoded(0, cell)
+            self._set_current(cell, self.value[cell])
         for i in range(self.words):
             self.now[i] = self.keys[i]
 
-    def _keep_layout(self) -> None:
-        """Store how the states are currently packed."""
-        for i in range(self.cells):
-            self.old_mask[i] = self.mask[i]
-            self.old_low[i] = self.low[i]
-            self.old_word[i] = self.word[i]
-            self.old_shift[i] = self.shift[i]
-        self.old_words = self.words
-
-    def _fit(self, cell: int, value: int) -> None:
-        """Give a cell enough bits for a value."""
-        unit = 1
-        least = self.low[cell]
-        if cell < self.places:
-            # The cell of a location gets enough bits for all locations of the instance.
-            last = self.kernel.first_location[cell + 1] if cell + 1 < self.places else len(self.kernel.location_mark)
-            least = self.kernel.first_location[cell]
-            value = last - 1
-            self.low[cell] = least
-        greatest = least + self.room[cell]
-        span = (greatest - value if value < least else value - least) & UINT64_MASK
-        bits = 0
-        while bits < 62 and span >> bits != 0:
-            bits += 1
-        if self.count > SPARE_BITS_FROM_STATES:
-            bits += 2
-        if bits >= 60 or self.first_real <= cell < self.variables:
-            self.bits[cell] = 64
-            self.room[cell] = UINT64_MASK
-            self.low[cell] = 0
-        else:
-            self.bits[cell] = bits
-            self.room[cell] = (unit << bits) - 1
-            if value < least:
-                self.low[cell] = greatest - ((unit << bits) - 1)
-
-    def _repack(self) -> None:
-        """Pack all states again."""
-        if self.count > SPARE_BITS_FROM_STATES:
-            self._spread()
-        self._lay_out()
-        self.now = array("Q", [0] * self.words)
-        self.following = array("Q", [0] * self.words)
-        self.waiting_keys = array("Q", [0] * (MAX_WAITING * self.words))
-        old_keys = self.keys
-        self.key_room = self.state_room * self.words
-        self.keys = flat("Q", self.key_room)
-        for state in range(self.count):
-            source = state * self.old_words
-            target = state * self.words
-            for i in range(self.live_start[self.words]):
-                cell = self.live[i]
-                code = (old_keys[source + self.old_word[cell]] >> self.old_shift[cell]) & self.old_mask[cell]
-                code = (code + self.old_low[cell] - self.low[cell]) & UINT64_MASK
-                self.keys[target + self.word[cell]] |= code << self.shift[cell]
-        self._rehash()
-        self._forget()
-
-    def _spread(self) -> None:
-        """Give half of the bits that would be unused in the last word to variables, those with most bits first. When
-        one counter exceeds its bits, others often do so soon."""
-        words = self._words_needed()
-        left = self.unused // 2
-        for bits in range(MAX_SPREAD_BITS, 1, -1):
-            for cell in range(self.places, self.first_real):
-                if left == 0:
-                    return
-                if self.bits[cell] != bits:
-                    continue
-                self.bits[cell] += 1
-                if self._words_needed() > words:
-                    self.bits[cell] -= 1
-                    continue
-                self.room[cell] = 2 * self.room[cell] + 1
-                left -= 1
-
-    def _words_needed(self) -> int:
-        """The number of words in which all cells fit; `unused` becomes the number of bits that the last one has
-        left."""
-        words = 1
-        used = 0
-        for cell in range(self.cells):
-            bits = self.bits[cell]
-            if used + bits > 64:
-                words += 1
-                used = 0
-            used += bits
-        self.unused = 64 - used
-        return words
-
-    def _lay_out(self) -> None:
-        """Assign a word and a shift to each cell. The bits of a cell are in one word."""
-        at = 0
-        used = 0
-        first = True
-        live = 0
-        starts = [0]
-        for cell in range(self.cells):
-            bits = self.bits[cell]
-            self.mask[cell] = self.room[cell]
-            self.word[cell] = 0
-            self.shift[cell] = 0
-            if bits == 0:
-                continue
-            if not first and used + bits > 64:
-                at += 1
-                used = 0
-                starts.append(live)
-            first = False
-            self.word[cell] = at
-            self.shift[cell] = used
-            used += bits
-            self.live[live] = cell
-            live += 1
-        starts.append(live)
-        self.words = at + 1
-        self.live_start = array("i", starts)
-
     # ------------------------------------------------------------ the table
-
-    def _hash_of(self, at: int) -> int:
-        """The hash of the key at an index of `keys`."""
-        value = HASH_2
-        for i in range(self.words):
-            value = ((value ^ self.keys[at + i]) * HASH_1) & UINT64_MASK
-            value ^= value >> 32
-        return (value * HASH_2) & UINT64_MASK
-
-    def _rehash(self) -> None:
-        """Fill the table anew, after the keys of the states have changed."""
-        size = self.table_mask + 1
-        self.table = flat("Q", size)
-        for state in range(self.count):
-            tag = self._hash_of(state * self.words) >> 32
-            at = tag >> self.table_shift
-            while self.table[at] != 0:
-                at = (at + 1) & self.table_mask
-            self.table[at] = (tag << 32) | (state + 1)
-
-    def _double_table(self) -> None:
-        """Double the size of the table. Its entries move in ascending order, so the memory is accessed in order."""
-        old_table = self.table
-        size = self.table_mask + 1
-        self.table = flat("Q", 2 * size)
-        self.table_mask = 2 * size - 1
-        self.table_shift -= 1
-        for i in range(size):
-            entry = old_table[i]
-            if entry == 0:
-                continue
-            at = entry >> 32 >> self.table_shift
-            while self.table[at] != 0:
-                at = (at + 1) & self.table_mask
-            self.table[at] = entry
-
-    def _look_up(self) -> int:
-        """The index in the table of the state with the key `following`. If this state has not been stored, this is the
-        index where it will be, and `tag` is the half of its hash that is stored."""
-        self.tag = self._tag()
-        return self._index()
-
-    def _tag(self) -> int:
-        """The half of the hash of the key `following` that is stored in the table."""
-        value = HASH_2
-        for i in range(self.words):
-            value = ((value ^ self.following[i]) * HASH_1) & UINT64_MASK
-            value ^= value >> 32
-        return ((value * HASH_2) & UINT64_MASK) >> 32
-
-    def _index(self) -> int:
-        """The index in the table for the key `following`, whose hash is in `tag`."""
-        tag = self.tag
-        at = tag >> self.table_shift
-        while True:
-            entry = self.table[at]
-            if entry == 0:
-                break
-            if entry >> 32 == tag:
-                first = ((entry & UINT32_MASK) - 1) * self.words
-                same = 1
-                for i in range(self.words):
-                    if self.keys[first + i] != self.following[i]:
-                        same = 0
-                        break
-                if same != 0:
-                    break
-            at = (at + 1) & self.table_mask
-        return at
 
     def _find(self, parent: int) -> int:
         """The number of the state with the key `following`, which is added if it has not been reached before. -1 if
@@ -720,22 +434,15 @@ class StateSearch:
         state: int = (self.table[at] & UINT32_MASK) - 1
         if state >= 0:
             return state
-        state = self.count
-        if state >= self.most_states:
+        if self.count >= self.most_states:
             self.status = STATES
             return -1
-        if state + 2 >= self.state_room or (state + 1) * self.words > self.key_room:
+        if self.count + 2 >= self.state_room:
             self._make_room()
             if self.status != PART:
                 return -1
-        first = state * self.words
-        for i in range(self.words):
-            self.keys[first + i] = self.following[i]
+        state = self._add(at)
         self.parent[state] = parent
-        self.table[at] = (self.tag << 32) | (state + 1)
-        self.count += 1
-        if self.count * 8 > self.table_mask * 5:
-            self._double_table()
         return state
 
     def _wait(self, state: int) -> None:
@@ -777,8 +484,7 @@ class StateSearch:
 
     def _known(self) -> int:
         """The number of the state with the key `following`; -1 if it has not been stored."""
-        state: int = (self.table[self._look_up()] & UINT32_MASK) - 1
-        return state
+        return self._state_at(self._look_up())
 
     def _used(self) -> int:
         """The bytes in use. Memory that was reserved but never written is not included."""
@@ -796,9 +502,7 @@ class StateSearch:
         if self._used() + self.count * 8 * self.words > self.most_bytes:
             self.status = MEMORY
             return
-        self.state_room *= 2
-        self.key_room = self.state_room * self.words
-        self.keys = grown(self.keys, self.key_room)
+        self._grow()
         self.start = grown(self.start, self.state_room)
         self.parent = grown(self.parent, self.state_room)
         self.label = grown(self.label, self.state_room)
@@ -832,53 +536,14 @@ class StateSearch:
 
     # ------------------------------------------------------------ a state
 
-    def _visit(self, state: int) -> None:
-        """Restore the kernel to the state with the number `state`, and update what is enabled. Only cells that differ
-        from those of the previous state are examined."""
-        first = state * self.words
-        for w in range(self.words):
-            self.following[w] = self.keys[first + w]
-        self._enter()
-
-    def _enter(self) -> None:
-        """Do the same as `_visit` for the state with the key `following`."""
-        moved = 0
-        for w in range(self.words):
-            code = self.following[w]
-            if code == self.now[w]:
-                continue
-            self.now[w] = code
-            for i in range(self.live_start[w], self.live_start[w + 1]):
-                cell = self.live[i]
-                value = self._signed((((code >> self.shift[cell]) & self.mask[cell]) + self.low[cell]) & UINT64_MASK)
-                if value == self.value[cell]:
-                    continue
-                if cell < self.places:
-                    place = self.value[cell]
-                    for group in range(self.kernel.group_start[place], self.kernel.group_start[place + 1]):
-                        self.kernel._set_ready(self.kernel.group_slot[group], 0)
-                    self.moved[moved] = cell
-                    moved += 1
-                elif cell < self.variables and self.cell_watch[cell] >= 0:
-                    self.kernel._note(self.cell_watch[cell])
-                self.value[cell] = value
-                self._set_current(cell, value)
-        if self.remembers != 0:
-            for cell in range(self.variables, self.cells):
-                self.memory[cell - self.variables] = self.value[cell]
-        for i in range(moved):
-            self.kernel._arrive(self.kernel.place[self.moved[i]])
-        if self.kernel.note_count != 0:
-            self.kernel._look_around()
-
     def _judged(self) -> int:
         """The label of the current state, without the part that depends on its choices. Afterwards `memory` contains
         the values that the successors inherit."""
-        steps = self.memory[self.leaves]
+        steps = self.value[self.counter]
         label = 0
         lasting = -1
         for leaf in range(self.leaves):
-            verdict = self.memory[leaf]
+            verdict = self.value[self.variables + leaf]
             if verdict == UNKNOWN:
                 lower = self.kernel.lower[leaf]
                 if lower < 0:
@@ -917,8 +582,8 @@ class StateSearch:
                     label |= LASTS
             elif label & FAILS != 0:
                 label |= LASTS
-        if self.most_steps > 0 and steps < self.most_steps:
-            self.memory[self.leaves] = steps + 1
+        if self.most_steps > 0:
+            self.memory[self.leaves] = min(steps + 1, self.most_steps)
         return label
 
     def _combined(self) -> int:
@@ -1178,17 +843,12 @@ class StateSearch:
         if self.kernel.fault != 0:
             self.status = FAULT
             return -1
-        self._pack_parts()
-        while self.misfit >= 0:
-            self._find_waiting()
+        self._pack_step()
+        if self.misfit >= 0:
+            self._widen_all()
             if self.status != PART:
                 return -1
-            self._widen()
-            for i in range(self.words):
-                self.now[i] = self.keys[state * self.words + i]
-            for cell in range(self.cells):
-                self._pack(cell)
-        self._undo_parts()
+        self._undo()
         if self.leaves_out != 0:
             return self._pass_on(state)
         for i in range(self.words):
@@ -1210,44 +870,6 @@ class StateSearch:
         self.kernel._execute_ways(vector)
         if self.looks_at != 0 and self.kernel.fault == 0 and self._is_seen() != 0:
             self.is_seen = 1
-
-    def _pack_parts(self) -> None:
-        """Put the key of the state after a step into `following`. The kernel has executed the step."""
-        self._reset_dead()
-        for i in range(self.words):
-            self.following[i] = self.now[i]
-        for j in range(self.kernel.parts):
-            way = self.kernel.part_way[j]
-            self._pack(self.kernel.slot_instance[self.kernel.part_slot[j]])
-            for k in range(self.way_start[way], self.way_start[way + 1]):
-                self._pack(self.way_cell[k])
-            move = self.kernel.way_move[way]
-            if move >= 0:
-                for k in range(self.drop_start[move], self.drop_start[move + 1]):
-                    self._pack(self.drop_cell[k])
-        for k in range(len(self.settled)):
-            self._pack(self.settled[k])
-        if self.remembers != 0:
-            for cell in range(self.variables, self.cells):
-                self._pack(cell)
-
-    def _undo_parts(self) -> None:
-        """Restore the kernel to the state before a step. What is enabled has not been updated after the step."""
-        for j in range(self.kernel.parts):
-            way = self.kernel.part_way[j]
-            cell = self.kernel.slot_instance[self.kernel.part_slot[j]]
-            self.kernel.place[cell] = self.value[cell]
-            for k in range(self.way_start[way], self.way_start[way + 1]):
-                self._set_current(self.way_cell[k], self.value[self.way_cell[k]])
-            move = self.kernel.way_move[way]
-            if move >= 0:
-                for k in range(self.drop_start[move], self.drop_start[move + 1]):
-                    self._set_current(self.drop_cell[k], self.value[self.drop_cell[k]])
-        for k in range(len(self.settled)):
-            self._set_current(self.settled[k], self.value[self.settled[k]])
-        for k in range(self.kernel.note_count):
-            self.kernel.noted[self.kernel.notes[k]] = 0
-        self.kernel.note_count = 0
 
     def _pass_on(self, state: int) -> int:
         """The number of the first state to be stored on the path of single steps that begins with the key `following`;
@@ -1354,18 +976,13 @@ class StateSearch:
         if self.kernel.fault != 0:
             return 0
         if self.ample.writes_seen != 0 and self._is_seen() != 0:
-            self._undo_parts()
+            self._end_step()
+            self._undo()
             return 0
-        self._pack_parts()
+        self._pack_step()
         if self.misfit >= 0:
-            while self.misfit >= 0:
-                self._widen()
-                for cell in range(self.cells):
-                    self._pack(cell)
-            # The key of the state before the step is not known in the new layout: compare all cells.
-            for i in range(self.words):
-                self.now[i] = self.following[i] ^ UINT64_MASK
-        self._undo_parts()
+            self._widen_all()
+        self._undo()
         for i in range(self.words):
             if self.following[i] != self.now[i]:
                 return 1
@@ -1377,11 +994,11 @@ class StateSearch:
             way = self.kernel.part_way[j]
             for k in range(self.way_start[way], self.way_start[way + 1]):
                 cell = self.way_cell[k]
-                watch = self.cell_watch[cell]
+                watch = self.watch[cell - self.places]
                 if (
                     watch >= 0
                     and self.kernel.seen_start[watch] < self.kernel.seen_start[watch + 1]
-                    and self._current(cell) != self.value[cell]
+                    and self._has_changed(cell) != 0
                 ):
                     return 1
         return 0

@@ -15,7 +15,7 @@ from __future__ import annotations
 from typing import Any
 
 from roaml.explicit.elimination import SmallProcess
-from roaml.explicit.memory import flat
+from roaml.smc.memory import flat
 
 MAXIMUM, MINIMUM, MEAN = 0, 1, 2
 """How choices are resolved: for the greatest value, for the smallest value, or at random by their weights."""

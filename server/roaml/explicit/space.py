@@ -8,13 +8,13 @@ from typing import Any, NamedTuple, TypeAlias
 
 from roaml.explicit import ample, codes
 from roaml.explicit import search as engine
-from roaml.explicit.memory import available
 from roaml.explicit.preparation import preparation_of
 from roaml.explicit.tables import Tables
 from roaml.record import Record
 from roaml.smc import kernel
 from roaml.smc.batch import TraceProblem
 from roaml.smc.goal import CompiledProperty
+from roaml.smc.memory import available
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import AT_END, Goal
 
@@ -237,9 +237,9 @@ def _modules() -> tuple[Any, Any]:
     """The modules of the kernel and of the search. A search that is not compiled gets a kernel that is not compiled,
     because Python cannot read the data of a compiled kernel."""
     if kernel.compiled() and not engine.compiled():
-        from roaml.explicit.plain import plain_kernel  # noqa: PLC0415
+        from roaml.explicit.plain import plain_kernel, plain_search  # noqa: PLC0415
 
-        return plain_kernel(), engine
+        return plain_kernel(), plain_search()
     return kernel, engine
 
 

@@ -26,8 +26,7 @@ class Tables(Record, frozen=True, eq=False):
     Attributes:
         way_start, way_cell: the cells of variables that each way writes.
         settled: the cells that any step can change: those of transient variables and of accumulated rewards.
-        cell_watch: for each cell of a location or variable, the number of the variable among the watched variables, or
-            -1.
+        cell_watch: for each cell of a variable, the number of the variable among the watched variables, or -1.
         drop_start, drop_cell: for each move, the cells that are dead in its target location, but not in its source
             location.
         owner_start: for each cell of a location or variable, the index of its first owner.
@@ -66,7 +65,7 @@ def tables_of(
     return Tables(
         *written,
         array("i", settled),
-        array("i", [-1]) * program.instances + program.cell_watch,
+        program.cell_watch,
         *_dropped(program, legend, liveness),
         *_owners(program, legend, liveness),
     )

@@ -12,6 +12,7 @@ for.
 - A step of the kernel evaluates again only what it changes: the actions of the locations that are left and entered, and
   the guards that read a changed variable. Of many guards that compare variables with constants, it evaluates those that
   may be true (`index`).
+- `packing` packs states of a kernel into a few words each, and numbers them.
 - `states` remembers the states that traces have reached, and where their steps lead. A known step takes 0.005 to
   0.02 µs. This is switched off for models whose states do not repeat.
 - A trace is a pure function of the compiled model, the seed and its number; neither the number of workers nor the order

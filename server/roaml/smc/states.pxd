@@ -4,6 +4,7 @@
 
 cimport cython
 from roaml.smc.kernel cimport Kernel
+from roaml.smc.packing cimport PackedStates
 
 ctypedef unsigned long long u64
 ctypedef long long i64
@@ -13,42 +14,34 @@ cdef i64 MAX_INT64
 cdef double TO_UNIT
 cdef u64 MAX_DRAWN_COMBINATIONS
 cdef int FALSE, TRUE, UNKNOWN, FAULTY, DECIDED, CUT, GOES_ON
-cdef int SIZE, KEY, FLAGS, REWARD, HEADER_CELLS, CONDITIONS_A_CELL
+cdef int SIZE, STATE, FLAGS, REWARD, HEADER_CELLS, CONDITIONS_A_CELL
 cdef int DECIDES, CAN_LEAVE, CANNOT_LEAVE, REASON_SHIFT, NEW, BY_KERNEL
 cdef int MAX_ROOTS, BLOCK, PULSE_TRACES
-cdef i64 SPARE_BITS_FROM_NODES, MEASURED_STEPS, REVIEW_STEPS, MIN_JUDGED_STEPS, PULSE_STEPS, NUMBER_BYTES
+cdef i64 MEASURED_STEPS, REVIEW_STEPS, MIN_JUDGED_STEPS, PULSE_STEPS, NUMBER_BYTES
 cdef double MAX_LOSS_S, MAX_NEW_SHARE
 
 @cython.final
-cdef class TraceBatch:
-    cdef Kernel kernel
+cdef class TraceBatch(PackedStates):
     cdef object rounds
     cdef i64 max_bytes
     cdef public int is_on
-    cdef int[::1] cell_watch
-    cdef int places, first_real, variables, leaves, condition_cells, head, has_activities, has_exit, width
-    cdef i64[::1] real_bits
+    cdef int leaves, condition_cells, head, has_activities, has_exit, width
     cdef int is_prepared, is_kernel, is_measured
     cdef double kernel_step_s, started_s, spent_s
     cdef i64 done_steps, new_steps, next_review, next_bound
-    cdef public i64 nodes
-    cdef int node, here, misfits, most_roots
+    cdef int node, here, most_roots
     cdef i64 age
     cdef u64 drawn
     cdef public object verdicts, ends, activities, steps, rewards
-    cdef int[::1] root_node, edge_of_way, bits, word, shift, live, live_start, moved, cells
-    cdef i64[::1] low, value
-    cdef u64[::1] mask, now, keys, table
+    cdef int[::1] root_node, edge_of_way, node_of, cells
     cdef double[::1] reals
-    cdef int words, cell_room, cell_end, real_room, real_end
-    cdef i64 key_room
-    cdef u64 table_mask
+    cdef int cell_room, cell_end, real_room, real_end
     cdef dict number_of
 
     @cython.locals(
         count=int, i=int, verdicts=cython.uchar[::1], ends=cython.uchar[::1], activities=cython.uchar[::1],
         steps=i64[::1], rewards=double[::1], asked=int[::1], since=i64, trace=i64, status=int, limit=i64, at=i64,
-        question=int
+        question=int, key=u64, start=u64, first_limit=i64
     )
     cpdef object run(self, object seed, object first, i64 size, i64 max_steps, object questions, object pulse)
     cpdef object use_nodes(self)
@@ -83,22 +76,14 @@ cdef class TraceBatch:
     cdef void _leave(self, int node) noexcept
     @cython.locals(status=int)
     cdef int _judged_by_kernel(self) noexcept
-    @cython.locals(first=i64, moved=int, w=int, code=u64, i=int, cell=int, value=i64, place=int, group=int)
     cdef void _go(self, int node) noexcept
-    cdef i64 _signed(self, u64 value) noexcept
-    @cython.locals(cell=int, first=int, count=int, end=int, difference=i64, i=int)
+    @cython.locals(changed=int, cell=int, first=int, end=int, difference=i64)
     cdef void _update(self) except *
-    @cython.locals(code=u64, at=int, shift=int)
-    cdef void _put(self, int cell, i64 value) noexcept
-    @cython.locals(kernel=Kernel, edge=int, way=int, count=int, cell=int, last=int)
+    @cython.locals(kernel=Kernel, edge=int, way=int)
     cdef void _prepare(self) except *
     @cython.locals(i=int)
     cdef void _forget(self) except *
-    @cython.locals(unit=u64, least=i64, greatest=i64, span=u64, bits=int)
-    cdef void _fit(self, int cell, i64 value) noexcept
-    @cython.locals(unit=u64, at=int, used=int, live=int, cell=int, bits=int, i=int)
-    cdef void _lay_out(self) except *
-    @cython.locals(value=u64, tag=u64, at=u64, entry=u64, node=int, first=i64, i=int, same=int, size=int, count=int)
+    @cython.locals(at=u64, state=i64, size=int, count=int, node=int, i=int)
     cdef int _here(self) except? -9
     @cython.locals(total=u64)
     cdef int _choice_count(self) noexcept
@@ -108,5 +93,3 @@ cdef class TraceBatch:
     cdef void _reserve(self, int count) except *
     cdef void _append(self, double value) except *
     cdef int _number(self, double value) except? -9
-    @cython.locals(old=u64[::1], size=i64, i=i64, entry=u64, first=i64, value=u64, w=int, at=u64)
-    cdef void _rehash(self) except *

@@ -11,8 +11,8 @@
   is not negative is twice the number of the next node, plus 1 if the step changes a location. It is NEW if the step has
   not been taken. Any other target is `-d`, where `d` is the number of the *dice* of the choice: the random numbers that
   select destinations, and a target for each combination of them.
-- The key of a node is its state, packed into words of 64 bits. A variable gets as many bits as its values require. If a
-  value does not fit, or the memory is full, all nodes are forgotten.
+- `packing` packs and numbers the states of the nodes. If the states need a new layout, or the memory is full, all nodes
+  are forgotten.
 - If most steps are new, the memory is given back, and the kernel generates all traces. So a model whose states do not
   repeat is not slowed down by more than the first few thousand steps.
 - Traces under a sampled scheduler, recorded traces, and states with very many choices are left to the kernel.
@@ -24,13 +24,14 @@ from array import array
 from time import process_time
 from typing import TYPE_CHECKING, Any
 
+from roaml.smc.memory import flat, grown
+from roaml.smc.packing import PackedStates
 from roaml.smc.rounds import next_limit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from typing import TypeAlias
 
-    from roaml.smc.kernel import Kernel
     from roaml.smc.program import Program
     from roaml.smc.rounds import Rounds
 
@@ -49,8 +50,8 @@ FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
 DECIDED, CUT = 0, 7
 GOES_ON = -1
 
-SIZE, KEY, FLAGS, REWARD = 0, 1, 2, 3
-"""The header of a node: the number of its choices, the number of its key, its flags, and the number of the reward for
+SIZE, STATE, FLAGS, REWARD = 0, 1, 2, 3
+"""The header of a node: the number of its choices, the number of its state, its flags, and the number of the reward for
 leaving it."""
 HEADER_CELLS = 4
 CONDITIONS_A_CELL = 15
@@ -68,8 +69,6 @@ MAX_ROOTS = 4096
 """The maximum number of initial states whose nodes are known by the numbers of the states."""
 BLOCK = 16
 """The number of variables that are compared at once."""
-SPARE_BITS_FROM_NODES = 1024
-"""With more nodes than this, variables get more bits than they need, because forgetting them is expensive."""
 MAX_BYTES = 12 << 20
 """The maximum memory for nodes, in bytes."""
 MEASURED_STEPS = 4096
@@ -92,7 +91,7 @@ def compiled() -> bool:
     return not __file__.endswith(".py")
 
 
-class TraceBatch:
+class TraceBatch(PackedStates):
     """Generates batches of traces.
 
     Args:
@@ -103,21 +102,16 @@ class TraceBatch:
     Attributes:
         verdicts, ends, steps, activities: the results of the traces of the last batch, for each question of the batch;
             see `batch.Rows`. rewards: the reward of each trace.
-        nodes: the number of nodes.
+        count: the number of nodes.
     """
 
     def __init__(
         self, kernel: Any, program: Program, bytes: int = MAX_BYTES, rounds: Rounds | None = None  # noqa: A002
     ) -> None:  # fmt: skip
-        self.kernel: Kernel = kernel
+        super().__init__(kernel, program.cell_watch, 0)
         self.rounds = rounds
         self.max_bytes = bytes
         self.is_on = 1 if bytes > 0 else 0
-        self.cell_watch = program.cell_watch
-        self.places = self.kernel.instances
-        self.first_real = self.places + self.kernel.int_count
-        self.variables = self.first_real + self.kernel.real_count
-        self.real_bits = memoryview(getattr(self.kernel.reals, "base", self.kernel.reals)).cast("B").cast("q")
         self.leaves = self.kernel.leaves
         self.condition_cells = (self.leaves + CONDITIONS_A_CELL - 1) // CONDITIONS_A_CELL
         self.head = HEADER_CELLS + self.condition_cells
@@ -140,20 +134,16 @@ class TraceBatch:
         for i in range(self.leaves):
             if self.kernel.upper[i] >= 0 and self.kernel.upper[i] < self.next_bound:
                 self.next_bound = self.kernel.upper[i]
-        self.nodes = 0
         self.node = 0
         self.most_roots = int(min(self.kernel.roots, MAX_ROOTS))
         self.root_node = array("i", [0]) * self.most_roots
         self.here = 0
         self.age = 0
-        self.misfits = 0
         self.drawn = 0
         self.cell_end = 0
         self.cell_room = 0
         self.real_end = 0
         self.real_room = 0
-        self.table_mask = 0
-        self.words = 1
         self.number_of: dict[float, int] = {}
         self.verdicts = bytearray()
         self.ends = bytearray()
@@ -184,12 +174,16 @@ class TraceBatch:
         asked = array("i", questions)
         rewards = self.rewards
         since = 0
+        # Numbers of C: to compute with numbers of Python takes as long as some steps.
+        key = seed & UINT64_MASK
+        start = first & UINT64_MASK
+        first_limit = next_limit(0, max_steps)
         self.started_s = process_time()
         for trace in range(size):
-            status = self._begin(seed & UINT64_MASK, (first + trace) & UINT64_MASK)
+            status = self._begin(key, (start + trace) & UINT64_MASK)
             limit = 0
             while status == UNKNOWN and self.kernel.end == DECIDED and limit < max_steps:
-                limit = next_limit(limit, max_steps)
+                limit = first_limit if limit == 0 else next_limit(limit, max_steps)
                 status = self._advance(limit)
                 if status == UNKNOWN and self.kernel.end == DECIDED and self.rounds is not None:
                     if self.is_kernel == 0:
@@ -525,10 +519,10 @@ class TraceBatch:
 
     def _switch_off(self) -> None:
         self.is_on = 0
-        self.nodes = 0
-        self.cells = array("i", [0])
+        self._clear()
         self.keys = array("Q", [0])
-        self.table = array("Q", [0])
+        self.node_of = array("i", [0])
+        self.cells = array("i", [0])
         self.number_of = {}
 
     # ------------------------------------------------------------ the kernel
@@ -550,79 +544,41 @@ class TraceBatch:
         if self.here == node:
             return
         self.here = node
-        first = self.cells[node + KEY] * self.words
-        moved = 0
-        for w in range(self.words):
-            code = self.keys[first + w]
-            if code == self.now[w]:
-                continue
-            self.now[w] = code
-            for i in range(self.live_start[w], self.live_start[w + 1]):
-                cell = self.live[i]
-                value = self._signed((((code >> self.shift[cell]) & self.mask[cell]) + self.low[cell]) & UINT64_MASK)
-                if value == self.value[cell]:
-                    continue
-                self.value[cell] = value
-                if cell >= self.places:
-                    if cell < self.first_real:
-                        self.kernel.ints[cell - self.places] = value
-                    else:
-                        self.real_bits[cell - self.first_real] = value
-                    if self.cell_watch[cell - self.places] >= 0:
-                        self.kernel._note(self.cell_watch[cell - self.places])
-                    continue
-                place = self.kernel.place[cell]
-                for group in range(self.kernel.group_start[place], self.kernel.group_start[place + 1]):
-                    self.kernel._set_ready(self.kernel.group_slot[group], 0)
-                self.kernel.place[cell] = value
-                self.moved[moved] = cell
-                moved += 1
-        for i in range(moved):
-            place = self.kernel.place[self.moved[i]]
-            self.kernel._arrive(place)
-        if self.kernel.note_count != 0:
-            self.kernel._look_around()
-
-    def _signed(self, value: int) -> int:
-        return value - UINT64_MASK - 1 if value > MAX_INT64 else value
+        self._visit(self.cells[node + STATE])
 
     def _update(self) -> None:
         """Read what the kernel has changed."""
         self.here = 0
-        self.misfits = 0
+        changed = 0
         for cell in range(self.places):
             if self.kernel.place[cell] != self.value[cell]:
-                self._put(cell, self.kernel.place[cell])
-        first = 0
-        count = self.first_real - self.places
-        while first < count:
-            end = first + BLOCK
-            end = min(end, count)
+                self.changed[changed] = cell
+                changed += 1
+        first = self.places
+        while first < self.first_real:
+            end = min(first + BLOCK, self.first_real)
             difference = 0
-            for i in range(first, end):
-                difference |= self.kernel.ints[i] ^ self.value[self.places + i]
+            for cell in range(first, end):
+                difference |= self.kernel.ints[cell - self.places] ^ self.value[cell]
             if difference != 0:
-                for i in range(first, end):
-                    if self.kernel.ints[i] != self.value[self.places + i]:
-                        self._put(self.places + i, self.kernel.ints[i])
+                for cell in range(first, end):
+                    if self.kernel.ints[cell - self.places] != self.value[cell]:
+                        self.changed[changed] = cell
+                        changed += 1
             first = end
-        for i in range(self.variables - self.first_real):
-            if self.real_bits[i] != self.value[self.first_real + i]:
-                self._put(self.first_real + i, self.real_bits[i])
-        if self.misfits != 0:
-            self._lay_out()
-
-    def _put(self, cell: int, value: int) -> None:
-        """Put a value into the key of the current state."""
-        self.value[cell] = value
-        code = (value - self.low[cell]) & UINT64_MASK
-        if code > self.mask[cell]:
-            self._fit(cell, value)
-            self.misfits += 1
-        elif self.mask[cell] != 0:
-            at = self.word[cell]
-            shift = self.shift[cell]
-            self.now[at] = (self.now[at] & (UINT64_MASK ^ (self.mask[cell] << shift))) | (code << shift)
+        for cell in range(self.first_real, self.variables):
+            if self.real_bits[cell - self.first_real] != self.value[cell]:
+                self.changed[changed] = cell
+                changed += 1
+        self.changed_count = changed
+        self._pack_changed()
+        while self.misfit >= 0:
+            if self._widen() != 0:
+                # To pack all states again would take as long as to expand them again.
+                self._lay_out()
+                self._forget()
+            self._pack_all()
+        self._accept()
 
     # ------------------------------------------------------------ nodes
 
@@ -634,154 +590,53 @@ class TraceBatch:
         for edge in range(len(kernel.guard)):
             for way in range(kernel.way_start[edge], kernel.way_start[edge + 1]):
                 self.edge_of_way[way] = edge
-        count = self.variables
-        self.low = array("q", [0]) * count
-        self.bits = array("i", [0]) * count
-        self.mask = array("Q", [0]) * count
-        self.word = array("i", [0]) * count
-        self.shift = array("i", [0]) * count
-        self.live = array("i", [0]) * count
-        self.live_start = array("i", [0, 0])
-        self.value = array("q", [0]) * count
-        self.moved = array("i", [0]) * (self.places + 1)
         self.real_room = len(kernel.way_sum) + 64
         self.reals = array("d", [0.0]) * self.real_room
         for way in range(len(kernel.way_sum)):
             self.reals[way] = kernel.way_sum[way]
         self.cell_room = 1024
         self.cells = array("i", [0]) * self.cell_room
-        self.key_room = 64
-        self.keys = array("Q", [0]) * self.key_room
+        self.node_of = flat("i", self.state_room)
         kernel._reset()
-        for cell in range(count):
-            if cell < self.places:
-                last = kernel.first_location[cell + 1] if cell + 1 < self.places else len(kernel.location_mark)
-                self.value[cell] = kernel.place[cell]
-                self.low[cell] = kernel.first_location[cell]
-                self._fit(cell, last - 1)
-                continue
-            if cell < self.first_real:
-                self.value[cell] = kernel.ints[cell - self.places]
-            else:
-                self.value[cell] = self.real_bits[cell - self.first_real]
-            self.low[cell] = self.value[cell]
-        self._lay_out()
+        self._start()
+        self._forget()
 
     def _forget(self) -> None:
         """Forget all nodes."""
         self.age += 1
-        self.nodes = 0
+        self._clear()
         for i in range(self.most_roots):
             self.root_node[i] = 0
         self.here = 0
         self.cell_end = HEADER_CELLS
         self.real_end = len(self.kernel.way_sum)
         self.number_of = {}
-        self.table_mask = 255
-        self.table = array("Q", [0]) * 256
-
-    def _fit(self, cell: int, value: int) -> None:
-        """Give a variable enough bits for a value. `_lay_out` must follow."""
-        unit = 1
-        least = self.low[cell]
-        greatest = least
-        if self.bits[cell] > 0:
-            greatest = least + (unit << self.bits[cell]) - 1
-        span = (greatest - value if value < least else value - least) & UINT64_MASK
-        bits = 0
-        while bits < 62 and span >> bits != 0:
-            bits += 1
-        if self.nodes > SPARE_BITS_FROM_NODES:
-            bits += 2
-        if bits >= 60 or cell >= self.first_real:
-            self.bits[cell] = 64
-            self.low[cell] = 0
-        else:
-            self.bits[cell] = bits
-            if value < least:
-                self.low[cell] = greatest - ((unit << bits) - 1)
-
-    def _lay_out(self) -> None:
-        """Assign a word and a shift to each variable, and forget all nodes. The bits of a variable are in one word."""
-        unit = 1
-        at = 0
-        used = 0
-        live = 0
-        starts = [0]
-        for cell in range(self.variables):
-            bits = self.bits[cell]
-            self.mask[cell] = 0
-            self.word[cell] = 0
-            self.shift[cell] = 0
-            if bits == 0:
-                continue
-            if used + bits > 64:
-                at += 1
-                used = 0
-                starts.append(live)
-            self.mask[cell] = UINT64_MASK if bits == 64 else (unit << bits) - 1
-            self.word[cell] = at
-            self.shift[cell] = used
-            used += bits
-            self.live[live] = cell
-            live += 1
-        starts.append(live)
-        self.words = at + 1
-        self.live_start = array("i", starts)
-        self.now = array("Q", [0]) * self.words
-        self._forget()
-        for i in range(live):
-            self._put(self.live[i], self.value[self.live[i]])
 
     def _here(self) -> int:
         """The node of the current state of the kernel, which is created if it is new. This may forget all others."""
-        value = GOLDEN
-        for i in range(self.words):
-            value = ((value ^ self.now[i]) * MIX_1) & UINT64_MASK
-            value ^= value >> 32
-        value = (value * MIX_2) & UINT64_MASK
-        tag = value >> 32
-        node: int
-        at = (value >> 7) & self.table_mask
-        while True:
-            entry = self.table[at]
-            if entry == 0:
-                break
-            if entry >> 32 == tag:
-                node = entry & 0xFFFFFFFF
-                first = self.cells[node + KEY] * self.words
-                same = 1
-                for i in range(self.words):
-                    if self.keys[first + i] != self.now[i]:
-                        same = 0
-                        break
-                if same != 0:
-                    self.here = node
-                    return node
-            at = (at + 1) & self.table_mask
+        at = self._look_up()
+        state = self._state_at(at)
+        if state >= 0:
+            self.here = self.node_of[state]
+            return self.here
         size = self._choice_count()
         count = self.head + self.width * max(size, 0)
-        if self._used() + 4 * count + 8 * self.words > self.max_bytes and self.nodes > 0:
+        if self._used() + 4 * count + 8 * self.words > self.max_bytes and self.count > 0:
             self._forget()
-            at = (value >> 7) & self.table_mask
+            at = self._look_up()
         self._reserve(count)
         node = self.cell_end
         self.cell_end = node + count
         self._describe(node, size)
         for i in range(node + self.head, self.cell_end):
             self.cells[i] = NEW
-        self.cells[node + KEY] = self.nodes
-        first = self.nodes * self.words
-        if first + self.words > self.key_room:
-            self.key_room = 2 * (first + self.words)
-            self.keys = _grown(self.keys, self.key_room)
-        for i in range(self.words):
-            self.keys[first + i] = self.now[i]
-        self.table[at] = (tag << 32) | node
-        self.nodes += 1
+        if self.count == self.state_room:
+            self._grow()
+            self.node_of = grown(self.node_of, self.state_room)
+        state = self._add(at)
+        self.node_of[state] = node
+        self.cells[node + STATE] = state
         self.here = node
-        if self.nodes * 8 > self.table_mask * 5:
-            self._rehash()
         return node
 
     def _choice_count(self) -> int:
@@ -822,7 +677,7 @@ class TraceBatch:
     def _used(self) -> int:
         """The bytes in use."""
         return (
-            4 * self.cell_end + 8 * self.nodes * self.words + 8 * (self.table_mask + 1) + 8 * self.real_end
+            4 * self.cell_end + (8 * self.words + 4) * self.count + 8 * (self.table_mask + 1) + 8 * self.real_end
             + NUMBER_BYTES * len(self.number_of)
         )  # fmt: skip
 
@@ -830,12 +685,12 @@ class TraceBatch:
         """Allocate memory for further cells."""
         if self.cell_end + count > self.cell_room:
             self.cell_room = (self.cell_end + count) * 3 // 2
-            self.cells = _grown(self.cells, self.cell_room)
+            self.cells = grown(self.cells, self.cell_room)
 
     def _append(self, value: float) -> None:
         if self.real_end == self.real_room:
             self.real_room = self.real_room * 3 // 2
-            self.reals = _grown(self.reals, self.real_room)
+            self.reals = grown(self.reals, self.real_room)
         self.reals[self.real_end] = value
         self.real_end += 1
 
@@ -848,32 +703,3 @@ class TraceBatch:
         self._append(value)
         self.number_of[value] = index
         return index
-
-    def _rehash(self) -> None:
-        """Double the size of the hash table."""
-        old = self.table
-        size = 2 * (self.table_mask + 1)
-        self.table = array("Q", [0]) * size
-        self.table_mask = size - 1
-        for i in range(size // 2):
-            entry = old[i]
-            if entry == 0:
-                continue
-            first = self.cells[(entry & 0xFFFFFFFF) + KEY] * self.words
-            value = GOLDEN
-            for w in range(self.words):
-                value = ((value ^ self.keys[first + w]) * MIX_1) & UINT64_MASK
-                value ^= value >> 32
-            value = (value * MIX_2) & UINT64_MASK
-            at = (value >> 7) & self.table_mask
-            while self.table[at] != 0:
-                at = (at + 1) & self.table_mask
-            self.table[at] = entry
-
-
-def _grown(old: Any, count: int) -> Any:
-    """An array of `count` numbers that begins with those of `old` and is 0 elsewhere."""
-    view = memoryview(getattr(old, "base", old))  # Cython wraps the array that it was given, its `base`.
-    new = array(view.format, bytes(view.itemsize)) * count
-    memoryview(new)[: len(view)] = view
-    return new

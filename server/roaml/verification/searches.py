@@ -13,13 +13,13 @@ import time
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, NamedTuple
 
-from roaml.explicit.memory import available
 from roaml.explicit.path import Path
 from roaml.explicit.space import ExplorationProgress, ExplorationWatch, StateLimits
 from roaml.record import replace
 from roaml.smc.batch import follow_main_process
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
+from roaml.smc.memory import available
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import WORKER_START_DELAY_S, process_context
 from roaml.verification.exhaustive import UndecidedError, alone, exact_values

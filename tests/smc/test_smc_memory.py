@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from roaml.explicit import memory
-from roaml.explicit.memory import MAX_HEAP_BYTES, RESERVED_FACTOR, flat, grown
+from roaml.smc import memory
+from roaml.smc.memory import MAX_HEAP_BYTES, RESERVED_FACTOR, flat, grown
 
 SMALL = 100
 LARGE = MAX_HEAP_BYTES
