@@ -25,7 +25,7 @@ from roaml.smc.states import compiled as states_compiled
 from roaml.smc.tally import REJECTED, Tally
 
 if TYPE_CHECKING:
-    from multiprocessing.synchronize import Event
+    from ctypes import c_bool
 
 STEPS_BETWEEN_PULSES = 200_000
 """The number of steps of a trace after which its progress is reported: these steps take some hundredths of a second."""
@@ -257,15 +257,17 @@ class StoppedError(Exception):
     """Raised in a worker when its batch is no longer needed."""
 
 
-_stopping: Event | None = None
+_stopping: c_bool | None = None
 
 
-def start_worker(stopping: Event) -> None:
+def start_worker(stopping: c_bool) -> None:
     """Prepare a worker process.
 
     Args:
-        stopping: set when the remaining batches are no longer needed. Workers then end by themselves: a worker
-            that is killed may leave an incomplete result, for which the main process would wait for ever.
+        stopping: true when the remaining batches are no longer needed, in shared memory. Workers then end by
+            themselves: a worker that is killed may leave an incomplete result, for which the main process would wait
+            for ever. It has no lock, because a worker that is killed while it has the lock would block the main
+            process.
     """
     global _stopping  # noqa: PLW0603
     _stopping = stopping
@@ -314,5 +316,5 @@ def run_all(tasks: Sequence[Task], pulse: Callable[[int, int], None] | None = No
 
 
 def _checkpoint(trace: int, steps: int) -> None:
-    if _stopping is not None and _stopping.is_set():
+    if _stopping is not None and _stopping.value:
         raise StoppedError

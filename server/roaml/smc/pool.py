@@ -21,8 +21,8 @@ from roaml.smc.program import Compiled
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor, Future
+    from ctypes import c_bool
     from multiprocessing.context import BaseContext
-    from multiprocessing.synchronize import Event
 
 WORKER_START_DELAY_S = 0.4
 """The time in s before workers are started, because most questions are answered in less time."""
@@ -74,7 +74,7 @@ class Pool:
         self.executor = executor
         self.is_own = executor is None
         self.start_delay_s = start_delay_s
-        self._stopping: Event | None = None
+        self._stopping: c_bool | None = None
 
     def __enter__(self) -> Pool:
         return self
@@ -142,10 +142,11 @@ class Pool:
     def _submit(self, tasks: list[Task]) -> Future[Bundle] | None:
         """Submit batches; return `None` if this fails because workers have just been lost."""
         from concurrent.futures import BrokenExecutor, ProcessPoolExecutor  # noqa: PLC0415
+        from ctypes import c_bool  # noqa: PLC0415
 
         if self.executor is None:
             context = process_context()
-            self._stopping = context.Event()
+            self._stopping = context.RawValue(c_bool, False)
             self.executor = ProcessPoolExecutor(self.jobs, context, start_worker, (self._stopping,))
         try:
             return self.executor.submit(run_in_worker if self.is_own else run_all, tasks)
@@ -171,7 +172,7 @@ class Pool:
         if self.executor is None or not self.is_own:
             return
         if self._stopping is not None:
-            self._stopping.set()
+            self._stopping.value = True
         self.executor.shutdown(wait=True, cancel_futures=True)
         self.executor = None
 
