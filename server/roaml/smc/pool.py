@@ -141,17 +141,24 @@ class Pool:
 
     def _submit(self, tasks: list[Task]) -> Future[Bundle] | None:
         """Submit batches; return `None` if this fails because workers have just been lost."""
-        from concurrent.futures import BrokenExecutor, ProcessPoolExecutor  # noqa: PLC0415
+        from concurrent.futures import BrokenExecutor  # noqa: PLC0415 - most questions are answered without workers
+
+        # A worker that is being started is not known to the executor yet, so it would not be ended.
+        with _uninterrupted(redelivers=True):
+            try:
+                return self._executor().submit(run_in_worker if self.is_own else run_all, tasks)
+            except BrokenExecutor:
+                return None
+
+    def _executor(self) -> Executor:
+        from concurrent.futures import ProcessPoolExecutor  # noqa: PLC0415 - most questions are answered without workers
         from ctypes import c_bool  # noqa: PLC0415
 
         if self.executor is None:
             context = process_context()
             self._stopping = context.RawValue(c_bool, False)
             self.executor = ProcessPoolExecutor(self.jobs, context, start_worker, (self._stopping,))
-        try:
-            return self.executor.submit(run_in_worker if self.is_own else run_all, tasks)
-        except BrokenExecutor:
-            return None
+        return self.executor
 
     def _wait(self, tasks: list[Task], future: Future[Bundle] | None, pulse: Pulse | None) -> Bundle:
         from concurrent.futures import BrokenExecutor  # noqa: PLC0415 - most questions are answered without workers
@@ -179,7 +186,7 @@ class Pool:
 
 @contextmanager
 def _uninterrupted(*, redelivers: bool) -> Iterator[None]:
-    """Delay SIGINT and SIGTERM while workers end, which takes a tenth of a second: if the end of `executor` is
+    """Delay SIGINT and SIGTERM while workers start or end, which takes a tenth of a second: if the end of `executor` is
     interrupted, Python may wait for ever. Other threads than the main one receive no signals.
 
     Args:
