@@ -49,8 +49,8 @@ class _OwnProcess:
         self._began = time.monotonic()
         context = process_context()
         self.receiving, sending = context.Pipe(duplex=False)
-        # A process is daemonic so that it ends with this one.
         payload = pickle.dumps((*self._own, limits))
+        # It is daemonic so that it ends with this process.
         self._process: BaseProcess = context.Process(target=_explore, args=(sending, payload), daemon=True)  # type: ignore[attr-defined]
         self._process.start()
         sending.close()
@@ -175,8 +175,8 @@ class Searches:
             try:
                 result = search.received()
             except (EOFError, OSError):  # the process was killed: its property is explored in this one
-                result = None
                 self._end(search)
+                continue
             if result is not None:
                 name = search.property.question.name
                 self._ended[name] = result
