@@ -15,23 +15,11 @@ export class Window {
     /** Opens a file by its name, as with Ctrl+P. */
     async openFile(name: string): Promise<void> {
         const { page } = this;
-        const file = page.locator(`.quick-input-list .focused[aria-label*="${path.basename(name)}"]`).first();
-        const none = page.locator(".quick-input-list .monaco-list-row", { hasText: "No matching results" });
+        const base = path.basename(name);
         // The list shows the files of the moment at which it opens. A file that was written just now may be missing.
-        for (let attempts = 1; ; attempts++) {
-            await page.keyboard.press("Control+P");
-            await page.locator(".quick-input-widget input").fill(name);
-            await file.or(none).first().waitFor();
-            if (await file.isVisible()) break;
-            if (attempts === 100) throw new Error(`there is no file ${name}`);
-            await page.keyboard.press("Escape");
-            await page.locator(".quick-input-widget").waitFor({ state: "hidden" });
-        }
+        await this.quickOpen("Control+P", name, `.quick-input-list .focused[aria-label*="${base}"]`);
         await page.keyboard.press("Enter");
-        await page
-            .locator(`.tab.active[data-resource-name="${path.basename(name)}"]`)
-            .first()
-            .waitFor();
+        await page.locator(`.tab.active[data-resource-name="${base}"]`).first().waitFor();
         await this.editor.locator(".view-line").first().waitFor();
     }
 
@@ -40,25 +28,37 @@ export class Window {
      * is opened again until the command is enabled, for example after the server has classified the file.
      */
     async run(title: string): Promise<void> {
-        const row = this.page.locator(`.quick-input-list .focused[aria-label^="${title}"]`).first();
-        await this.until(async () => {
-            await this.page.keyboard.press("F1");
-            await this.page.locator(".quick-input-widget input").fill(`>${title}`);
-            const isListed = await row.waitFor({ timeout: REOPENING_MS }).then(
-                () => true,
-                () => false,
-            );
-            if (!isListed) await this.page.keyboard.press("Escape");
-            return isListed;
-        });
+        await this.quickOpen("F1", `>${title}`, `.quick-input-list .focused[aria-label^="${title}"]`);
         await this.page.keyboard.press("Enter");
+    }
+
+    /**
+     * Opens the quick input with a key and enters a text, until it shows a row. A view or an editor that gets the focus
+     * late, for example after a click on its tab, closes the quick input; then it is opened again.
+     */
+    private async quickOpen(key: string, text: string, row: string): Promise<void> {
+        const { page } = this;
+        const none = page.locator(".quick-input-list .monaco-list-row", { hasText: /No matching/ });
+        const shown = page.locator(row);
+        await this.until(async () => {
+            await page.keyboard.press(key);
+            const isAnswered = await page
+                .locator(".quick-input-widget input")
+                .fill(text, { timeout: REOPENING_MS })
+                .then(() => shown.or(none).first().waitFor({ timeout: REOPENING_MS }))
+                .then(
+                    () => true,
+                    () => false,
+                );
+            if (isAnswered && (await shown.first().isVisible())) return true;
+            await page.keyboard.press("Escape");
+            return false;
+        });
     }
 
     /** The titles in the palette that match a text. */
     async commands(text: string): Promise<string[]> {
-        await this.page.keyboard.press("F1");
-        await this.page.locator(".quick-input-widget input").fill(`>${text}`);
-        await this.page.locator(".quick-input-list .monaco-list-row").first().waitFor();
+        await this.quickOpen("F1", `>${text}`, ".quick-input-list .monaco-list-row");
         const rows = await this.page.locator(".quick-input-list .monaco-list-row").all();
         const labels = await Promise.all(rows.map((row) => row.getAttribute("aria-label")));
         await this.page.keyboard.press("Escape");
@@ -67,8 +67,7 @@ export class Window {
 
     /** Moves the caret to a line and column, counted from 1. */
     async goTo(line: number, column = 1): Promise<void> {
-        await this.page.keyboard.press("Control+G");
-        await this.page.locator(".quick-input-widget input").fill(`:${line}:${column}`);
+        await this.quickOpen("Control+G", `:${line}:${column}`, ".quick-input-list .monaco-list-row");
         await this.page.keyboard.press("Enter");
         await this.statusItem(`Ln ${line}, Col ${column}`).waitFor();
     }
@@ -189,7 +188,7 @@ export interface Clip {
 /** The time limit for all waits, in ms. It only prevents an endless wait; creating an environment may take minutes. */
 export const TIMEOUT_MS = 300_000;
 
-/** The time after which the palette is opened again if it does not list a command. */
+/** The time after which the quick input is opened again if it is closed or does not show the expected row. */
 const REOPENING_MS = 20_000;
 
 /** A text with the spaces that the editor draws. */
