@@ -231,19 +231,78 @@ def test_very_many_choices_are_left_to_the_kernel() -> None:
 
 
 def test_states_that_do_not_repeat_switch_the_nodes_off() -> None:
+    def scrambled(factor: int, addend: int) -> Json:
+        return op("%", op("+", op("*", "x", factor), addend), 2**31 - 1)
+
     written = document(
-        automaton("a", "l", [edge("l", way("l", 0.5, x=op("+", "x", 1)), way("l", 0.5, x=op("+", "x", 2)))]),
+        automaton("a", "l", [edge("l", way("l", 0.5, x=scrambled(5, 1)), way("l", 0.5, x=scrambled(7, 3)))]),
         variables=[variable("x")],
         properties={"p": probability(op("F", op("<", "x", 0)))},
     )
     compiled = compiled_model(written)
-    simulators = Simulator(compiled, 0), Simulator(compiled)
+    simulators = Simulator(compiled, 0), Simulator(compiled, 50_000)
     for first in (0, 10, 20):
         task = Task(NO_PAYLOAD, 7, first, 10, 20_000)
         assert results(run_on(simulators[0], task)) == results(run_on(simulators[1], task))
     batch = simulators[1].batch
     assert batch is not None
     assert (batch.is_on, batch.count) == (0, 0)
+
+
+def test_nodes_are_paused_until_they_may_cost_time_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The nodes of many states cost time before they save time; they never cost more than their share."""
+    module: Any = plain_states()
+    kernel_step_s, new_step_s = 20e-6, 25e-6
+    spent_s = 0.0
+    pauses = 0
+
+    class Measured(module.TraceBatch):  # type: ignore[misc]
+        def _new_step(self, *at: int) -> int:
+            nonlocal spent_s
+            spent_s += new_step_s
+            status: int = super()._new_step(*at)
+            return status
+
+        def _review(self) -> None:
+            nonlocal pauses
+            super()._review()
+            pauses += not self.is_measured
+
+    def step() -> None:
+        nonlocal spent_s
+        spent_s += kernel_step_s
+        type(simulator.kernel)._step(simulator.kernel)
+
+    monkeypatch.setattr(module, "process_time", lambda: spent_s)
+    edges = [edge("l", way("l", 0.5, x=op("%", op("+", op("*", "x", 5), k), 8191))) for k in (1, 2)]
+    for some in edges:
+        some["destinations"].append(way("l", 0.5, x=op("%", op("+", "x", 1), 8191)))
+    written = document(
+        automaton("a", "l", edges),
+        variables=[variable("x")],
+        properties={"p": probability(op("F", op("<", "x", 0)))},
+    )
+    compiled = compiled_model(written)
+    simulator = Simulator(compiled, 0)
+    simulator.kernel = plain_kernel().Kernel(compiled.program, compiled.goal)
+    monkeypatch.setattr(simulator.kernel, "_step", step)
+    simulator.batch = batch = Measured(simulator.kernel, compiled.program)
+    total = 0
+    alone = Simulator(compiled, 0)
+    while total < 400_000:
+        task = Task(NO_PAYLOAD, 7, total // 1000, 10, 1000)
+        outcome = run_on(simulator, task)
+        assert results(outcome) == results(run_on(alone, task))
+        total += sum(outcome.questions[0].steps)
+        needed = total * kernel_step_s
+        slack = module.MAX_LOSS_S + module.REVIEW_STEPS * new_step_s
+        assert spent_s <= needed / (1 - module.MAX_LOSS_SHARE) + slack
+    assert pauses > 1
+    assert batch.is_on
+    assert batch.count > 8000
+    before = spent_s
+    run_on(simulator, Task(NO_PAYLOAD, 7, total // 1000, 10, 1000))
+    assert spent_s - before < 10_000 * kernel_step_s / 10
 
 
 def test_few_states_are_kept() -> None:

@@ -17,8 +17,8 @@ cdef int FALSE, TRUE, UNKNOWN, FAULTY, DECIDED, CUT, GOES_ON
 cdef int SIZE, STATE, FLAGS, REWARD, HEADER_CELLS, CONDITIONS_A_CELL
 cdef int DECIDES, CAN_LEAVE, CANNOT_LEAVE, REASON_SHIFT, NEW, BY_KERNEL
 cdef int MAX_ROOTS, BLOCK, PULSE_TRACES
-cdef i64 MEASURED_STEPS, REVIEW_STEPS, MIN_JUDGED_STEPS, PULSE_STEPS, NUMBER_BYTES
-cdef double MAX_LOSS_S, MAX_NEW_SHARE
+cdef i64 MEASURED_STEPS, REVIEW_STEPS, PULSE_STEPS, NUMBER_BYTES
+cdef double MAX_LOSS_S, MAX_LOSS_SHARE
 
 @cython.final
 cdef class TraceBatch(PackedStates):
@@ -26,9 +26,9 @@ cdef class TraceBatch(PackedStates):
     cdef i64 max_bytes
     cdef public int is_on
     cdef int leaves, condition_cells, head, has_activities, has_exit, width
-    cdef int is_prepared, is_kernel, is_measured
-    cdef double kernel_step_s, started_s, spent_s
-    cdef i64 done_steps, new_steps, next_review, next_bound
+    cdef int is_prepared, is_kernel, is_measured, is_full
+    cdef double kernel_step_s, started_s, spent_s, earlier_s, earlier_loss_s, first_loss_s
+    cdef i64 measured_steps, done_steps, new_steps, next_review, next_bound
     cdef int node, here, most_roots
     cdef i64 age
     cdef u64 drawn
@@ -69,9 +69,11 @@ cdef class TraceBatch(PackedStates):
     cdef int _dice(self, int node, int at) except? -9
     @cython.locals(total=double, sides=int, first=int, start=int, way=int, register=int)
     cdef int _weigh(self, int edge) except? -9
+    @cython.locals(now=double, spent=double)
     cdef void _measure(self) except *
-    @cython.locals(steps=i64, loss=double)
+    @cython.locals(now=double, spent=double, total=double, loss=double, pause=double)
     cdef void _review(self) except *
+    cdef void _begin_period(self, double now, double spent, i64 steps) noexcept
     cdef void _switch_off(self) except *
     cdef void _leave(self, int node) noexcept
     @cython.locals(status=int)

@@ -13,8 +13,9 @@
   select destinations, and a target for each combination of them.
 - `packing` packs and numbers the states of the nodes. If the states need a new layout, or the memory is full, all nodes
   are forgotten.
-- If most steps are new, the memory is given back, and the kernel generates all traces. So a model whose states do not
-  repeat is not slowed down by more than the first few thousand steps.
+- Nodes cost time until enough steps repeat. If they have cost more than a share of the time so far, the kernel
+  generates traces until they may cost more; the nodes are kept. If the memory has become full and its nodes have saved
+  no time, it is given back, and the kernel generates all further traces.
 - Traces under a sampled scheduler, recorded traces, and states with very many choices are left to the kernel.
 """
 
@@ -72,13 +73,12 @@ BLOCK = 16
 MAX_BYTES = 12 << 20
 """The maximum memory for nodes, in bytes."""
 MEASURED_STEPS = 4096
-"""The number of steps from which the speed of the kernel is measured."""
+"""The number of steps at the beginning from which the speed of the kernel is measured."""
 REVIEW_STEPS = 4096
 """The number of new steps after which it is determined whether the nodes save time."""
-MAX_LOSS_S = 0.015
-"""The maximum time, in s, by which the nodes may increase the time without being switched off."""
-MIN_JUDGED_STEPS, MAX_NEW_SHARE = 16384, 0.9
-"""After this number of steps, the nodes are switched off if more than this share of the steps were new."""
+MAX_LOSS_S, MAX_LOSS_SHARE = 0.015, 0.1
+"""The maximum time by which the nodes may increase the time before they are paused: the sum of a time in s and a share
+of the time so far."""
 NUMBER_BYTES = 100
 """The approximate memory of an entry of a dictionary of numbers, in bytes."""
 PULSE_STEPS = 200_000
@@ -124,10 +124,15 @@ class TraceBatch(PackedStates):
         self.is_prepared = 0
         self.is_kernel = 0
         self.is_measured = 0
+        self.measured_steps = MEASURED_STEPS
         self.kernel_step_s = 0.0
         self.started_s = 0.0
         self.spent_s = 0.0
         self.done_steps = 0
+        self.earlier_s = 0.0
+        self.earlier_loss_s = 0.0
+        self.is_full = 0
+        self.first_loss_s = 0.0
         self.new_steps = 0
         self.next_review = REVIEW_STEPS
         self.next_bound = MAX_INT64
@@ -196,7 +201,7 @@ class TraceBatch(PackedStates):
                 since = 0
                 pulse(first + trace, limit)
             self.done_steps += self.kernel.steps
-            if self.is_measured == 0 and self.done_steps >= MEASURED_STEPS:
+            if self.is_measured == 0 and self.done_steps >= self.measured_steps:
                 self._measure()
             if status == FAULTY:
                 return trace
@@ -414,7 +419,7 @@ class TraceBatch(PackedStates):
         self.new_steps += 1
         if self.new_steps >= self.next_review:
             self._review()
-            if self.is_on == 0:
+            if self.is_on == 0 or self.is_measured == 0:
                 self.is_kernel = 1
                 return self._judged_by_kernel()
         age = self.age
@@ -501,21 +506,39 @@ class TraceBatch(PackedStates):
     # ------------------------------------------------------------ whether nodes save time
 
     def _measure(self) -> None:
-        """Determine the time that the kernel needs for a step, from its first traces. The next traces use nodes."""
+        """Determine the time that the kernel needs for a step, from its last traces. The next traces use nodes."""
         now = process_time()
-        self.kernel_step_s = (self.spent_s + now - self.started_s) / self.done_steps
+        spent = self.spent_s + now - self.started_s
+        self.kernel_step_s = spent / self.done_steps
         self.is_measured = 1
-        self.spent_s = 0.0
-        self.started_s = now
-        self.done_steps = 0
+        self._begin_period(now, spent, 0)
 
     def _review(self) -> None:
-        """Switch the nodes off if they have cost more time than they have saved."""
+        """Pause the nodes if they have cost too much time, or switch them off if they will save none."""
         self.next_review = self.new_steps + REVIEW_STEPS
-        steps = self.done_steps + self.kernel.steps
-        loss = self.spent_s + process_time() - self.started_s - steps * self.kernel_step_s
-        if loss > MAX_LOSS_S or (steps > MIN_JUDGED_STEPS and self.new_steps > MAX_NEW_SHARE * steps):
+        now = process_time()
+        spent = self.spent_s + now - self.started_s
+        total = self.earlier_s + spent
+        loss = self.earlier_loss_s + spent - (self.done_steps + self.kernel.steps) * self.kernel_step_s
+        if self.is_full != 0 and loss > self.first_loss_s:
             self._switch_off()
+        elif loss > MAX_LOSS_S + MAX_LOSS_SHARE * total:
+            self.is_measured = 0
+            pause = max(loss / MAX_LOSS_SHARE - total, self.kernel_step_s * MEASURED_STEPS)
+            self.measured_steps = int(pause / self.kernel_step_s)
+            self.earlier_loss_s = loss
+            self._begin_period(now, spent, -self.kernel.steps)
+        elif self.is_full != 0:
+            self.is_full = 0
+            self.first_loss_s = loss
+
+    def _begin_period(self, now: float, spent: float, steps: int) -> None:
+        """Begin to measure the time from `now` on. `spent`: the time, in s, of the period before it. `steps`: the
+        number of steps of the new period."""
+        self.earlier_s += spent
+        self.spent_s = 0.0
+        self.started_s = now
+        self.done_steps = steps
 
     def _switch_off(self) -> None:
         self.is_on = 0
@@ -622,6 +645,7 @@ class TraceBatch(PackedStates):
         size = self._choice_count()
         count = self.head + self.width * max(size, 0)
         if self._used() + 4 * count + 8 * self.words > self.max_bytes and self.count > 0:
+            self.is_full = 1
             self._forget()
             at = self._look_up()
         self._reserve(count)
