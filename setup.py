@@ -15,6 +15,7 @@ from setuptools.command.build_py import build_py
 
 SCHEMAS = Path(__file__).parent / "schemas"
 COMPILED = (
+    "roaml.json_syntax.frequent",
     "roaml.smc.kernel",
     "roaml.smc.counts",
     "roaml.smc.packing",

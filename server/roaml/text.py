@@ -56,6 +56,11 @@ class Location(NamedTuple):
     span: Span
 
 
+def location_of(fields: tuple[str, Span]) -> Location:
+    """A location with these fields. It takes half the time of `Location(...)`, like `span_of`."""
+    return tuple.__new__(Location, fields)
+
+
 class Position(NamedTuple):
     """A zero-based line and a zero-based column in code points."""
 

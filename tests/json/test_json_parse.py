@@ -3,9 +3,14 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
+import shutil
 import textwrap
 from collections.abc import Iterator
+from importlib.machinery import SourceFileLoader
+from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
@@ -23,8 +28,10 @@ from roaml.json_syntax import (
     JsonString,
     JsonValue,
     Member,
+    frequent,
     parse,
 )
+from roaml.json_syntax.brackets import Bracket
 from roaml.json_syntax.parse import _Parser
 from roaml.text import Span, apply_edits
 
@@ -525,3 +532,40 @@ def test_the_fast_form_agrees_with_the_general_one(text: str) -> None:
     general = _WithoutFastForm(text)
     value = general.run()
     assert parse(text) == (value, tuple(sorted(general.findings, key=lambda finding: finding.span)))
+
+
+def test_is_compiled_where_there_is_a_compiler() -> None:
+    assert frequent.compiled() or shutil.which("cc") is None, "pip install -e . compiles it"
+
+
+def plain_frequent() -> ModuleType:
+    """The module of frequent tokens as plain Python, even if it is compiled."""
+    loader = SourceFileLoader("plain_frequent", str(Path(frequent.__file__).with_name("frequent.py")))
+    spec = importlib.util.spec_from_loader("plain_frequent", loader)
+    assert spec is not None
+    module = importlib.util.module_from_spec(spec)
+    loader.exec_module(module)
+    assert not module.compiled()
+    return module
+
+
+PLAIN = plain_frequent()
+
+
+@given(BRACKETS)
+@example("null,null,null,nullx")
+@example('{"a":-0,"b":1.50,"c":01')
+@example('"a","b":1')
+@example("1.")
+@example("[-")
+@example("1234567890123456789")
+@example('{"a":1,"b":{"a":2,"a":3}}')
+@example('{"a\\n":1}')  # an escape
+@example('{"a":"\u2028","a":tru,"b":false}')
+@example("[" * 1200)
+def test_the_compiled_form_agrees_with_plain_python(text: str) -> None:
+    ended, results = f"[{text}{frequent.END}", []
+    for read in (frequent.read_frequent, PLAIN.read_frequent):
+        stack = [Bracket(0, False, [], None)]
+        results.append((read(ended, 1, stack, 0, False, [], {}), stack))
+    assert results[0] == results[1]

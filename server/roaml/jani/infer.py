@@ -104,6 +104,16 @@ Bound: TypeAlias = Mapping[str, Type]
 """The types of the names that enclosing expressions declare, such as the variable of an array constructor."""
 
 
+_LITERAL_TYPES: dict[type, Type] = {
+    Integer: INT,
+    Real: REAL,
+    Boolean: BOOL,
+    NamedNumber: REAL,
+    Missing: UNKNOWN,
+}
+"""The types of the expressions whose type depends on their class only."""
+
+
 class Inference:
     """Infers types in `scope`, and collects the errors."""
 
@@ -125,22 +135,11 @@ class Inference:
     def type(self, node: Expression, bound: Bound) -> Steps[Type] | Type:
         if isinstance(node, Name):
             return self.name(node, node.identifier, bound)
-        if isinstance(node, Integer):
-            return INT
-        if isinstance(node, Boolean):
-            return BOOL
-        return self._type(node, bound)
+        literal = _LITERAL_TYPES.get(type(node))
+        return self._type(node, bound) if literal is None else literal
 
     def _type(self, node: Expression, bound: Bound) -> Steps[Type]:
         match node:
-            case Name(identifier):
-                return self.name(node, identifier, bound)
-            case Integer():
-                return INT
-            case Real() | NamedNumber():
-                return REAL
-            case Boolean():
-                return BOOL
             case Unary(operator, operand):
                 return self.apply(node, operator, [(operand, (yield self.type(operand, bound)))])
             case Binary(operator, left, right):
@@ -182,8 +181,10 @@ class Inference:
             case Derivative(variable):
                 self.name(node, variable, {})
                 return REAL
-            case Missing():
-                return UNKNOWN
+            case Name(identifier):
+                return self.name(node, identifier, bound)
+            case Integer() | Boolean() | Real() | NamedNumber() | Missing():
+                return _LITERAL_TYPES[type(node)]
             case _:
                 return assert_never(node)
 

@@ -24,7 +24,7 @@ from roaml.json_syntax import (
     Member,
     kind,
 )
-from roaml.text import Span
+from roaml.text import Span, location_of, span_of
 
 HARMLESS = frozenset(("comment", "metadata"))
 """The names of members that never change the meaning of a model."""
@@ -60,8 +60,12 @@ class ValueSource:
         self.path = path
         self.notes = notes
 
-    def origin(self, span: Span) -> Origin:
-        return Origin(self.path, span)
+    def origin(self, value: JsonValue) -> Origin:
+        return location_of((self.path, span_of((value.start, value.end))))
+
+    def content_origin(self, text: JsonString) -> Origin:
+        """The place of the text between the quotes."""
+        return location_of((self.path, span_of((text.start + text.quotes[0], text.end - text.quotes[1]))))
 
     def members(self, value: JsonValue | None, form: ObjectShape) -> Members | None:
         """The members of `value`; `None` if it is not an object, with a finding unless it is missing or not valid
@@ -79,18 +83,24 @@ class ValueSource:
 class Members:
     """The members of one object. If names are repeated, the last member is used."""
 
+    __slots__ = ("form", "notes", "origin", "source", "values")
+
+    values: dict[str, JsonValue]
+
     def __init__(self, value: JsonObject, form: ObjectShape, source: ValueSource) -> None:
         self.form = form
         self.notes = source.notes
         self.source = source
-        self.origin = Origin(source.path, Span(value.start, value.end))
-        self.values: dict[str, JsonValue] = {}
+        self.origin = source.origin(value)
+        self.values = values = {}
+        allowed = form.allowed
         for member in value.members:
-            if member.key not in form.allowed:
+            key, content = member.key, member.value
+            if key not in allowed:
                 self._report_unknown(member)
-            elif member.value is not None and not isinstance(member.value, JsonError):
-                self.values[member.key] = member.value
-        if not form.required <= self.values.keys():
+            elif content is not None and not isinstance(content, JsonError):
+                values[key] = content
+        if not form.required <= values.keys():
             missing = form.required.difference(member.key for member in value.members)
             if missing:
                 names = " and ".join(f"`{name}`" for name in sorted(missing))

@@ -120,12 +120,16 @@ class RewardInstant(CommentedNode, frozen=True):
     instant: Expression
 
 
-class UnaryFormula(CommentedNode, frozen=True):
+class ProperFormula(CommentedNode, frozen=True, kw_only=True):
+    """A formula that is not an expression: its value depends on more than a single state."""
+
+
+class UnaryFormula(ProperFormula, frozen=True):
     operator: UnaryOperator
     operand: Formula
 
 
-class BinaryFormula(CommentedNode, frozen=True):
+class BinaryFormula(ProperFormula, frozen=True):
     """A formula with two operands, such as a probability and its threshold: `Pmin(...) ≥ 0.95`."""
 
     operator: BinaryOperator
@@ -133,13 +137,13 @@ class BinaryFormula(CommentedNode, frozen=True):
     right: Formula
 
 
-class ConditionalFormula(CommentedNode, frozen=True):
+class ConditionalFormula(ProperFormula, frozen=True):
     test: Formula
     then: Formula
     otherwise: Formula
 
 
-class Filter(CommentedNode, frozen=True):
+class Filter(ProperFormula, frozen=True):
     """The result of `function` on the values of `values` in the states in which `states` holds."""
 
     function: FilterFunction
@@ -147,19 +151,19 @@ class Filter(CommentedNode, frozen=True):
     states: Formula
 
 
-class Probability(CommentedNode, frozen=True):
+class Probability(ProperFormula, frozen=True):
     operator: ProbabilityOperator
     path: Formula
 
 
-class Quantified(CommentedNode, frozen=True):
+class Quantified(ProperFormula, frozen=True):
     """The requirement that `path` holds on all paths, or on at least one path."""
 
     quantifier: PathQuantifier
     path: Formula
 
 
-class Expectation(CommentedNode, frozen=True):
+class Expectation(ProperFormula, frozen=True):
     """The expected value of `reward` at an instant or when `reach` holds for the first time. It is accumulated until
     then if `accumulate` is not `None`.
 
@@ -175,7 +179,7 @@ class Expectation(CommentedNode, frozen=True):
     reward_instants: tuple[RewardInstant, ...] | None = None
 
 
-class SteadyState(CommentedNode, frozen=True):
+class SteadyState(ProperFormula, frozen=True):
     """The long-run probability of `value` if it is a state formula; otherwise its long-run average as a reward."""
 
     operator: SteadyStateOperator
@@ -183,7 +187,7 @@ class SteadyState(CommentedNode, frozen=True):
     accumulate: tuple[Accumulation, ...] | None = None
 
 
-class PathBounds(CommentedNode, frozen=True, kw_only=True):
+class PathBounds(ProperFormula, frozen=True, kw_only=True):
     """Limits on the steps, the time and the rewards within which a path formula must be satisfied."""
 
     step_bounds: Interval | None = None
@@ -202,12 +206,13 @@ class BinaryPath(PathBounds, frozen=True):
     right: Formula
 
 
-class Predicate(CommentedNode, frozen=True):
+class Predicate(ProperFormula, frozen=True):
     predicate: StatePredicate
 
 
-ProperFormula: TypeAlias = (
-    UnaryFormula
+Formula: TypeAlias = (
+    Expression
+    | UnaryFormula
     | BinaryFormula
     | ConditionalFormula
     | Filter
@@ -219,9 +224,6 @@ ProperFormula: TypeAlias = (
     | BinaryPath
     | Predicate
 )
-"""A formula that is not an expression: its value depends on more than a single state."""
-
-Formula: TypeAlias = Expression | ProperFormula
 
 
 class Property(CommentedNode, frozen=True):

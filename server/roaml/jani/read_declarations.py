@@ -157,8 +157,10 @@ class DeclarationReader(FormulaReader):
     def objects(self, owner: Members, key: str, form: ObjectShape) -> Iterator[Members]:
         """The members of each object in the list `key`. Items that are not objects are reported and left out."""
         for item in owner.items(key):
-            if members := self.members(item, form):
-                yield members
+            if isinstance(item, JsonObject):
+                yield Members(item, form, self)
+            else:
+                self.members(item, form)
 
     def declare(self, members: Members, names: DeclaredNames) -> str | None:
         name = members.string("name")

@@ -4,8 +4,9 @@
 This package implements RFC 8259 only; packages that import it define the meaning of the members.
 """
 
+from roaml.json_syntax.brackets import MAX_DEPTH
 from roaml.json_syntax.layout import indented
-from roaml.json_syntax.parse import MAX_DEPTH, parse
+from roaml.json_syntax.parse import parse
 from roaml.json_syntax.strings import quote
 from roaml.json_syntax.values import (
     JsonArray,

@@ -15,6 +15,8 @@ from collections.abc import Iterator
 from typing import Any, NoReturn
 
 from roaml.diagnostics import Finding, Fix, Related
+from roaml.json_syntax.brackets import MAX_DEPTH, Bracket, PendingName
+from roaml.json_syntax.frequent import END, read_frequent
 from roaml.json_syntax.strings import quote, unescape
 from roaml.json_syntax.values import (
     JsonArray,
@@ -28,11 +30,8 @@ from roaml.json_syntax.values import (
     Member,
     Nulls,
 )
-from roaml.record import Record, replace
+from roaml.record import replace
 from roaml.text import Span, TextEdit
-
-MAX_DEPTH = 1000
-"""The maximum depth of nested brackets; a text with deeper brackets is not read further."""
 
 MAX_FINDINGS = 100
 """The maximum number of errors; a text with more is unlikely to be JSON and is not read further."""
@@ -59,23 +58,6 @@ _TOKEN = re.compile(
 """An ordinary token with the comma before it. Always matches; `lastindex` identifies the token."""
 _STRING, _KEY, _INTEGER, _REAL, _BOOL, _NULLS, _OPEN, _CLOSE = 2, 3, 4, 5, 6, 7, 8, 9
 
-_MEMBER = re.compile(
-    rf'{_SPACE}(?:(?:(,){_SPACE})?"([^"\\\x00-\x1f]*)"{_SPACE}:{_SPACE}(?:'
-    rf'"([^"\\\x00-\x1f]*)"(?!{_SPACE}:)'
-    r"|([\[{])"
-    r"|(-?(?:0|[1-9][0-9]{0,17}))(?![\w.+-])"
-    r"|(true|false)(?!\w)"
-    r")?|(\}))"
-)
-"""A frequent token of an object with the comma before it: a member, up to a bracket that opens; a name, if its value is
-of another kind; or the end."""
-_MEMBER_STRING, _MEMBER_OPEN, _MEMBER_INTEGER, _MEMBER_BOOL, _MEMBER_CLOSE = 3, 4, 5, 6, 7
-_ITEM = re.compile(
-    rf'{_SPACE}(?:(?:(,){_SPACE})?(?:"([^"\\\x00-\x1f]*)"(?!{_SPACE}:)|([\[{{])|(null(?:,null)*)(?!\w))|(\]))'
-)
-"""A frequent token of a list with the comma before it: an item, up to a bracket that opens; or the end."""
-_ITEM_STRING, _ITEM_OPEN, _ITEM_CLOSE = 2, 3, 5
-
 _COLON = re.compile(rf"{_SPACE}:")
 _ASSIGNMENT = re.compile(r"=>?")
 _NAME_AND_COLON = re.compile(r"([\w-]+)\s*:")
@@ -98,29 +80,6 @@ _FOREIGN_LITERALS = {"True": "true", "TRUE": "true", "False": "false", "FALSE": 
 _NO_NUMBERS = {"nan", "infinity", "inf"}
 
 
-class _Key(Record, frozen=True):
-    """The name of a member whose value has not been read yet. `quotes` are the lengths of the opening and closing
-    quote. `colon` is false until the colon after the name has been read."""
-
-    text: str
-    start: int
-    end: int
-    quotes: tuple[int, int] = (1, 1)
-    colon: bool = True
-
-    def member(self, value: JsonValue | None) -> Member:
-        return Member(self.text, self.start, self.end, value, self.quotes)
-
-
-class _Bracket(Record, frozen=True):
-    """An open bracket that is not the innermost one, with the state of the parser inside it."""
-
-    start: int
-    is_object: bool
-    parts: list[Any]
-    key: _Key | None
-
-
 class _HopelessError(Exception):
     """Ends the parsing of a text with too many errors; never leaves this module."""
 
@@ -129,6 +88,8 @@ class _Parser:
     """Reads one text.
 
     Attributes:
+        ended: the text and the character after it, for `read_frequent`.
+        words: names and strings that have been read, so that equal ones are one object.
         root: the value of the whole text, once it is complete.
         start, is_object, parts: the innermost open bracket and the values or members in it; outside of all brackets,
             the beginning of the text and the values in it.
@@ -141,14 +102,16 @@ class _Parser:
 
     def __init__(self, text: str) -> None:
         self.text = text
+        self.ended = text + END
+        self.words: dict[str, str] = {}
         self.findings: list[Finding] = []
         self.root: JsonValue | None = None
         self.start = 0
         self.is_object = False
         self.parts: list[Any] = []
-        self.key: _Key | None = None
+        self.key: PendingName | None = None
         self.wants_comma = False
-        self.stack: list[_Bracket] = []
+        self.stack: list[Bracket] = []
         self.comma = -1
         self.hopeless = False
 
@@ -198,37 +161,11 @@ class _Parser:
 
     def frequent(self, at: int) -> int:
         """Read the text inside a bracket as far as it is valid and consists of frequent tokens; return the offset after
-        it. This is a fast form of the methods below, which read all texts."""
-        text, match_member, match_item, stack = self.text, _MEMBER.match, _ITEM.match, self.stack
-        is_object, parts, key = self.is_object, self.parts, None
-        while token := (match_member if is_object else match_item)(text, at):
-            kind, end = token.lastindex, token.end()
-            if kind == (_MEMBER_CLOSE if is_object else _ITEM_CLOSE):
-                outer = stack[-1].key
-                if len(stack) == 1 or (outer is not None and not outer.colon):
-                    break
-                self.parts, self.key = parts, None
-                self.leave(end)
-                is_object, parts = self.is_object, self.parts
-            elif (token[1] is None) is bool(parts):
-                break
-            elif kind == (_MEMBER_OPEN if is_object else _ITEM_OPEN):
-                if len(stack) >= MAX_DEPTH:
-                    break
-                name = _Key(token[2], token.start(2) - 1, token.end(2) + 1) if is_object else None
-                stack.append(_Bracket(self.start, is_object, parts, name))
-                self.start, self.is_object = end - 1, text[end - 1] == "{"
-                is_object, parts = self.is_object, []
-            elif not is_object:
-                parts.append(_frequent_item(token, end))
-            elif (value := _frequent_value(token, end)) is not None:
-                parts.append(Member(token[2], token.start(2) - 1, token.end(2) + 1, value))
-            else:
-                key, at = _Key(token[2], token.start(2) - 1, token.end(2) + 1), end
-                break
-            at = end
-        self.parts, self.key = parts, key
-        self.wants_comma = key is None and bool(parts)
+        it."""
+        at, self.start, self.is_object, self.parts, self.key = read_frequent(
+            self.ended, at, self.stack, self.start, self.is_object, self.parts, self.words
+        )
+        self.wants_comma = self.key is None and bool(self.parts)
         return at
 
     # ---------------------------------------------------------------- structure
@@ -277,7 +214,7 @@ class _Parser:
             self.key_without_value()
         elif (comma >= 0) is not self.wants_comma:
             self.odd_comma(start, comma)
-        self.key = _Key(text, start, end, quotes)
+        self.key = PendingName(text, start, end, quotes)
         self.wants_comma = False
 
     def open(self, at: int, comma: int) -> None:
@@ -285,11 +222,11 @@ class _Parser:
             self.odd_comma(at, comma)
         if self.key is None and self.is_object:
             self.report(Span(at, at + 1), "a name is missing before this bracket")
-            self.key = _Key("", at, at, (0, 0))
+            self.key = PendingName("", at, at, (0, 0))
         if len(self.stack) >= MAX_DEPTH:
             self.report(Span(at, at + 1), f"nested too deeply: at most {MAX_DEPTH} brackets may be open")
             self.give_up()
-        self.stack.append(_Bracket(self.start, self.is_object, self.parts, self.key))
+        self.stack.append(Bracket(self.start, self.is_object, self.parts, self.key))
         self.start, self.is_object, self.parts = at, self.text[at] == "{", []
         self.key, self.wants_comma = None, False
 
@@ -370,7 +307,7 @@ class _Parser:
     def value_without_name(self, value: JsonValue) -> None:
         """Read a value where an object requires a name; a string is read as a name without a colon."""
         if isinstance(value, JsonString):
-            self.key, self.wants_comma = _Key(value.value, value.start, value.end, value.quotes, False), False
+            self.key, self.wants_comma = PendingName(value.value, value.start, value.end, value.quotes, False), False
             return
         self.parts.append(Member("", value.start, value.start, value, (0, 0)))
         self.wants_comma = True
@@ -514,26 +451,6 @@ class _Parser:
     def give_up(self) -> NoReturn:
         self.hopeless = True
         raise _HopelessError
-
-
-def _frequent_item(token: re.Match[str], end: int) -> JsonValue | Nulls:
-    """The item in a match of `_ITEM`, which ends at `end`."""
-    if token.lastindex == _ITEM_STRING:
-        return JsonString(token.start(2) - 1, end, token[2])
-    start = token.start(4)
-    return JsonNull(start, end) if end - start == len("null") else Nulls(start, end)
-
-
-def _frequent_value(token: re.Match[str], end: int) -> JsonValue | None:
-    """The value in a match of `_MEMBER`, which ends at `end`; `None` if the match contains only the name."""
-    kind = token.lastindex
-    if kind == _MEMBER_STRING:
-        return JsonString(token.start(3) - 1, end, token[3])
-    if kind == _MEMBER_INTEGER:
-        return JsonNumber(token.start(5), end, int(token[5]), token[5])
-    if kind == _MEMBER_BOOL:
-        return JsonBool(token.start(6), end, token[6] == "true")
-    return None
 
 
 def _insertion(at: int, inserted: str) -> Fix:

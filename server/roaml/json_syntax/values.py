@@ -5,13 +5,12 @@
   file has hundreds of thousands of values, and a second object for each would double the time to read them.)
 - A missing or unreadable value is a `JsonError` (or a `Member` without a value), so the rest of the tree stays usable;
   a finding contains the reason.
-- Values may nest up to `roaml.json_syntax.parse.MAX_DEPTH`: functions over trees must not recurse.
+- Values may nest up to `roaml.json_syntax.brackets.MAX_DEPTH`: functions over trees must not recurse.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TypeAlias
+from typing import TypeAlias, cast
 
 from roaml.record import Record
 from roaml.text import Span
@@ -65,6 +64,8 @@ class JsonArray(_Value, frozen=True):
     @property
     def items(self) -> tuple[JsonValue, ...]:
         """All items, with a value for each `null`. If there are runs of nulls, each call creates a new tuple."""
+        if Nulls not in map(type, self.parts):
+            return cast("tuple[JsonValue, ...]", self.parts)
         items: list[JsonValue] = []
         for part in self.parts:
             if isinstance(part, Nulls):
@@ -79,16 +80,21 @@ class JsonArray(_Value, frozen=True):
         return sum(part.count if isinstance(part, Nulls) else 1 for part in self.parts)
 
     @property
-    def items_but_nulls(self) -> Iterator[tuple[int, JsonValue]]:
+    def items_but_nulls(self) -> list[tuple[int, JsonValue]]:
         """The items that are not `null`, each with its index."""
+        items: list[tuple[int, JsonValue]] = []
         index = 0
         for part in self.parts:
-            if isinstance(part, Nulls):
-                index += part.count
+            if isinstance(part, JsonString):  # Nearly all items of synchronisation tables.
+                items.append((index, part))
+                index += 1
+            elif isinstance(part, Nulls):
+                index += (part.end - part.start + 1) // _NULL_AND_COMMA
             else:
                 if not isinstance(part, JsonNull):
-                    yield index, part
+                    items.append((index, part))
                 index += 1
+        return items
 
 
 class JsonString(_Value, frozen=True):
