@@ -7,6 +7,8 @@ import pickle
 from typing import Any
 
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 from smc_models import Json, answers, automaton, document, edge, model, op, probability, variable, way
 
 from roaml.explicit.plain import plain_kernel
@@ -175,3 +177,44 @@ def test_known_states_change_no_result(edges: list[Json]) -> None:
         outcome = run_on(simulator, task)
         results.append([(rows.verdicts, rows.ends, rows.steps, rows.rewards) for rows in outcome.questions])
     assert results[0] == results[1]
+
+
+@given(st.lists(st.lists(st.integers(0, 8), max_size=3), min_size=9, max_size=9), st.integers(0, 99))
+@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+def test_states_that_are_remembered_change_no_check(graph: list[list[int]], seed: int) -> None:
+    """Whether a state repeats does not depend on the states that were examined before: dead ends, exits, and states
+    that are in no set of a small number of states."""
+    edges = [
+        edge("a", way("a", 0.998, x=targets[i]), way("a", 0.002, x=targets[i - 1]), guard=op("=", "x", source))
+        for source, targets in enumerate(graph)
+        for i in range(len(targets))
+    ]
+    checker = ModelChecker(model(written(edges, f=probability(op("F", op("=", "x", 10))))))
+    compiled = checker.compiled(checker.compiled_properties[0])
+    simulator = kernel.Kernel(compiled.program, compiled.goal)
+    kept = Rounds(compiled)
+    for trace in range(12):
+        for limit in range(100, 1_200, 150):
+            results = []
+            for rounds in (Rounds(compiled), kept):
+                simulator.begin(seed, trace)
+                if simulator.advance(limit) == UNKNOWN and simulator.ending() == End.DECIDED:
+                    results.append((rounds.check(simulator, seed, trace), simulator.result(0), simulator.ending()))
+            assert results[1:] == results[:-1]
+
+
+def test_states_before_a_cycle_do_not_exclude_it() -> None:
+    """Some traces are examined before they enter the cycle of `c` and `e`, others afterwards."""
+    edges = [edge("a", "b"), edge("b", way("a", 0.998), way("c", 0.002)), edge("c", "e"), edge("e", "c")]
+    checker = ModelChecker(model(written(edges, f=probability(op("F", NEVER)))))
+    compiled = checker.compiled(checker.compiled_properties[0])
+    simulator = kernel.Kernel(compiled.program, compiled.goal)
+    kept = Rounds(compiled)
+    undecided = []
+    for trace in range(100):
+        simulator.begin(0, trace)
+        simulator.advance(1_000)
+        is_before = simulator.location(0) < 2
+        assert (kept.check(simulator, 0, trace) == UNKNOWN) == is_before
+        undecided.append(is_before)
+    assert 20 < sum(undecided) < 80

@@ -13,7 +13,8 @@ only on the model and on the trace.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+import sys
+from collections.abc import Iterable, Iterator, Mapping
 from math import prod
 from typing import TypeAlias
 
@@ -31,6 +32,9 @@ STEPS_PER_STATE = 100
 """The number of steps of the trace for each state that is collected at most."""
 MAX_SUCCESSORS = 1_000
 """The maximum number of combinations of edges and destinations in a state that is collected."""
+MAX_EXCLUDED = 10_000
+"""The number of states from which on no further ones are remembered as excluded."""
+ALWAYS = sys.maxsize
 
 State: TypeAlias = tuple[tuple[int, ...], tuple[int, ...], tuple[float, ...]]
 """The locations of the instances, and the values of the integer and real variables."""
@@ -64,12 +68,18 @@ class Recurrent(Record, frozen=True):
 
 
 class Rounds:
-    """Examines the traces of a model. The sets of states that it has found are kept for further traces."""
+    """Examines the traces of a model. The sets of states that it has found are kept for further traces.
+
+    States that are in no such set are *excluded*: a number `n` means that they are in none of at most `n` states,
+    `ALWAYS` that they are in none at all. A state is also excluded if an excluded one can be reached from it, because
+    the states that can be reached from a state of a set are exactly those of the set.
+    """
 
     def __init__(self, compiled: Compiled) -> None:
         self._compiled = compiled
         self._copy: Kernel | None = None
         self._known: dict[State, Recurrent] = {}
+        self._excluded: dict[State, int] = {}
 
     def check(self, kernel: Kernel, seed: int, trace: int) -> int:
         """The status of the goal; UNKNOWN if it can still be decided, or if nothing is known.
@@ -80,12 +90,14 @@ class Rounds:
         if self._copy is None:
             self._copy = Kernel(self._compiled.program, self._compiled.goal)
         steps = kernel.outcome()[0]
+        most = steps // STEPS_PER_STATE
         state = _state_of(kernel, self._compiled.program.instances)
+        if self._excluded.get(state, -1) >= most:
+            return UNKNOWN
         self._copy.begin(seed, trace)
         self._copy.restore(*state)
         if not self._copy.returns(steps // STEPS_PER_RETURN_STEP):
             return UNKNOWN
-        most = steps // STEPS_PER_STATE
         found = self._known.get(state) or self._collect(state, most)
         if found is None or found.size > most:
             return UNKNOWN
@@ -101,10 +113,15 @@ class Rounds:
         waiting = [start]
         while waiting:
             state = waiting.pop()
+            limit = ALWAYS if state in self._known else self._excluded.get(state, -1)
+            if limit >= most:
+                self._exclude(_reaching(state, before) - {state}, limit)
+                return None
             kernel.restore(*state)
             conditions.append(kernel.conditions())
             successors = self._successors(kernel, state)
             if not successors:
+                self._exclude(_reaching(state, before), ALWAYS)
                 return None
             for successor in successors:
                 if successor not in before:
@@ -112,15 +129,11 @@ class Rounds:
                     waiting.append(successor)
                 before[successor].append(state)
             if len(before) > most:
+                self._exclude(_reaching(start, before), most)
                 return None
-        reaching = {start}
-        waiting = [start]
-        while waiting:
-            for state in before[waiting.pop()]:
-                if state not in reaching:
-                    reaching.add(state)
-                    waiting.append(state)
+        reaching = _reaching(start, before)
         if len(reaching) < len(before):
+            self._exclude(reaching, ALWAYS)
             return None
         found = Recurrent(
             len(before),
@@ -129,6 +142,12 @@ class Rounds:
         )
         self._known.update(dict.fromkeys(before, found))
         return found
+
+    def _exclude(self, states: set[State], most: int) -> None:
+        """Remember that the states are in no set of at most `most` states."""
+        for state in states:
+            if state in self._excluded or len(self._excluded) < MAX_EXCLUDED:
+                self._excluded[state] = max(most, self._excluded.get(state, -1))
 
     def _successors(self, kernel: Kernel, state: State) -> set[State]:
         """The states to which a step can lead; none if a step has an error, or if there are too many."""
@@ -147,6 +166,18 @@ class Rounds:
                         return set()
                     successors.add(_state_of(kernel, instances))
         return successors
+
+
+def _reaching(target: State, before: Mapping[State, Iterable[State]]) -> set[State]:
+    """The states from which `target` can be reached, with `target`. `before`: the predecessors of each state."""
+    reaching = {target}
+    waiting = [target]
+    while waiting:
+        for state in before[waiting.pop()]:
+            if state not in reaching:
+                reaching.add(state)
+                waiting.append(state)
+    return reaching
 
 
 def _state_of(kernel: Kernel, instances: int) -> State:

@@ -68,6 +68,8 @@ BY_KERNEL = -1
 
 MAX_ROOTS = 4096
 """The maximum number of initial states whose nodes are known by the numbers of the states."""
+MAX_COMPARED = 4
+"""The number of probabilities up to which a random number is compared with each of them."""
 BLOCK = 16
 """The number of variables that are compared at once."""
 MAX_BYTES = 12 << 20
@@ -362,12 +364,17 @@ class TraceBatch(PackedStates):
             unit = (self._random(self.drawn) >> 11) * TO_UNIT
             low = 0
             high = sides - 1
-            while low < high:
+            while high - low > MAX_COMPARED:
                 middle = (low + high) // 2
                 if unit < self.reals[first + middle]:
                     high = middle
                 else:
                     low = middle + 1
+            # Without jumps, which a processor could not predict.
+            middle = low
+            while middle < high:
+                low += unit >= self.reals[first + middle]
+                middle += 1
             index = index * sides + low
             at += 2
         return at + self.width * index
