@@ -103,7 +103,7 @@ export function compatibility(stage: Stage): void {
             // Errors in the model are still reported, only by this extension.
             await rows.filter({ hasText: "there is no plugin `ill`" }).waitFor();
             await window.screenshot("harmony");
-            assert.equal(await rows.filter({ hasText: "xml-syntax" }).count(), 0);
+            await window.becomes(() => rows.filter({ hasText: "xml-syntax" }).count(), 0);
         },
     );
 

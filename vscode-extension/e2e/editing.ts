@@ -11,11 +11,7 @@ export function editing(stage: Stage): void {
         await window.openFile("battery.ascxml");
         await window.squiggles.first().waitFor();
         await window.goBehind("nodes/battery.ascxml", 'location="levl');
-        await window.press("Control+.");
-        const fix = window.page.locator(".action-widget .monaco-list-row", { hasText: "level" }).first();
-        await fix.waitFor();
-        await window.screenshot("quick-fix");
-        await window.press("Enter");
+        await window.quickFix("level", () => window.screenshot("quick-fix"));
         await window.squiggles.first().waitFor({ state: "detached" });
         await window.save();
         const file = path.join(window.folder, "nodes/battery.ascxml");
@@ -81,9 +77,8 @@ export function editing(stage: Stage): void {
             await window.openFile("battery.ascxml");
             await window.running();
             await window.goBehind("nodes/battery.ascxml", "std_msgs/UI");
-            await window.press("Control+K", "Control+I");
             const hover = window.page.locator(".monaco-hover:not(.hidden)", { hasText: "uint8 data" });
-            await hover.waitFor();
+            await window.repeat(() => window.press("Control+K", "Control+I"), hover);
             await window.screenshot("hover");
         },
     );
@@ -95,8 +90,8 @@ export function editing(stage: Stage): void {
             await window.openFile("tree.xml");
             await window.running();
             await window.goBehind("tree.xml", "<Deli");
-            await window.press("F12");
-            await window.page.locator('.tab.active[data-resource-name="deliver.ascxml"]').waitFor();
+            const definition = window.page.locator('.tab.active[data-resource-name="deliver.ascxml"]');
+            await window.repeat(() => window.press("F12"), definition);
             await window.statusItem("Ln 3").waitFor();
             await window.screenshot("definition");
         },
@@ -109,9 +104,7 @@ export function editing(stage: Stage): void {
             await window.openFile("battery.ascxml");
             await window.running();
             const lens = window.page.locator(".codelens-decoration a", { hasText: /^\d+ / }).first();
-            await lens.waitFor();
-            await lens.click();
-            await window.page.locator(".peekview-widget, .reference-zone-widget").first().waitFor();
+            await window.repeat(() => lens.click(), window.page.locator(".peekview-widget, .reference-zone-widget"));
             await window.screenshot("lens");
         },
     );
@@ -123,9 +116,8 @@ export function editing(stage: Stage): void {
             await window.openFile("charge.ascxml");
             await window.running();
             await window.goBehind("plugins/charge.ascxml", 'topic="/do');
-            await window.press("F2");
             const input = window.page.locator(".rename-box input");
-            await input.waitFor();
+            await window.repeat(() => window.press("F2"), input);
             await input.fill("/docking");
             await window.screenshot("rename");
             await window.press("Enter");
@@ -144,16 +136,14 @@ export function editing(stage: Stage): void {
         async (window) => {
             await window.openFile("main.xml");
             await window.running();
-            await window.run("AS2FM: New Node");
-            await window.page.locator(".quick-input-widget", { hasText: "Name of the new node" }).waitFor();
-            await window.press("Enter");
+            await window.runUntilAsked("AS2FM: New Node", "Name of the new node");
+            await window.answer("Name of the new node");
             await window.page.locator('.tab.active[data-resource-name="my_node.ascxml"]').waitFor();
             const text = fs.readFileSync(path.join(window.folder, "nodes/my_node.ascxml"), "utf8");
             assert.match(text, /<ascxml name="MyNode"/);
             // A file that belongs to no system is checked by itself. Its outline shows that the server has read it.
-            await window.run("Go to Symbol in Editor");
-            await window.page.locator(".quick-input-list", { hasText: "waiting" }).waitFor();
-            assert.equal(await window.squiggles.count(), 0);
+            await window.runUntilAsked("Go to Symbol in Editor", "waiting");
+            await window.becomes(() => window.squiggles.count(), 0);
         },
     );
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { kernel, sample, type Stage } from "./support/stage";
+import { INSTALLATION_TIMEOUT_MS } from "./support/window";
 
 export function firstStart(stage: Stage): void {
     stage.use({}, { installs: false });
@@ -12,9 +13,9 @@ export function firstStart(stage: Stage): void {
         await window.statusItem("AS2FM: not installed").waitFor();
         await window.screenshot("first-start");
         await offer.getByRole("button", { name: "Install" }).click();
-        await window.running();
+        await window.running(INSTALLATION_TIMEOUT_MS);
         await window.squiggles.first().waitFor();
-        assert.equal(await window.squiggles.count(), 1);
+        await window.becomes(() => window.squiggles.count(), 1);
         await window.run("View: Focus Problems");
         const problem = window.page.locator(".markers-panel .monaco-list-row", { hasText: "levle" });
         await problem.waitFor();

@@ -19,7 +19,7 @@ export function pictures(stage: Stage): void {
             await window.running();
             await window.run("AS2FM: Show State Machine");
             const picture = await window.picture();
-            assert.deepEqual(await labels(picture), ["driving", "charging"]);
+            await window.becomes(() => labels(picture), ["driving", "charging"]);
             assert.equal(await picture.locator(".scene .edge.is-ros").count(), 3);
             assert.equal(await picture.locator(".dot").count(), 1);
             assert.equal(await picture.locator("svg.picture .link .line").count(), 4);
@@ -34,7 +34,7 @@ export function pictures(stage: Stage): void {
             // Another machine is drawn when its editor becomes active. Edits are shown before they are saved.
             await window.openFile("building.ascxml");
             await picture.locator('.node[data-label="open"]').waitFor();
-            assert.equal(await picture.locator(".scene .edge.is-chance").count(), 2);
+            await window.becomes(() => picture.locator(".scene .edge.is-chance").count(), 2);
             await window.goBehind("nodes/building.ascxml", '<state id="open');
             await window.type("ed");
             await picture.locator('.node[data-label="opened"]').waitFor();
@@ -50,7 +50,7 @@ export function pictures(stage: Stage): void {
             await window.run("AS2FM: Show Behavior Tree");
             const picture = await window.picture();
             const names = ["ReactiveSequence", "ReactiveFallback", "BatteryAbove", "Charge", "Deliver"];
-            assert.deepEqual(await labels(picture), names);
+            await window.becomes(() => labels(picture), names);
             assert.match((await picture.locator('.node[data-label="Deliver"]').textContent()) ?? "", /parcels = 3/);
             assert.equal(await picture.locator(".link.is-child").count(), 4);
             await picture.locator('.node[data-label="Deliver"]').click();
@@ -68,13 +68,12 @@ export function pictures(stage: Stage): void {
             await window.run("AS2FM: Show ROS Graph");
             const picture = await window.picture();
             const machines = ["Battery", "Building", "BatteryAbove", "Charge", "Deliver"];
-            assert.deepEqual(await labels(picture), [...machines, "/battery", "/dock", "/parcels", "/hand_over"]);
+            await window.becomes(() => labels(picture), [...machines, "/battery", "/dock", "/parcels", "/hand_over"]);
             await window.screenshot("ros-graph");
-            await picture.locator("svg.picture").focus();
-            await window.press("/");
+            await picture.locator("svg.picture").press("/");
             await window.type("hand");
             await picture.locator('.node.found[data-label="/hand_over"]').waitFor();
-            assert.equal(await picture.locator(".node.found").count(), 1);
+            await window.becomes(() => picture.locator(".node.found").count(), 1);
             await window.screenshot("search");
             await window.press("Escape", "ArrowLeft");
             await picture.locator(".node.selected:not([data-label='/hand_over'])").waitFor();
@@ -100,16 +99,21 @@ export function pictures(stage: Stage): void {
             await menuItem(page, "Set as Initial State").waitFor({ state: "detached" });
             await window.screenshot("picture-menu");
             await chooseItem(window, "Add State…");
-            await answer(window, "The name of the new state", "resting");
+            await window.answer("The name of the new state", "resting");
             await picture.locator('.node[data-label="resting"]').waitFor();
 
             // The keyboard opens the menu of the selected node.
             await picture.locator('.node[data-label="resting"]').click();
             await window.statusItem("Ln 25, Col 5").waitFor();
-            await picture.locator("svg.picture").focus();
-            await window.press("Shift+F10");
-            await menuItem(page, "Add Transition…").waitFor();
-            await window.press("ArrowDown", "ArrowDown", "ArrowDown", "Enter");
+            const shortcut = () => picture.locator("svg.picture").press("Shift+F10");
+            await window.repeat(shortcut, menuItem(page, "Add Transition…"));
+            const focused = page.locator(".monaco-menu .action-item.focused", { hasText: "Add Transition…" });
+            await window.until(async () => {
+                if (await focused.isVisible()) return true;
+                await window.press("ArrowDown");
+                return false;
+            });
+            await window.press("Enter");
             await choose(window, "The target of the transition", "driving");
             await choose(window, "The trigger of the transition", "timer second");
             await picture.locator('[data-edges][aria-label^="resting → driving"]').first().waitFor();
@@ -122,7 +126,7 @@ export function pictures(stage: Stage): void {
             await page.locator(".quick-input-widget", { hasText: "The new name of" }).waitFor();
             await page.locator(".quick-input-widget input").first().fill("driving");
             await page.locator(".quick-input-widget", { hasText: "already exists" }).waitFor();
-            await answer(window, "The new name of", "idle");
+            await window.answer("The new name of", "idle");
             await picture.locator('.node[data-label="idle"]').waitFor();
 
             await picture.locator('.node[data-label="idle"]').click({ button: "right" });
@@ -133,8 +137,7 @@ export function pictures(stage: Stage): void {
             await picture.locator('.node[data-label="idle"]').waitFor({ state: "detached" });
 
             // Undo in the text restores the state.
-            await page.locator('.tab[data-resource-name="battery.ascxml"]').click();
-            await page.locator('.tab.active[data-resource-name="battery.ascxml"]').waitFor();
+            await window.clickTab("battery.ascxml");
             await window.press("Control+Z");
             await picture.locator('.node[data-label="idle"]').waitFor();
         },
@@ -151,13 +154,12 @@ export function pictures(stage: Stage): void {
         assert.equal(all.filter((label) => label === "Spin").length, VISITS);
 
         // The results are emphasised in the picture and in the map; the map does not cover the first one.
-        await picture.locator("svg.picture").focus();
-        await window.press("/");
+        await picture.locator("svg.picture").press("/");
         await window.type("dock");
         const results = picture.locator(".node.found");
         await results.first().waitFor({ state: "attached" });
-        assert.deepEqual(await labels(picture, ".node.found"), Array<string>(VISITS / 3).fill("DockRobot"));
-        assert.equal(await map.locator(".minimap-node.found").count(), VISITS / 3);
+        await window.becomes(() => labels(picture, ".node.found"), Array<string>(VISITS / 3).fill("DockRobot"));
+        await window.becomes(() => map.locator(".minimap-node.found").count(), VISITS / 3);
         const [result, corner] = [await results.first().boundingBox(), await map.boundingBox()];
         assert.ok(result && corner);
         assert.ok(result.x + result.width <= corner.x || result.y + result.height <= corner.y);
@@ -181,7 +183,7 @@ export function pictures(stage: Stage): void {
         await window.screenshot("large-tree-collapsed");
         await window.press("Space");
         await visit.filter({ hasNotText: "…" }).waitFor();
-        assert.deepEqual(await labels(picture), all);
+        await window.becomes(() => labels(picture), all);
     });
 
     stage.test(
@@ -202,9 +204,10 @@ export function pictures(stage: Stage): void {
             await menuItem(page, "Add Child…").waitFor();
             await window.screenshot("tree-menu");
             await chooseItem(window, "Add Child…");
+            await window.question("The node to add").waitFor();
             await page.locator(".quick-input-widget input").first().fill("RetryUntil");
             await choose(window, "The node to add", "RetryUntilSuccessful");
-            await answer(window, "num_attempts", "3");
+            await window.answer("num_attempts", "3");
             await nodeOf("RetryUntilSuccessful").filter({ hasText: "num_attempts = 3" }).waitFor();
             await window.screenshot("tree-actions");
 
@@ -220,7 +223,7 @@ export function pictures(stage: Stage): void {
             await nodeOf("Inverter").waitFor();
             await openMenu("Deliver");
             await chooseItem(window, "Set Name…");
-            await answer(window, "The name of the node", "last");
+            await window.answer("The name of the node", "last");
             await nodeOf("last : Deliver").waitFor();
             await openMenu("Inverter");
             await chooseItem(window, "Remove, Keep Children");
@@ -230,8 +233,7 @@ export function pictures(stage: Stage): void {
             await nodeOf("RetryUntilSuccessful").waitFor({ state: "detached" });
 
             // Each action is undone in the text.
-            await page.locator('.tab[data-resource-name="tree.xml"]').click();
-            await page.locator('.tab.active[data-resource-name="tree.xml"]').waitFor();
+            await window.clickTab("tree.xml");
             await window.press("Control+Z");
             await nodeOf("RetryUntilSuccessful").waitFor();
             await window.press("Control+Z");
@@ -282,12 +284,6 @@ async function chooseItem(window: Window, label: string): Promise<void> {
         if (await item.isVisible()) await item.click({ timeout: 1000 }).catch(() => undefined);
         return !(await item.isVisible());
     });
-}
-
-async function answer({ page }: Window, title: string, text: string): Promise<void> {
-    await page.locator(".quick-input-widget", { hasText: title }).waitFor();
-    await page.locator(".quick-input-widget input").first().fill(text);
-    await page.keyboard.press("Enter");
 }
 
 async function choose({ page }: Window, title: string, option: string): Promise<void> {

@@ -36,12 +36,12 @@ export function systems(stage: Stage): void {
             await line.waitFor();
             const shades = () => line.locator("span span").count();
             await window.until(async () => (await shades()) > 3);
-            await window.run("Go to Symbol in Editor");
             const symbols = window.page.locator(".quick-input-list .monaco-list-row");
-            await symbols.filter({ hasText: "topic_battery_msg.valid" }).first().waitFor();
+            const symbol = symbols.filter({ hasText: "topic_battery_msg.valid" });
+            await window.repeat(() => window.run("Go to Symbol in Editor"), symbol);
             await window.screenshot("translate");
-            await window.type("never_empty");
-            await symbols.filter({ hasText: "never_empty" }).first().waitFor();
+            await window.page.locator(".quick-input-widget input").first().fill("@never_empty");
+            await symbols.and(window.page.locator('.focused[aria-label*="never_empty"]')).waitFor();
             await window.press("Enter");
             await window.until(async () => (await window.caretLine(1)).includes('"name": "never_empty"'));
         },
@@ -66,8 +66,8 @@ export function systems(stage: Stage): void {
         await lens.waitFor();
         assert.equal(await window.page.locator(".codelens-decoration a", { hasText: /^Translate/ }).count(), 0);
         await window.screenshot("lens-errors");
-        await lens.click();
-        await window.page.locator('.tab.active[data-resource-name="battery.ascxml"]').waitFor();
+        const broken = window.page.locator('.tab.active[data-resource-name="battery.ascxml"]');
+        await window.repeat(() => lens.click(), broken);
         await window.statusItem("Ln 28, Col").waitFor();
         await window.notification("battery.ascxml:28: there is no variable").waitFor();
         await window.openFile("properties.jani");
@@ -109,12 +109,7 @@ export function systems(stage: Stage): void {
             assert.equal(await window.page.locator(".notification-list-item").count(), 0);
             await window.openFile("as2fm.toml");
             await window.goTo(2, 3);
-            await window.press("Control+.");
-            await window.page
-                .locator(".action-widget .monaco-list-row", { hasText: "Change to `ignore`" })
-                .first()
-                .waitFor();
-            await window.press("Enter");
+            await window.quickFix("Change to `ignore`");
             await window.squiggles.first().waitFor({ state: "detached" });
             await window.goTo(1, 1);
             await window.press("Shift+End", "Delete");
@@ -140,7 +135,7 @@ export function systems(stage: Stage): void {
         const boxes = window.page.locator(".view-overlays .unicode-highlight, .view-lines .unicode-highlight");
         await boxes.first().waitFor();
         await window.screenshot("unicode");
-        assert.equal(await boxes.count(), 1);
+        await window.becomes(() => boxes.count(), 1);
     });
 
     stage.test(
@@ -175,7 +170,7 @@ export function systems(stage: Stage): void {
         await window.run("View: Focus Problems");
         const rows = window.page.locator(".markers-panel .monaco-list-row", { hasText: "there is no variable" });
         await rows.first().waitFor();
-        assert.equal(await rows.count(), 1);
+        await window.becomes(() => rows.count(), 1);
     });
 
     stage.test("migration shows the changes and applies them", oldSystem, async (window) => {

@@ -48,14 +48,11 @@ export function themes(stage: Stage): void {
             await window.screenshot(`server-${theme}`, { x: 640, y: 560, width: 640, height: 200 });
             await window.screenshot(`open-${theme}`, { x: 0, y: 35, width: 800, height: 500 });
             await window.goBehind("nodes/battery.ascxml", 'location="levl');
-            await window.press("Control+.");
-            await page.locator(".action-widget .monaco-list-row", { hasText: "level" }).first().waitFor();
-            await window.screenshot(`fix-${theme}`, { x: 348, y: 260, width: 800, height: 500 });
-            await window.press("Enter");
+            const clip = { x: 348, y: 260, width: 800, height: 500 };
+            await window.quickFix("level", () => window.screenshot(`fix-${theme}`, clip));
             await window.squiggles.first().waitFor({ state: "detached" });
-            await window.run("AS2FM: Add Check to CI");
-            await page.locator(".quick-input-list", { hasText: "GitHub" }).waitFor();
-            await window.press("Enter");
+            await window.runUntilAsked("AS2FM: Add Check to CI", "GitHub");
+            await window.answer("GitHub");
             await page.locator('.tab.active[data-resource-name="as2fm.yml"]').waitFor();
             await window.editor.locator(".view-line", { hasText: "as2fm-lsp" }).first().waitFor();
             await window.screenshot(`ci-${theme}`, { x: 348, y: 35, width: 800, height: 500 });
@@ -77,7 +74,7 @@ export function themes(stage: Stage): void {
             await page.locator(".view-line", { hasText: '"jani-version"' }).waitFor();
             await window.notification("Wrote main.jani").waitFor();
             await window.run("Notifications: Clear All Notifications");
-            await page.locator('.tab[data-resource-name="main (laid out).jani"]').click();
+            await window.clickTab("main (laid out).jani");
             await window.run("Explorer: Focus on Outline View");
             const outline = page.locator(".pane", { has: page.locator(".outline-pane") });
             await outline.locator(".monaco-list-row", { hasText: "topic_battery_msg.valid" }).waitFor();

@@ -3,6 +3,7 @@ import * as fs from "node:fs";
 import * as path from "node:path";
 import { test } from "node:test";
 import { sample } from "./support/stage";
+import { INSTALLATION_TIMEOUT_MS } from "./support/window";
 import { temporaryFolder, Workbench, write } from "./support/workbench";
 
 export function withoutPython(): void {
@@ -47,7 +48,7 @@ async function install(
         await window.openFile("battery.ascxml");
         await window.notification("is not installed yet").getByRole("button", { name: "Install" }).click();
         await check(async (text, name) => {
-            await window.notification(text).waitFor();
+            await window.notification(text).waitFor({ timeout: INSTALLATION_TIMEOUT_MS });
             await window.screenshot(name);
         });
     } finally {

@@ -10,7 +10,10 @@ import * as esbuild from "esbuild";
 
 const here = fileURLToPath(new URL("..", import.meta.url));
 execFileSync("sh", [path.join(here, "e2e/workbench/setup.sh")], { stdio: "inherit" });
-if (!fs.existsSync(path.join(here, "as2fm.vsix"))) throw new Error("as2fm.vsix is missing: npm run package");
+const packaged = path.join(here, "as2fm.vsix");
+if (!fs.existsSync(packaged)) throw new Error("as2fm.vsix is missing: npm run package");
+const newer = changedSince(fs.statSync(packaged).mtimeMs);
+if (newer) throw new Error(`as2fm.vsix is older than ${newer}: npm run package`);
 const out = path.join(here, "out", "e2e");
 fs.rmSync(out, { recursive: true, force: true });
 const [first, ...others] = process.argv.slice(2);
@@ -44,3 +47,14 @@ if (done.status === 0 && first === "--pictures") {
     }
 }
 process.exit(done.status ?? 1);
+
+/** A source of the package that has changed since a time in ms; undefined if there is none. */
+function changedSince(time) {
+    for (const folder of ["src", "syntaxes", "../server", "../schemas"]) {
+        for (const name of fs.readdirSync(path.join(here, folder), { recursive: true, encoding: "utf8" })) {
+            const file = path.join(here, folder, name);
+            if (/\.(ts|css|json|py|pxd|xsd|toml)$/.test(name) && fs.statSync(file).mtimeMs > time) return file;
+        }
+    }
+    return undefined;
+}

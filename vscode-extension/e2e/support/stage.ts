@@ -4,8 +4,8 @@ import * as fs from "node:fs";
 import * as path from "node:path";
 import { setTimeout as wait } from "node:timers/promises";
 import { after, afterEach, before, test } from "node:test";
-import { isDeepStrictEqual } from "node:util";
-import type { Window } from "./window";
+import { inspect, isDeepStrictEqual } from "node:util";
+import { INSTALLATION_TIMEOUT_MS, type Window } from "./window";
 import { EXTENSION } from "./paths";
 import { temporaryFolder, Workbench, type Options } from "./workbench";
 
@@ -57,7 +57,7 @@ export class Stage {
         const offer = window.notification("is not installed yet").getByRole("button", { name: "Install" });
         await offer.or(window.squiggles).first().waitFor();
         if (await offer.isVisible()) await offer.click();
-        await window.running();
+        await window.running(INSTALLATION_TIMEOUT_MS);
         await kernel(this.workbench.home);
         await this.workbench.leave();
     }
@@ -75,7 +75,8 @@ export class Stage {
         test(name, async () => {
             try {
                 await this.attempt(name, folder, run);
-            } catch {
+            } catch (error) {
+                console.log(`the first attempt of "${name}" failed: ${inspect(error)}`);
                 await this.attempt(name, folder, run);
             }
         });

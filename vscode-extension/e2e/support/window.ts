@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /** The actions of a user in a window of VS Code, and the visible results. Waits for visible text, never for a time. */
 
+import assert from "node:assert/strict";
 import * as fs from "node:fs";
 import * as path from "node:path";
+import { isDeepStrictEqual } from "node:util";
 import type { Frame, Locator, Page } from "playwright-core";
 import { OUTPUT } from "./paths";
 
@@ -17,10 +19,12 @@ export class Window {
         const { page } = this;
         const base = path.basename(name);
         // The list shows the files of the moment at which it opens. A file that was written just now may be missing.
-        await this.quickOpen("Control+P", name, `.quick-input-list .focused[aria-label*="${base}"]`);
-        await page.keyboard.press("Enter");
-        await page.locator(`.tab.active[data-resource-name="${base}"]`).first().waitFor();
-        await this.editor.locator(".view-line").first().waitFor();
+        const tab = page.locator(`.tab.active[data-resource-name="${base}"]`).first();
+        const focused = this.focusedEditor.locator(".view-line").first();
+        await this.until(async () => {
+            await this.quickOpen("Control+P", name, `.quick-input-list .focused[aria-label*="${base}"]`);
+            return (await this.enter()) && (await isShown(tab)) && (await isShown(focused));
+        });
     }
 
     /**
@@ -28,8 +32,48 @@ export class Window {
      * is opened again until the command is enabled, for example after the server has classified the file.
      */
     async run(title: string): Promise<void> {
-        await this.quickOpen("F1", `>${title}`, `.quick-input-list .focused[aria-label^="${title}"]`);
+        await this.until(async () => {
+            await this.quickOpen("F1", `>${title}`, `.quick-input-list .focused[aria-label^="${title}"]`);
+            return await this.enter();
+        });
+    }
+
+    /** Runs a command by its title until its quick input is visible. A view that gets the focus late closes it. */
+    async runUntilAsked(title: string, question: string): Promise<void> {
+        await this.repeat(() => this.run(title), this.question(question));
+    }
+
+    question(text: string): Locator {
+        return this.page.locator(".quick-input-widget", { hasText: text });
+    }
+
+    /** Enters a text, or accepts the suggested one, in the quick input that asks a question. */
+    async answer(question: string, text?: string): Promise<void> {
+        await this.question(question).waitFor();
+        if (text !== undefined) await this.page.locator(".quick-input-widget input").first().fill(text);
+        await this.quickInputFocus.first().waitFor();
         await this.page.keyboard.press("Enter");
+    }
+
+    private get quickInputFocus(): Locator {
+        return this.page.locator(".quick-input-widget :focus");
+    }
+
+    /** Presses Enter if the quick input has the focus; otherwise the key would change the text of an editor. */
+    private async enter(): Promise<boolean> {
+        if (!(await this.quickInputFocus.first().isVisible())) return false;
+        await this.page.keyboard.press("Enter");
+        return true;
+    }
+
+    /** Repeats an action that has no effect when it is lost, and the same effect when it is done twice, until its
+     * result is visible. */
+    async repeat(action: () => Promise<unknown>, result: Locator): Promise<void> {
+        await this.until(async () => {
+            if (await result.first().isVisible()) return true;
+            await action();
+            return await isShown(result.first());
+        });
     }
 
     /**
@@ -44,8 +88,8 @@ export class Window {
             await page.keyboard.press(key);
             const isAnswered = await page
                 .locator(".quick-input-widget input")
-                .fill(text, { timeout: REOPENING_MS })
-                .then(() => shown.or(none).first().waitFor({ timeout: REOPENING_MS }))
+                .fill(text, { timeout: REPETITION_MS })
+                .then(() => shown.or(none).first().waitFor({ timeout: REPETITION_MS }))
                 .then(
                     () => true,
                     () => false,
@@ -58,18 +102,21 @@ export class Window {
 
     /** The titles in the palette that match a text. */
     async commands(text: string): Promise<string[]> {
-        await this.quickOpen("F1", `>${text}`, ".quick-input-list .monaco-list-row");
-        const rows = await this.page.locator(".quick-input-list .monaco-list-row").all();
-        const labels = await Promise.all(rows.map((row) => row.getAttribute("aria-label")));
+        await this.quickOpen("F1", `>${text}`, `.quick-input-list .focused[aria-label^="${text}"]`);
+        const rows = this.page.locator(".quick-input-list .monaco-list-row");
+        const labels = await rows.evaluateAll((rows) => rows.map((row) => row.getAttribute("aria-label") ?? ""));
         await this.page.keyboard.press("Escape");
-        return labels.map((label) => label ?? "");
+        return labels;
     }
 
     /** Moves the caret to a line and column, counted from 1. */
     async goTo(line: number, column = 1): Promise<void> {
-        await this.quickOpen("Control+G", `:${line}:${column}`, ".quick-input-list .monaco-list-row");
-        await this.page.keyboard.press("Enter");
-        await this.statusItem(`Ln ${line}, Col ${column}`).waitFor();
+        const place = this.statusItem(`Ln ${line}, Col ${column}`);
+        const row = `.quick-input-list .monaco-list-row[aria-label*="${line}"]`;
+        await this.until(async () => {
+            await this.quickOpen("Control+G", `:${line}:${column}`, row);
+            return (await this.enter()) && (await isShown(place)) && (await isShown(this.focusedEditor));
+        });
     }
 
     /** Moves the caret after the first occurrence of a text in a file of the workspace. */
@@ -92,6 +139,29 @@ export class Window {
             .first();
     }
 
+    /** The editor whose text has the focus. */
+    get focusedEditor(): Locator {
+        return this.page.locator(".editor-group-container.active .monaco-editor.focused").first();
+    }
+
+    /** Shows an open file by a click on its tab, and waits until keys reach its text. */
+    async clickTab(name: string): Promise<void> {
+        const tab = this.page.locator(`.tab[data-resource-name="${name}"]`);
+        const active = this.page.locator(`.tab.active[data-resource-name="${name}"]`).first();
+        await this.until(async () => {
+            await tab.first().click();
+            return (await isShown(active)) && (await isShown(this.focusedEditor));
+        });
+    }
+
+    /** Opens the list of quick fixes at the caret and applies the one with a text. */
+    async quickFix(text: string, picture?: () => Promise<void>): Promise<void> {
+        const fix = this.page.locator(".action-widget .monaco-list-row", { hasText: text }).first();
+        await this.repeat(() => this.press("Escape", "Control+."), fix);
+        await picture?.();
+        await this.press("Enter");
+    }
+
     get squiggles(): Locator {
         return this.page.locator(".squiggly-error");
     }
@@ -110,8 +180,19 @@ export class Window {
     }
 
     /** Waits until the language server runs. */
-    async running(): Promise<void> {
-        await this.statusItem("AS2FM: 0.1.0").waitFor();
+    async running(timeout = TIMEOUT_MS): Promise<void> {
+        await this.statusItem("AS2FM: 0.1.0").waitFor({ timeout });
+    }
+
+    /** Waits until a value that is read from the page equals another one. */
+    async becomes(get: () => Promise<unknown>, expected: unknown): Promise<void> {
+        let value: unknown;
+        await this.until(async () => {
+            value = await get();
+            return isDeepStrictEqual(value, expected);
+        }).catch(() => {
+            assert.deepEqual(value, expected);
+        });
     }
 
     /** Waits for a condition that is not visible on the page; resolves to its value. */
@@ -185,11 +266,22 @@ export interface Clip {
     readonly height: number;
 }
 
-/** The time limit for all waits, in ms. It only prevents an endless wait; creating an environment may take minutes. */
-export const TIMEOUT_MS = 300_000;
+/** The time limit for a wait, in ms. It only prevents an endless wait. */
+export const TIMEOUT_MS = 120_000;
 
-/** The time after which the quick input is opened again if it is closed or does not show the expected row. */
-const REOPENING_MS = 20_000;
+/** The time limit for the installation of the server, in ms. Creating an environment may take minutes. */
+export const INSTALLATION_TIMEOUT_MS = 300_000;
+
+/** The time after which an action is repeated if its result is not visible, in ms. */
+const REPETITION_MS = 20_000;
+
+/** Whether an element becomes visible before the action that shows it should be repeated. */
+function isShown(element: Locator): Promise<boolean> {
+    return element.waitFor({ timeout: REPETITION_MS }).then(
+        () => true,
+        () => false,
+    );
+}
 
 /** A text with the spaces that the editor draws. */
 function plain(text: string): string {
