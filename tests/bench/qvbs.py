@@ -14,9 +14,10 @@ import conformance
 from bench.report import Benchmark, Row, median, seconds
 
 FOLDER = conformance.ROOT.parent / "qvbs"
-TRACES = 2_000
-TIMEOUT_S = 120
-"""The wall time in s after which a command is ended."""
+COUNTS = (2_000, 100_000)
+"""The numbers of traces that are measured; each also without the time of one trace."""
+TIMEOUT_S, TRACES_TIMEOUT_S = 120, 60
+"""The wall time in s after which a command is ended; of those that generate traces."""
 REPETITIONS, LONG_S = 3, 3
 """The number of calls of which the cheapest is shown; a call that takes more CPU time than LONG_S, in s, is not
 repeated."""
@@ -28,7 +29,7 @@ KINDS = ("dtmc", "mdp")
 
 
 class Command(NamedTuple):
-    """A call of `as2fm-lsp verify`: its CPU time in s, its exit status, -1 if it was ended after `TIMEOUT_S`, and its
+    """A call of `as2fm-lsp verify`: its CPU time in s, its exit status (-1 if it took too long), and its
     output."""
 
     processor: float
@@ -36,7 +37,7 @@ class Command(NamedTuple):
     output: str
 
 
-def verify(*arguments: str) -> Command:
+def verify(*arguments: str, timeout_s: int = TIMEOUT_S) -> Command:
     """Call `as2fm-lsp verify` with results in JSON."""
     command = [sys.executable, "-m", "as2fm_lsp", "verify", "--format", "json", *arguments]
     with subprocess.Popen(
@@ -44,11 +45,11 @@ def verify(*arguments: str) -> Command:
     ) as process:
         before = os.times()
         try:
-            output, _ = process.communicate(timeout=TIMEOUT_S)
+            output, _ = process.communicate(timeout=timeout_s)
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
             process.communicate()
-            return Command(TIMEOUT_S, -1, "")
+            return Command(timeout_s, -1, "")
     after = os.times()
     spent = after.children_user + after.children_system - before.children_user - before.children_system
     return Command(spent, process.returncode, output)
@@ -72,43 +73,61 @@ def asked(name: str, model: Any) -> str:
     return str(known[0] if known else model["properties"][0]["name"])
 
 
-def best(name: str, property_: str, count: int) -> Command:
+def best(name: str, property_: str, count: int, *scheduler: str) -> Command:
     """The cheapest call that generates a number of traces for a property of a model."""
-    options = ("--method", "fixed", "--max-traces", str(count), "--jobs", "1", "--scheduler", "uniform")
+    options = ("--method", "fixed", "--max-traces", str(count), "--jobs", "1", *scheduler)
     calls: list[Command] = []
     while len(calls) < REPETITIONS and (not calls or calls[-1].processor < LONG_S):
-        calls.append(verify(str(FOLDER / f"{name}.jani"), "--property", property_, *options))
+        calls.append(
+            verify(str(FOLDER / f"{name}.jani"), "--property", property_, *options, timeout_s=TRACES_TIMEOUT_S)
+        )
     return min(calls, key=lambda call: call.processor)
 
 
-def traces() -> list[Row]:
-    """The CPU time of 2,000 traces for one property of each model, and the part that exceeds the time of one trace."""
+def traces(*scheduler: str) -> list[Row]:
+    """The CPU time of the traces for one property of each model, and the part that exceeds the time of one trace."""
     if not FOLDER.is_dir():
         return []
-    rows, whole, net = [], [], []
+    label = "QVBS traces" if scheduler else "QVBS traces, default scheduler"
+    rows = []
+    whole: dict[int, list[float]] = {count: [] for count in COUNTS}
+    net: dict[int, list[float]] = {count: [] for count in COUNTS}
     for name, model in models().items():
         if model["type"] not in KINDS:
             continue
         property_ = asked(name, model)
-        one, last = (best(name, property_, count) for count in (1, TRACES))
-        if last.status not in (0, 1):
-            why = f"more than {TIMEOUT_S} s" if last.status < 0 else f"ended with {last.status}"
-            rows.append(Row("QVBS traces", why, "", f"{name}, {property_}"))
-            continue
-        results = json.loads(last.output)["results"]
-        if not results or results[0].get("traces") is None:
-            rows.append(Row("QVBS traces", "not answered", "", f"{name}, {property_}"))
-            continue
-        whole.append(last.processor)
-        net.append(last.processor - one.processor)
-        steps = results[0]["steps"] / max(1, results[0]["traces"])
-        value = f"{seconds(whole[-1])} whole, {seconds(net[-1])} net"
-        rows.append(Row("QVBS traces", value, "", f"{name}, {property_}, {steps:,.0f} steps in a trace"))
-    if whole:
-        value = f"{seconds(median(whole))} whole, {seconds(median(net))} net"
-        how = f"median of {len(whole)} models: CPU time of {TRACES:,} traces, minimum of 3; net of a run of one trace"
-        rows.append(Row("QVBS traces", value, "", how))
+        one = best(name, property_, 1, *scheduler)
+        figures, length = [f"{seconds(one.processor)} for 1"], ""
+        for count in COUNTS:
+            call = best(name, property_, count, *scheduler)
+            if call.status not in (0, 1):
+                why = f"more than {TRACES_TIMEOUT_S} s" if call.status < 0 else f"ended with {call.status}"
+                figures.append(f"{why} for {count:,}")
+                if call.status < 0:
+                    # A model that takes too long is among the slowest ones.
+                    whole[count].append(TRACES_TIMEOUT_S)
+                    net[count].append(TRACES_TIMEOUT_S)
+                continue
+            results = json.loads(call.output)["results"]
+            if not results or results[0].get("traces") is None:
+                figures.append("not answered")
+                break
+            whole[count].append(call.processor)
+            net[count].append(call.processor - one.processor)
+            length = f", {results[0]['steps'] / max(1, results[0]['traces']):,.0f} steps in a trace"
+            figures.append(f"{seconds(call.processor)} for {count:,}")
+        rows.append(Row(label, "; ".join(figures), "", f"{name}, {property_}{length}"))
+    for count in COUNTS:
+        if whole[count]:
+            value = f"{seconds(median(whole[count]))} whole, {seconds(median(net[count]))} net"
+            how = f"median of {len(whole[count])} models: CPU time of {count:,} traces, minimum of {REPETITIONS}"
+            rows.append(Row(label, value, "", f"{how}; net of a run of one trace"))
     return rows
+
+
+def uniform_traces() -> list[Row]:
+    """The CPU time of traces under uniform choices."""
+    return traces("--scheduler", "uniform")
 
 
 def exact() -> list[Row]:
@@ -150,4 +169,8 @@ def _exact(call: Command, known: float | None) -> tuple[str, str]:
     return text, f"{target}, {error:.1g} apart" + ("" if error <= STORM else ", NOT AS EXPECTED")
 
 
-BENCHMARKS: dict[str, Benchmark] = {"qvbs-traces": traces, "qvbs-exact": exact}
+BENCHMARKS: dict[str, Benchmark] = {
+    "qvbs-traces": uniform_traces,
+    "qvbs-traces-default": traces,
+    "qvbs-exact": exact,
+}
