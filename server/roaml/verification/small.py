@@ -24,7 +24,7 @@ from roaml.verification.results import Exact
 MAX_SMALL_STATES = 20_000
 MAX_STATES_AT_FIRST = 2_000
 """The maximum number of states that are explored before choices are left out."""
-LIMITS = StateLimits(states=MAX_SMALL_STATES, bytes=4 << 30, combinations=4_096, transitions=200_000, work=30_000_000)
+LIMITS = StateLimits(states=MAX_SMALL_STATES, bytes=4 << 30, combinations=4_096, transitions=200_000, work=100_000_000)
 MAX_REDUCED_TRANSITIONS = 100_000
 """The maximum number of transitions of the search that leaves choices out. Each of them takes longer."""
 EXAMPLE_TRACES = 200
