@@ -9,107 +9,32 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from compared_spaces import ALL, both, check, is_smaller
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from loose_networks import STUCK_AUTOMATON, STUCK_LOCATION, messages, networks
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 from smc_random import networks as entangled_networks
 
-import conformance
 from as2fm_lsp.cli.main import run
 from as2fm_lsp.verification import exact_report
 from examples import examples
-from roaml import api
 from roaml.explicit.independence import can_be_reduced
-from roaml.explicit.path import PathRecorder, shortest
 from roaml.explicit.plain import plain_kernel, plain_search
-from roaml.explicit.space import LimitError, Space, StateLimits, explore
+from roaml.explicit.space import StateLimits, explore
 from roaml.explicit.values import values_of
-from roaml.jani.reader import read_model
-from roaml.json_syntax import parse
 from roaml.smc.end import End
-from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
-from roaml.smc.kernel import Kernel
 from roaml.smc.model import ModelChecker
-from roaml.smc.program import FALSE, TRUE, UNKNOWN
-from roaml.smc.record import SELECTED, Recording
 from roaml.verification.exhaustive import UndecidedError, exact_values
 from roaml.verification.results import Exact
-from roaml.verification.verifier import checker_of
 
-TOLERANCE = 2e-8
 MARKS = {(STUCK_AUTOMATON, STUCK_LOCATION): End.STUCK}
 
 
 def question_of(written: Json, *, is_stuck: bool = False) -> tuple[ModelChecker, CompiledProperty]:
     checker = ModelChecker(model(written), marks=MARKS, includes_stuck=True)
     return checker, checker.compiled_properties[-1 if is_stuck else 0]
-
-
-ALL = StateLimits()
-INTERFACES = str(conformance.ROOT / "interfaces")
-
-
-def both(
-    checker: ModelChecker, property_: CompiledProperty, modules: Any = None, limits: StateLimits = ALL
-) -> tuple[Space, Space] | None:
-    """The whole space and the reduced one; `None` if the property cannot be reduced."""
-    compiled = checker.compiled(property_)
-    if not can_be_reduced(compiled.program, compiled.goal):
-        return None
-    whole = explore(checker, property_, limits, modules=modules)
-    return whole, explore(checker, property_, limits, modules=modules, is_reduced=True)
-
-
-def is_smaller(whole: Space, reduced: Space) -> bool:
-    return reduced.problem is None and reduced.states < whole.states
-
-
-def replay(space: Space, verdict: int) -> None:
-    """Check that the steps of a trace can be taken one after the other, and that it has the verdict at its end, and not
-    before."""
-    path = shortest(space, verdict)
-    assert path is not None
-    compiled = space.checker.compiled(space.compiled_property)
-    kernel, deadlock = Kernel(compiled.program, compiled.goal), Kernel(compiled.program, compiled.goal)
-    status = kernel.begin(0, 0)
-    for step in path.steps:
-        assert status == UNKNOWN
-        possible = {vector: edges for vector, _, edges in kernel.choices()}
-        assert step.vector in possible
-        for pick, target, edges in zip(step.edges, step.ways, possible[step.vector], strict=True):
-            assert edges[pick][target] > 0
-        assert kernel.go(*step) == UNKNOWN
-        status = kernel.look()
-        if compiled.goal.is_bounded == 2:  # the kernel looks again only if a variable has changed
-            places = [kernel.location(instance) for instance in range(compiled.program.instances)]
-            deadlock.restore(places, *kernel.snapshot())
-            status = deadlock.look()
-    if status == UNKNOWN:
-        assert kernel.ended()
-        status = kernel.close()
-    assert status == verdict
-    recording = Recording(SELECTED)
-    assert len(list(PathRecorder(space.checker, space.compiled_property, path).walk(recording))) == len(path.steps)
-    assert recording.verdict == verdict
-
-
-def check(whole: Space, reduced: Space) -> None:
-    assert (reduced.problem is None) == (whole.problem is None)
-    if whole.problem is not None:
-        return
-    assert reduced.states <= whole.states
-    assert reduced.can_get_stuck == whole.can_get_stuck
-    ours, expected = values_of(reduced), values_of(whole)
-    for name in ("minimum", "maximum"):
-        one, other = getattr(ours, name), getattr(expected, name)
-        assert one.lower - TOLERANCE <= other.upper, name
-        assert other.lower - TOLERANCE <= one.upper, name
-    for verdict in (FALSE, TRUE):
-        assert (shortest(reduced, verdict) is None) == (shortest(whole, verdict) is None)
-        if shortest(reduced, verdict) is not None:
-            replay(reduced, verdict)
 
 
 def test_reduced_spaces_have_the_same_answers() -> None:
@@ -303,40 +228,6 @@ def test_two_machines_that_only_work_form_no_trace_without_an_end(path: str) -> 
     check(*spaces)
     assert values_of(spaces[1]).minimum.upper == 0.0
     assert values_of(spaces[1]).maximum.lower == 1.0
-
-
-@pytest.mark.parametrize("path", conformance.systems(), ids=conformance.label)
-def test_systems(path: Path) -> None:
-    """Systems have the same answers, and most of them far fewer states."""
-    checker = checker_of(api.target(str(path), [INTERFACES]))
-    for property_ in checker.compiled_properties:
-        own = checker.reduced(property_)
-        question = property_ if own is checker else own.compiled_properties[0]
-        try:
-            spaces = both(own, question, limits=StateLimits(states=20_000))
-        except LimitError:
-            continue
-        if spaces is not None:
-            check(*spaces)
-
-
-@pytest.mark.parametrize("path", sorted((conformance.ROOT.parent / "qvbs").glob("*.jani")), ids=lambda path: path.stem)
-def test_benchmarks(path: Path) -> None:
-    """Models of the Quantitative Verification Benchmark Set have the same answers."""
-    value, _ = parse(path.read_text(encoding="utf-8"))
-    read, _ = read_model(value, str(path))
-    assert read is not None
-    try:
-        checker = ModelChecker(read)
-    except FaultError:
-        return
-    for property_ in checker.compiled_properties:
-        try:
-            spaces = both(checker, property_, limits=StateLimits(states=3_000))
-        except LimitError:
-            continue
-        if spaces is not None:
-            check(*spaces)
 
 
 @pytest.mark.parametrize(

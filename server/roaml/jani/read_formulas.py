@@ -91,7 +91,7 @@ class FormulaReader(ValueSource):
     def lvalue(self, value: JsonValue) -> LValue:
         """The target of an assignment in `value`; `Missing` and a finding if it is not a valid target."""
         target = self.expression(value)
-        if type(target) is Name:  # Most targets; the general test takes ten times as long.
+        if type(target) is Name:  # Most targets; the general test takes longer.
             return target
         if isinstance(target, LValue) and isinstance(_root(target), (Name, Missing)):
             return target
