@@ -3,20 +3,18 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import shutil
 import textwrap
 from collections.abc import Iterator
-from importlib.machinery import SourceFileLoader
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+from roaml.explicit.plain import plain_module
 from roaml.json_syntax import (
     MAX_DEPTH,
     JsonArray,
@@ -536,20 +534,10 @@ def test_the_fast_form_agrees_with_the_general_one(text: str) -> None:
 
 def test_is_compiled_where_there_is_a_compiler() -> None:
     assert frequent.compiled() or shutil.which("cc") is None, "pip install -e . compiles it"
+    assert not PLAIN.compiled()
 
 
-def plain_frequent() -> ModuleType:
-    """The module of frequent tokens as plain Python, even if it is compiled."""
-    loader = SourceFileLoader("plain_frequent", str(Path(frequent.__file__).with_name("frequent.py")))
-    spec = importlib.util.spec_from_loader("plain_frequent", loader)
-    assert spec is not None
-    module = importlib.util.module_from_spec(spec)
-    loader.exec_module(module)
-    assert not module.compiled()
-    return module
-
-
-PLAIN = plain_frequent()
+PLAIN = plain_module("plain_frequent", Path(frequent.__file__).with_name("frequent.py"))
 
 
 @given(BRACKETS)

@@ -17,19 +17,19 @@ from roaml.smc import packing
 @cache
 def plain_kernel() -> ModuleType:
     """The module of the kernel as plain Python, even if the kernel is compiled."""
-    return _loaded("plain_kernel", Path(roaml.smc.__file__).with_name("kernel.py"))
+    return plain_module("plain_kernel", Path(roaml.smc.__file__).with_name("kernel.py"))
 
 
 @cache
 def plain_counts() -> ModuleType:
     """The module that counts results as plain Python, even if it is compiled."""
-    return _loaded("plain_counts", Path(roaml.smc.__file__).with_name("counts.py"))
+    return plain_module("plain_counts", Path(roaml.smc.__file__).with_name("counts.py"))
 
 
 @cache
 def plain_packing() -> ModuleType:
     """The module of packed states as plain Python, even if it is compiled. It needs a plain kernel."""
-    return _loaded("plain_packing", Path(roaml.smc.__file__).with_name("packing.py"))
+    return plain_module("plain_packing", Path(roaml.smc.__file__).with_name("packing.py"))
 
 
 @cache
@@ -47,15 +47,15 @@ def plain_search() -> ModuleType:
 @cache
 def plain_ample() -> ModuleType:
     """The module of ample sets as plain Python, even if it is compiled."""
-    return _loaded("plain_ample", Path(__file__).with_name("ample.py"))
+    return plain_module("plain_ample", Path(__file__).with_name("ample.py"))
 
 
 @cache
 def plain_solver() -> ModuleType:
     """The module of the solver as plain Python, even if the solver is compiled. It uses `elimination` as plain Python,
     too."""
-    module = _loaded("plain_solver", Path(__file__).with_name("solver.py"))
-    elimination = _loaded("plain_elimination", Path(__file__).with_name("elimination.py"))
+    module = plain_module("plain_solver", Path(__file__).with_name("solver.py"))
+    elimination = plain_module("plain_elimination", Path(__file__).with_name("elimination.py"))
     module.SmallProcess = elimination.SmallProcess  # type: ignore[attr-defined]
     return module
 
@@ -65,12 +65,13 @@ def _on_plain_packing(name: str, path: Path) -> ModuleType:
     plain = plain_packing()
     sys.modules[packing.__name__] = plain
     try:
-        return _loaded(name, path)
+        return plain_module(name, path)
     finally:
         sys.modules[packing.__name__] = packing
 
 
-def _loaded(name: str, path: Path) -> ModuleType:
+def plain_module(name: str, path: Path) -> ModuleType:
+    """The module in a file, as plain Python even if it is compiled."""
     loader = SourceFileLoader(name, str(path))
     spec = importlib.util.spec_from_loader(name, loader)
     assert spec is not None

@@ -66,10 +66,8 @@ def read_frequent(
             if value is None:
                 break
             stack.pop()
-            key = outer.key
             start, is_object, parts, at = outer.start, outer.is_object, outer.parts, here + 1
-            parts.append(value if key is None else Member(key.text, key.start, key.end, value, key.quotes))
-            key = None
+            parts.append(value if outer.key is None else outer.key.member(value))
             continue
         if (character == ",") is not (len(parts) > 0):
             break

@@ -89,7 +89,7 @@ class JsonArray(_Value, frozen=True):
                 items.append((index, part))
                 index += 1
             elif isinstance(part, Nulls):
-                index += (part.end - part.start + 1) // _NULL_AND_COMMA
+                index += part.count
             else:
                 if not isinstance(part, JsonNull):
                     items.append((index, part))
