@@ -87,7 +87,7 @@ def _effort(source: api.LoadedSystem, names: Sequence[str]) -> Effort:
             before = time.process_time()
             results = list(verifier.verify_all(pool))
             times.append(time.process_time() - before)
-    assert all(result.answer is not None for result in results), [result.refusal for result in results]
+    assert all(result.answer is not None for result in results), [result.outcome for result in results]
     return Effort(min(times), max(result.answer.tally.steps for result in results if result.answer is not None))
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import pytest
 from bench.check import opened
 from bench.generate import FIRST, write_system
 from bench.keystrokes import keys, word_keys
+from bench.planted import groups, judged, mistakes
 from bench.report import Row, percentile, seconds, table
 from bench.requests import REQUESTS, REST, idle_times
 from bench.server import started
@@ -118,3 +120,17 @@ def test_figures() -> None:
     assert percentile(range(1, 101), 95) == 95
     assert [seconds(value) for value in (0.0041, 0.29, 0.31, 12)] == ["4 ms", "290 ms", "0.31 s", "12.00 s"]
     assert table([Row("a", "1 ms", "", "b")]).splitlines()[-1] == "| a | 1 ms |  | b |"
+
+
+@pytest.mark.parametrize("group", groups())
+def test_planted_mistakes_change_their_files(group: str) -> None:
+    for mistake in mistakes(group):
+        assert mistake.edited() != mistake.file.read_text(encoding="utf-8"), str(mistake)
+        assert mistake.lines(), str(mistake)
+
+
+def test_a_planted_mistake_is_judged_by_the_line_of_its_finding() -> None:
+    mistake = next(m for m in mistakes("answers") if m.file.name == "battery_above.ascxml")
+    assert judged(mistake)[0] == "found"
+    assert judged(replace(mistake, places=("</ascxml>",)))[0] == "elsewhere"
+    assert judged(replace(mistake, old="<datamodel>", new="<datamodel>", after=""))[0] == "silent"
