@@ -3,14 +3,15 @@
 `roaml/schemas`, and the kernel of the model checker is compiled if there is a C compiler.
 
 Without a C compiler, or with AS2FM_PURE_PYTHON=1, the same kernel is installed as plain Python: it is slower and has
-the same results. With AS2FM_PURE_PYTHON=1, the wheel also contains the kernel as C source, which
-`python -m as2fm_lsp.cli.build_kernel` compiles in the installation.
+the same results. The wheel then also contains the kernel as C source, which `python -m as2fm_lsp.cli.build_kernel`
+compiles in the installation.
 """
 
 import os
 from pathlib import Path
 
 from setuptools import Extension, setup
+from setuptools.command.build_ext import build_ext
 from setuptools.command.build_py import build_py
 
 SCHEMAS = Path(__file__).parent / "schemas"
@@ -80,10 +81,29 @@ class BuildWithMore(build_py):
         package = Path(self.build_lib) / "roaml"
         copies = [(schema, package / "schemas" / schema.name) for schema in sorted(SCHEMAS.iterdir())]
         if IS_PURE:
-            for module in translated_modules():
-                _, *folders, name = module.name.split(".")
-                copies.append((Path(module.sources[0]), package.joinpath(*folders, f"{name}.c")))
+            copies += [
+                (Path(module.sources[0]), c_source(Path(self.build_lib), module)) for module in translated_modules()
+            ]
         return copies
 
 
-setup(cmdclass={"build_py": BuildWithMore}, ext_modules=extensions())
+class BuildOrCarry(build_ext):
+    """Copies the C source of each module that does not compile into the wheel."""
+
+    def run(self) -> None:
+        super().run()
+        if self.editable_mode or self.inplace:
+            return
+        for module in self.extensions:
+            if not Path(self.get_ext_fullpath(module.name)).exists():
+                target = c_source(Path(self.build_lib), module)
+                self.mkpath(str(target.parent))
+                self.copy_file(module.sources[0], str(target), preserve_mode=False)
+
+
+def c_source(folder: Path, module: Extension) -> Path:
+    """The path of the C source of a module in a wheel, beside its Python source."""
+    return folder.joinpath(*module.name.split(".")).with_suffix(".c")
+
+
+setup(cmdclass={"build_ext": BuildOrCarry, "build_py": BuildWithMore}, ext_modules=extensions())

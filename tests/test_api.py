@@ -138,3 +138,45 @@ COIN = """{
         "values": {"op": "Pmin", "exp": {"op": "F", "exp": {"op": "=", "left": "n", "right": 2}}}
     }}]
 }"""
+
+
+ROOT = Path(__file__).resolve().parents[1]
+FETCH = str(ROOT / "examples/fetch_tree/fetch.xml")
+
+
+def test_a_tree_with_mocks_is_a_target() -> None:
+    (known,) = api.verify(api.target(FETCH), ["succeeds"], exact_if_small=True)
+    assert api.as_target(api.target(FETCH)).path == FETCH
+    assert known.answer is not None
+    sure = api.target(FETCH, mocks={"*": "1 in 1 s"}, entries={"shelf": "1;2;3"}, tick_rate=2)
+    (result,) = api.verify(sure, ["succeeds"])
+    assert result.answer is not None
+    assert result.answer.value == 1
+    with pytest.raises(api.MockError, match="not a probability"):
+        api.target(FETCH, mocks={"*": "2"})
+
+
+def test_draw_returns_a_picture() -> None:
+    tree = api.draw(FETCH, mocks={"CloseGripper": "0.5 in 2 s"})
+    assert tree.kind is api.DiagramKind.TREE
+    assert tree._repr_svg_() == tree.svg
+    assert "0.5 in 2 s" in tree.svg
+    with pytest.raises(api.DrawingError, match="not a system"):
+        api.draw(FETCH, "system")
+
+
+def test_columns_have_a_cell_for_each_state() -> None:
+    run = api.session(api.load(str(ROOT / "examples/assembly_robot/main.xml")), seed=3)
+    run.jump(60)
+    table = api.columns(run)
+    assert {len(cells) for cells in table.values()} == {61}
+    assert table["step"] == list(range(61))
+    assert run.position == 60
+
+
+def test_a_diagnostic_is_one_line() -> None:
+    path = str(ROOT / "examples/delivery_robot/tree.xml")
+    text = Path(path).read_text().replace("<Charge />", "<Chrge />")
+    first, *_ = api.check([path], texts={path: text}).diagnostics
+    assert str(first).startswith(f"{path}:8:18: error: there is no plugin `Chrge`")
+    assert str(first).endswith("[unknown-plugin]")

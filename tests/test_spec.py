@@ -206,15 +206,13 @@ def test_nodes() -> None:
     described = {
         word for anchor in ("control", "decorators") for first, *_ in rows("nodes", anchor) for word in words(first)
     }
-    described |= {f"Switch{cases}" for cases in range(2, 7)}
     described |= set(words(section("nodes", "decorators").rpartition("|\n")[2]))
-    refused = set(words(section("nodes", "differences-from-behaviortree-cpp").rpartition("cannot be translated:")[2]))
-    programs = set(words(section("nodes", "library").partition("The nodes of this list are:")[2].partition("\n\n")[0]))
+    refused = set(words(section("nodes", "absent").rpartition("cannot be translated:")[2]))
     for name in nodes.keys() - generic:
         element = nodes[name]
-        kinds = (element.translated and not element.program_only, not element.translated, element.program_only)
-        assert (name in described, name in refused, name in programs) == kinds, name
-    assert refused | programs <= nodes.keys()
+        kinds = (element.translated and not element.program_only, not element.translated)
+        assert (name in described, name in refused) == kinds, name
+    assert refused <= nodes.keys()
 
 
 def test_ports_of_nodes() -> None:

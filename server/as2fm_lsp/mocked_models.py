@@ -10,7 +10,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roaml.disk import UnreadableReason, read
+from roaml.disk import UnreadableReason, read, required
 from roaml.mocks.mock import Mock, MockError, read_mock, read_mocks, unused
 from roaml.model.kinds import FileKind, kind_of
 from roaml.project.settings import Settings
@@ -140,8 +140,9 @@ def load_mocked_tree(
         declared = replace(declared, file=beside)
     mocks = declared.mocks()
     rate, limit = declared.rate or DEFAULT_RATE, max_time or DEFAULT_MAX_TIME
+    run = MockOptions(mocks, declared.entries, rate, limit, counts, settings.reaction_time)
     try:
-        tree = load_tree(path, MockOptions(mocks, declared.entries, rate, limit, counts), settings)
+        tree = load_tree(path, run, settings)
     except MissingMocksError as missing:
         raise _missing_mocks(path, [leaf.type for leaf in missing.leaves], messages) from None
     _report_unused(unused(mocks, [(node.name, node.type) for node in tree.mocked.tree.nodes]), messages)
@@ -177,7 +178,7 @@ def mocked_system_texts(
 
 def _mocks_of(path: str) -> tuple[Mock, ...]:
     try:
-        return read_mocks(Path(path).read_text(encoding="utf-8"))
+        return read_mocks(required(path).decode("utf-8"))
     except UnicodeDecodeError:
         raise MockError(f"{path}: not valid UTF-8; fix the encoding") from None
 

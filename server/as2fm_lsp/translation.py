@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import os
 
-from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.jani.model import Model
 from roaml.jani.properties import Property
@@ -13,23 +12,9 @@ from roaml.record import replace
 from roaml.smc.forms import BOUNDS, TIME_BOUNDS, time_bounds_in
 
 
-class OutputError(ValueError):
-    """The output file is one of the files of the system."""
-
-
 def jani_path(system: str) -> str:
     """The default path of the JANI file of a system: beside the system file."""
     return os.path.splitext(system)[0] + ".jani"
-
-
-def check_not_an_input(path: str, system: api.LoadedSystem) -> None:
-    """Check that an output file does not overwrite a file of the system.
-
-    Raises:
-        OutputError: `path` is one of the files of the system.
-    """
-    if os.path.realpath(path) in {os.path.realpath(file) for file in system.files}:
-        raise OutputError(f"{path} is part of the system; write the translation to another file")
 
 
 def without_bounded(model: Model) -> tuple[Model, tuple[Diagnostic, ...]]:

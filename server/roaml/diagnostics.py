@@ -15,7 +15,7 @@ from typing import NamedTuple
 from roaml.facts import Facts
 from roaml.record import PartlyCompared, Record
 from roaml.roles import SymbolKind
-from roaml.text import Edit, Location, Span, TextEdit, computed
+from roaml.text import Edit, Location, SourceFile, Span, TextEdit, computed
 
 
 class Severity(enum.IntEnum):
@@ -107,8 +107,14 @@ class RelatedPlace(Record, frozen=True):
     message: str
 
 
-class Diagnostic(Record, frozen=True):
-    """A published finding: with its file, its final severity and all places resolved."""
+class Diagnostic(PartlyCompared, frozen=True):
+    """A published finding: with its file, its final severity and all places resolved.
+
+    `source` is the text that contains the span. `str(diagnostic)` is one line, `PATH:LINE:COLUMN: SEVERITY: MESSAGE
+    [CODE]`; lines and columns start at 1, and columns count code points.
+    """
+
+    UNCOMPARED = frozenset({"source"})
 
     path: str
     code: str
@@ -119,3 +125,11 @@ class Diagnostic(Record, frozen=True):
     related: tuple[RelatedPlace, ...] = ()
     tags: tuple[Tag, ...] = ()
     facts: Facts | None = None
+    source: SourceFile | None = None
+
+    def __str__(self) -> str:
+        place = self.path
+        if self.source is not None:
+            position = self.source.lines.position(self.span.start)
+            place = f"{self.path}:{position.line + 1}:{position.column + 1}"
+        return f"{place}: {self.severity.label}: {self.message} [{self.code}]"

@@ -83,8 +83,15 @@ def read(path: str, most: int = MAX_BYTES, head: int | None = None) -> bytes | U
         # If the path has become a pipe in the meantime, opening it must not block.
         handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
         with open(handle, "rb") as file:
-            problem = _unreadable_reason(os.fstat(handle), _NO_LIMIT if head is not None else most)
-            return problem or file.read(most if head is None else head)
+            opened = os.fstat(handle)
+            problem = _unreadable_reason(opened, _NO_LIMIT if head is not None else most)
+            if problem is not None:
+                return problem
+            # `read` reserves memory for as many bytes as it may return. Files below /proc have the size 0.
+            limit = min(most if head is None else head, opened.st_size + MEGABYTE)
+            # Without data, some files below /proc return None, as a pipe without a writer.
+            content: bytes | None = file.read(limit)
+            return UnreadableReason.UNREADABLE if content is None else content
     except FileNotFoundError:
         return UnreadableReason.MISSING
     except (OSError, ValueError):

@@ -11,7 +11,6 @@ There are two measures of similarity, for two kinds of names:
 from __future__ import annotations
 
 import bisect
-import difflib
 import functools
 import itertools
 from collections.abc import Iterable, Iterator, Sequence
@@ -80,6 +79,8 @@ def _close_names(name: str, candidates: tuple[str, ...], most: int) -> tuple[str
     else:
         index = _index(candidates)
         by_lower, likely = index.by_lower, index.likely(lower)
+    import difflib  # noqa: PLC0415 - only unknown names need it
+
     matches = difflib.get_close_matches(lower, likely, most, _MIN_SIMILARITY)
     return tuple(by_lower[match] for match in matches)
 

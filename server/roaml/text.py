@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import bisect
 import codecs
-import hashlib
 import re
 from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
@@ -188,7 +187,8 @@ def _ends(text: str) -> Iterable[int]:
 
 
 class SourceFile(PartlyCompared, frozen=True, dict=True):
-    """The text of one file at one moment. Two files with the same `digest` have the same text.
+    """The text of one file at one moment. Two files with the same `digest` have the same text; caches compare the texts
+    themselves.
 
     `undecodable` is the place of the first byte sequence that is not valid in the file's encoding, if any; invalid
     bytes appear in `text` as U+FFFD. `encoding` and the byte order `mark` are those with which the file was read.
@@ -206,6 +206,8 @@ class SourceFile(PartlyCompared, frozen=True, dict=True):
 
     @cached_property
     def digest(self) -> bytes:
+        import hashlib  # noqa: PLC0415 - loads OpenSSL, and only the names of results need it
+
         return hashlib.blake2b(self.text.encode("utf-8", "surrogatepass"), digest_size=16).digest()
 
     @cached_property

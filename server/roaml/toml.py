@@ -50,6 +50,7 @@ def loads(text: str) -> dict[str, Any]:
     Raises:
         TomlError: the text is not valid TOML, or is nested too deeply for the parser.
     """
+    _check_keys(text)
     try:
         return tomllib.loads(text)
     except RecursionError:
@@ -66,6 +67,31 @@ def loads(text: str) -> dict[str, Any]:
         start = min(at, last)
         raise TomlError(message, Span(start, min(start + 1, len(text)))) from None
 
+
+def _check_keys(text: str) -> None:
+    """Check that no key has too many parts: the time of the parser grows with the square of their number.
+
+    Raises:
+        TomlError: a key has more than `MAX_KEY_PARTS` parts.
+    """
+    for match in _TOKEN.finditer(text):
+        parts = len(_PART.findall(match[0])) if match.lastgroup == "key" and match[0].count(".") >= MAX_KEY_PARTS else 0
+        if parts > MAX_KEY_PARTS:
+            raise TomlError(f"A key has {parts:,} parts; at most {MAX_KEY_PARTS} are supported", Span(*match.span()))
+
+
+MAX_KEY_PARTS = 20
+"""The maximum number of parts of a dotted key. No setting has more than three."""
+
+# Each alternative also matches a text that is not complete, so that no position is examined twice.
+_PART = re.compile(r"""[A-Za-z0-9_-]+|"(?:[^"\\\n]|\\.)*"?|'[^'\n]*'?""")
+_TOKEN = re.compile(
+    r"#[^\n]*"
+    r'|"""(?:[^\\]|\\.)*?(?:"""|\Z)'
+    r"|'''.*?(?:'''|\Z)"
+    rf"|(?P<key>(?:{_PART.pattern})(?:[ \t]*\.[ \t]*(?:{_PART.pattern}))*)",
+    re.DOTALL,
+)
 
 _MAX_DEPTH = 8
 """The maximum nesting depth of values whose positions are recorded."""

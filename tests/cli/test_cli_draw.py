@@ -114,7 +114,7 @@ def test_mocks(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_mocks_that_cannot_be_drawn(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for arguments, message in (
-        (("robot/main.xml", "--mock", "*: 0.5"), "add --tree to draw the tree of a system"),
+        (("robot/main.xml", "--mock", "*: 0.5"), "draw the tree of the system"),
         (("robot/tree.xml", "--mock", "0.5"), "is not a mock"),
         (("robot/tree.xml", "--mocks", "none.mocks"), "none.mocks"),
     ):

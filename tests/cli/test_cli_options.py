@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import pytest
@@ -10,10 +11,12 @@ from command import Command
 
 import clock
 import roaml.project.checking
+from as2fm_lsp.cli import kernel_note
 from as2fm_lsp.cli.main import COMMANDS
 from roaml import __version__, api
 from roaml.record import replace
 from roaml.rules import RULES
+from roaml.smc import kernel
 
 
 def test_clean(command: Command, tmp_path: Path) -> None:
@@ -148,7 +151,19 @@ def test_a_folder_named_like_a_command_is_checked(command: Command, tmp_path: Pa
 
 
 def test_version(command: Command) -> None:
-    assert command("--version") == (0, f"as2fm-lsp {__version__}\n", "")
+    status, out, err = command("--version")
+    first, kernel_line = out.splitlines()
+    assert (status, first, err) == (0, f"as2fm-lsp {__version__}", "")
+    assert kernel_line.startswith("kernel: compiled" if kernel.compiled() else "kernel: plain Python, 12 to 37 times")
+
+
+def test_a_plain_kernel_is_named_once(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(kernel_note, "is_compiled", lambda: False)
+    examples = Path(__file__).parents[2] / "examples"
+    done = command("verify", str(examples / "grid_world/main.xml"), "--method", "fixed", "--max-traces", "2")
+    assert done.err.count("plain Python") == 1
+    assert f"`{sys.executable} -m as2fm_lsp.cli.build_kernel`" in done.err
+    assert "plain Python" in command("--version").out
 
 
 def test_explain(command: Command) -> None:

@@ -128,7 +128,7 @@ def test_interactive_commands(command: Command, tmp_path: Path) -> None:
     [
         (("--until", "nowhere"), "there is neither a property nor an event of this name"),
         (("--property", "nowhere"), "has no property `nowhere`"),
-        (("--script", "nowhere.json"), "nowhere.json: No such file or directory"),
+        (("--script", "nowhere.json"), "nowhere.json: there is no such file"),
         (("--constant", "N=1"), "--constant needs a JANI model"),
     ],
 )

@@ -21,6 +21,7 @@ from roaml import api
 from roaml.jani.reader import read_model
 from roaml.json_syntax import parse
 from roaml.language.resources import schema_path
+from roaml.scxml.names import TRANSLATION_MARK
 
 SCXML = "{http://www.w3.org/2005/07/scxml}"
 
@@ -183,8 +184,8 @@ def test_a_model_keeps_bounds_that_cannot_be_answered(robot: Path) -> None:
     path.write_text(json.dumps(written))
     model = api.to_jani(api.load(str(robot / "main.xml")))
     first, *_ = api.verify(model)
-    assert first.refusal is not None
-    assert first.refusal.code == "ignored-bounds"
+    assert isinstance(first.outcome, api.Refused)
+    assert first.outcome.reason.code == "ignored-bounds"
     assert not first.is_met
 
 
@@ -220,8 +221,8 @@ def test_parameters(command: Command, robot: Path) -> None:
         (("--max-array-size", "0"), "a whole number of at least 1"),
         (("--indent", "-1"), "from 0 to 16"),
         (("--output", "-", "--map", "-"), "cannot both go to standard output"),
-        (("--output", "nodes/battery.ascxml"), "is part of the system"),
-        (("--map", "./tree.xml"), "is part of the system"),
+        (("--output", "nodes/battery.ascxml"), "is an input of the command"),
+        (("--map", "./tree.xml"), "is an input of the command"),
         (("--output", "nowhere/x.jani"), "nowhere/x.jani: No such file or directory"),
         (("--scxml-dir", "main.xml"), "main.xml: File exists"),
     ],
@@ -249,14 +250,15 @@ def test_a_property_file_of_the_default_name_is_kept(command: Command, robot: Pa
     before = (robot / "main.jani").read_bytes()
     done = command("translate", "main.xml")
     assert done.status == 2
-    assert "main.jani is part of the system; write the translation to another file" in done.err
+    assert "main.jani: this file is an input of the command; write the output to another file" in done.err
     assert (robot / "main.jani").read_bytes() == before
 
 
 def test_a_failure_while_writing_leaves_the_old_file(
     command: Command, robot: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (robot / "main.jani").write_text("old")
+    old = f"old, {TRANSLATION_MARK}"
+    (robot / "main.jani").write_text(old)
 
     def failing(*_: object) -> object:
         yield "{"
@@ -265,7 +267,7 @@ def test_a_failure_while_writing_leaves_the_old_file(
     monkeypatch.setattr(as2fm_lsp.cli.translate, "jani_text", failing)
     done = command("translate", "main.xml")
     assert (done.status, done.err) == (2, "as2fm-lsp: main.jani: No space left on device\n")
-    assert (robot / "main.jani").read_text() == "old"
+    assert (robot / "main.jani").read_text() == old
     assert not list(robot.glob(".as2fm-*"))
 
 

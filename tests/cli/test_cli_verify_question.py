@@ -212,9 +212,9 @@ def test_the_note_names_each_property_once(command: Command, tmp_path: Path) -> 
 
 def test_an_expectation_that_is_not_met_names_the_scheduler(command: Command, tmp_path: Path) -> None:
     name = write(tmp_path, starving(steps=500))
-    done = command("verify", name, "--expect", "p >= 0.9")
+    done = command("verify", name, "--expect", "p >= 0.9", "--max-states", 400)
     assert "  expected ≥ 0.9: NOT MET under sampled scheduler 1, which lets `" in done.out
-    row = rows(command("verify", name, "--expect", "p >= 0.9", "--format", "json").out)["p"]
+    row = rows(command("verify", name, "--expect", "p >= 0.9", "--max-states", 400, "--format", "json").out)["p"]
     assert row["expectations"][0]["not_met"].startswith("under sampled scheduler 1, which lets `")
     few = write(tmp_path, starving(length=50), "few.jani")
     done = command("verify", few, "--expect", "p >= 0.9", "--method", "adaptive")

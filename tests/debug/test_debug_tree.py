@@ -161,7 +161,7 @@ def test_wrong_declarations_are_refused(client: Client, tree: Path) -> None:
     assert missing == f'{tree}: these leaves need mocks: Drive, Grasp; for example `"mocks": ["*: 0.9 in 1 s"]`'
     assert "`Drive 1` is not a mock" in refusal(mocks=["Drive 1"])
     assert "nothing sets the entry `load`" in refusal(mocks=["*: 1"])
-    assert refusal(mocksFile="none.mocks") == f"{tree.parent / 'none.mocks'}: No such file or directory"
+    assert refusal(mocksFile="none.mocks") == f"{tree.parent / 'none.mocks'}: there is no such file"
     assert refusal(mocksFile="a\0b") == "`mocksFile` is not a path"
     assert "`tickRate` must be a number of Hz" in refusal(tickRate=0)
     assert "a system declares them in its files" in refusal(BUG, tickRate=5)

@@ -16,7 +16,7 @@ from roaml.explicit.space import StateLimits
 from roaml.smc.model import ModelChecker
 from roaml.verification import exhaustive, small
 from roaml.verification.explorations import Explorations, subject_of
-from roaml.verification.results import Exact
+from roaml.verification.results import Exact, Undecided
 from roaml.verification.target import target_of
 from roaml.verification.verifier import Verifier, verifier_of
 
@@ -95,7 +95,7 @@ def values_of(exact: Exact) -> tuple[object, ...]:
 
 def test_small_models_are_explored_once_for_each_subject(explored: list[str]) -> None:
     exactly = verifier(tossing(), exact_if_small=True)
-    small_values = [exactly._small(p) for p in exactly.checker.compiled_properties]
+    small_values = [exactly._small(p, None) for p in exactly.checker.compiled_properties]
     assert all(small_values)
     assert explored == [names[0] for names in SUBJECTS]
 
@@ -106,7 +106,7 @@ def test_a_limit_is_reached_once_for_each_subject(explored: list[str]) -> None:
     exhaustively = verifier(written)
     limits = StateLimits(states=1)
     results = [exhaustively.exhaustive(p, limits) for p in exhaustively.checker.compiled_properties]
-    assert all(result.undecided.startswith("stopped at ") for result in results)
+    assert all(isinstance(r.outcome, Undecided) and r.outcome.reason.startswith("stopped at ") for r in results)
     assert set(explored) == {"least"}
     explored.clear()
     assert exhaustively.exhaustive(exhaustively.checker.compiled_properties[1], StateLimits()).exact is not None
@@ -141,5 +141,4 @@ def test_shared_values_are_those_of_separate_explorations(written: Json) -> None
     separate = [v.exhaustive(v.checker.compiled_properties[0], StateLimits()) for v in alone]
     for one, two in zip(shared, separate, strict=True):
         assert one.name == two.name
-        assert one.exact == two.exact
-        assert one.undecided == two.undecided
+        assert one.outcome == two.outcome

@@ -79,7 +79,7 @@ def compared(results: dict[str, Result | str]) -> dict[str, object]:
     rows: dict[str, object] = {}
     for name, result in results.items():
         if isinstance(result, str) or result.exact is None:
-            rows[name] = result if isinstance(result, str) else (result.undecided, result.growing)
+            rows[name] = result if isinstance(result, str) else result.outcome
             continue
         exact = result.exact
         stories = [(trace.verdict, trace.is_reduced, trace.story(None)) for trace in exact.traces]

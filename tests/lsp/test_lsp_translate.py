@@ -82,7 +82,7 @@ async def test_errors_are_reported_and_nothing_is_written(tmp_path: Path) -> Non
         "main.xml has 1 error and was not translated.",
         "clock.ascxml: not a system file",
         "none.xml: not a system file",
-        "properties.jani is part of the system; write the translation to another file",
+        "properties.jani cannot be written: this file is an input of the command; write the output to another file",
         "x.jani cannot be written: No such file or directory",
     )
     assert len(texts) == len(expected)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import itertools
 
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from random_trees import ANY, ENTRIES, Drawn, as_xml, trees
@@ -107,3 +108,30 @@ def test_a_constant_that_two_subtrees_share() -> None:
     change = Drawn("SubTree", (("x", "{y}"), ("y", "{x}")), (Drawn("Script", (("code", "y := 2"),)),))
     asked = Drawn("ScriptCondition", (("code", "x == 2"),))
     compare(Drawn("Sequence", (), (change, asked, Drawn("Check"))), 0)
+
+
+ACT, CHECK = Drawn("Act1"), Drawn("Check")
+SISTERS = [
+    *(Drawn(kind, (), (ACT,)) for kind in ("RunOnce", "Inverter", "ForceSuccess", "ForceFailure")),
+    Drawn("KeepRunningUntilFailure", (), (ACT,)),
+    Drawn("Repeat", (("num_cycles", "2"),), (CHECK,)),
+    Drawn("RetryUntilSuccessful", (("num_attempts", "2"),), (CHECK,)),
+    Drawn("Delay", (("delay_msec", "200"),), (ACT,)),
+    Drawn("Timeout", (("msec", "100"),), (Drawn("Act2"),)),
+    *(Drawn(kind, (), (CHECK, ACT)) for kind in ("Sequence", "Fallback", "SequenceWithMemory", "AsyncSequence")),
+    *(Drawn(kind, (), (CHECK, ACT)) for kind in ("ReactiveSequence", "ReactiveFallback", "ParallelAll")),
+    Drawn("Parallel", (("success_count", "1"), ("failure_count", "2")), (CHECK, ACT)),
+    *(Drawn(kind, (), (CHECK, ACT, Drawn("Act2"))) for kind in ("IfThenElse", "WhileDoElse")),
+    Drawn("Switch2", (("variable", "1"), ("case_1", "1"), ("case_2", "2")), (ACT, CHECK, Drawn("Act2"))),
+]
+
+
+@pytest.mark.parametrize("inner", SISTERS, ids=lambda drawn: drawn.type)
+def test_an_unrelated_node_changes_nothing(inner: Drawn) -> None:
+    """A node behaves as in the library, with and without a node that only the library has."""
+    outer = Drawn("Sequence", (), (Drawn("Fallback", (), (inner, Drawn("Act0"))),))
+    tree = Drawn("KeepRunningUntilFailure", (), (outer,))
+    unrelated = Drawn("Script", (("code", "k := 1"),))
+    for seed in range(2):
+        compare(tree, seed)
+        compare(Drawn("Sequence", (), (unrelated, tree)), seed)

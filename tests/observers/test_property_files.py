@@ -10,6 +10,7 @@ import pytest
 from test_observers_in_traces import FILES, FOLDER, PORTS
 
 from roaml import api
+from roaml.diagnostics import Diagnostic, Severity
 from roaml.project.settings import Settings
 
 PROPERTIES = f"""<properties>{PORTS}
@@ -26,14 +27,17 @@ PROPERTIES = f"""<properties>{PORTS}
 </properties>"""
 
 
-def checked(properties: str, jani: str = '{"properties": []}') -> list[tuple[str, str]]:
+def diagnostics(properties: str, jani: str = '{"properties": []}') -> tuple[Diagnostic, ...]:
     files = {name: text.replace("{time}", "2000") for name, text in FILES.items()}
     inputs = '<input type="xml" src="properties.xml" /><input type="jani" src="more.jani" />'
     files["main.xml"] = files["main.xml"].replace('<input type="xml" src="properties.xml" />', inputs)
     files |= {"properties.xml": properties, "more.jani": jani}
     texts = {os.path.join(FOLDER, name): text for name, text in files.items()}
-    result = api.check([os.path.join(FOLDER, "main.xml")], settings=Settings(), texts=texts)
-    return [(d.code, d.message) for d in result.diagnostics]
+    return tuple(api.check([os.path.join(FOLDER, "main.xml")], settings=Settings(), texts=texts).diagnostics)
+
+
+def checked(properties: str, jani: str = '{"properties": []}') -> list[tuple[str, str]]:
+    return [(d.code, d.message) for d in diagnostics(properties, jani)]
 
 
 def test_a_complete_file_has_no_findings() -> None:
@@ -87,6 +91,22 @@ def test_incomplete_files_cause_no_internal_error(start: int) -> None:
 def test_an_inserted_error_is_reported(old: str, new: str, code: str) -> None:
     assert old in PROPERTIES
     assert code in {reported for reported, _ in checked(PROPERTIES.replace(old, new, 1))}
+
+
+@pytest.mark.parametrize(
+    ("declared", "severity"),
+    [
+        ("int64", Severity.WARNING),
+        ("int8", Severity.ERROR),
+        ("uint32", Severity.ERROR),
+        ("float64", Severity.WARNING),
+        ("string", Severity.ERROR),
+    ],
+)
+def test_a_wider_type_of_a_variable_is_harmless(declared: str, severity: Severity) -> None:
+    assert 'type="int32" field="data"' in PROPERTIES
+    text = PROPERTIES.replace('type="int32" field="data"', f'type="{declared}" field="data"', 1)
+    assert [d.severity for d in diagnostics(text) if d.code == "port-variable"] == [severity]
 
 
 PLAIN = '<scxml_event_send event="topic_alarm_msg"><event_var id="ticked" />{}</scxml_event_send>'

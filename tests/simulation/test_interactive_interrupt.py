@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from as2fm_lsp.cli.interactive import Terminal
+from as2fm_lsp.outputs import OutputFiles
 from roaml import api
 from roaml.simulation import Session
 from roaml.smc.record import TraceStep
@@ -32,7 +33,7 @@ def test_an_interrupt_ends_a_movement(
         return take(self)
 
     monkeypatch.setattr(Session, "step", step)
-    Terminal(session, target).run(io.StringIO(f"{command}\n\nq\n"))
+    Terminal(session, target, OutputFiles(target.files)).run(io.StringIO(f"{command}\n\nq\n"))
     out = capsys.readouterr().out
     assert "  interrupted\nstep 100, " in out
     assert "step 101, " in out

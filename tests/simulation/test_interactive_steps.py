@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from as2fm_lsp.cli.interactive import Terminal
+from as2fm_lsp.outputs import OutputFiles
 from roaml import api
 from roaml.smc.record import TraceStep, VariableChange
 from roaml.views.arrays import ArrayReader
@@ -25,12 +26,12 @@ def target() -> api.VerificationTarget:
 def test_changes_are_those_of_the_whole_run(target: api.VerificationTarget, capsys: pytest.CaptureFixture[str]) -> None:
     """A terminal that has shown earlier steps, and gone back from them, shows the same as a new one."""
     sessions = [api.session(target, "block_placed", seed=3) for _ in range(2)]
-    continued = Terminal(sessions[0], target)
+    continued = Terminal(sessions[0], target, OutputFiles(target.files))
     shown = []
     for command in COMMANDS:
         continued.run(io.StringIO(f"{command}\nq\n"))
         output = capsys.readouterr().out
-        Terminal(sessions[1], target).run(io.StringIO(f"{command}\nq\n"))
+        Terminal(sessions[1], target, OutputFiles(target.files)).run(io.StringIO(f"{command}\nq\n"))
         assert capsys.readouterr().out == output
         shown.append("→" in output)
     back = COMMANDS.index("b 30")
@@ -49,7 +50,7 @@ def test_going_forwards_reads_each_step_once(
         return read(self, step)
 
     session = api.session(target, "block_placed", seed=3)
-    terminal = Terminal(session, target)
+    terminal = Terminal(session, target, OutputFiles(target.files))
     monkeypatch.setattr(ArrayReader, "read", counted)
     terminal.run(io.StringIO("g 100\n\n\nt\nt\nq\n"))
     assert numbers == list(range(1, session.position + 1))

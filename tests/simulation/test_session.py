@@ -266,11 +266,33 @@ def test_a_saved_session_is_the_same_run(robot: api.VerificationTarget, picks: l
         '{"format": 1, "engine": 1, "property": "p", "seed": 0, "trace": 0, "position": 9, "decisions": [3]}',
         '{"format": 1, "engine": 1, "property": "p", "seed": 0, "trace": 0, "position": 0, "decisions": [{}]}',
         '{"format": 1, "engine": 1, "property": "p", "seed": 0, "trace": 0, "position": 0, "decisions": [99999999999]}',
+        "[" * 100_000,
     ],
 )
 def test_invalid_saved_sessions_are_refused(text: str) -> None:
     with pytest.raises(ValueError, match=r"session|position"):
         api.SavedSession.from_json(text)
+
+
+@pytest.mark.parametrize("wrong", ["Infinity", "NaN", "1.5", "1.0", "true", "-2", "1" + "0" * 30, '"1"', "null", "[]"])
+@pytest.mark.parametrize(
+    ("member", "value"),
+    [
+        ("seed", "?"),
+        ("trace", "?"),
+        ("position", "?"),
+        ("decisions", "[?]"),
+        ("decisions", '[{"vector": ?, "picks": [], "ways": []}]'),
+        ("decisions", '[{"vector": 0, "picks": [?], "ways": []}]'),
+        ("decisions", '[{"vector": 0, "picks": [], "ways": [?]}]'),
+        ("decisions", '[{"event": "", "values": [[?, "a", 1]]}]'),
+    ],
+)
+def test_wrong_numbers_in_saved_sessions_are_refused(member: str, value: str, wrong: str) -> None:
+    members = {"seed": "0", "trace": "0", "position": "0", "decisions": "[1]", member: value.replace("?", wrong)}
+    rest = ", ".join(f'"{name}": {text}' for name, text in members.items())
+    with pytest.raises(ValueError, match="saved session"):
+        api.SavedSession.from_json(f'{{"format": 1, "engine": 1, "property": "p", {rest}}}')
 
 
 def test_the_versions_of_a_session_are_named() -> None:

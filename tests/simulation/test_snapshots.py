@@ -19,7 +19,7 @@ def _state(session: Session) -> tuple[object, ...]:
     return session.state(), session.verdict, session.is_decided, session.end, session.choices()
 
 
-@pytest.mark.parametrize("system", ["assembly_robot/main_with_bug.xml", "delivery_robot/main.xml"])
+@pytest.mark.parametrize("system", ["assembly_robot/main_with_bug.xml", "assembly_robot/main.xml"])
 def test_every_jump_leads_to_the_state_of_a_replay(system: str) -> None:
     target = api.target(str(EXAMPLES / system))
     for name in [property_.name for property_ in target.model.properties]:

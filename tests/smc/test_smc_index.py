@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from smc_models import automaton, document, edge, model, op, probability, variable, way
+from smc_models import at, automaton, document, edge, model, op, probability, variable, way, ways
 from smc_random import networks
 
 from both_kernels import difference
@@ -21,24 +21,42 @@ from roaml.smc.opcodes import Op
 from roaml.smc.program import UNKNOWN
 
 VARIABLES = ("x", "y", "z")
+ARRAYS = ("v", "w")
+"""Arrays of two numbers, as strings are."""
+CONSTANT = "c"
+"""A constant array."""
+
+
+def written_variable(change: tuple[Any, Any, int]) -> str:
+    target = change[0]
+    return str(target["exp"] if isinstance(target, dict) else target)
 
 
 @st.composite
 def guarded(draw: st.DrawFn) -> dict[str, Any]:
-    """Automata with many edges whose guards compare variables with constants."""
+    """Automata with many edges whose guards compare variables and cells of arrays with constants."""
     value = st.integers(-1, 3)
-    equal = st.builds(lambda name, number, swaps: op("=", *((number, name) if swaps else (name, number))),
-                      st.sampled_from(VARIABLES), value, st.booleans())  # fmt: skip
-    other = st.builds(op, st.sampled_from(["<", "≠", "≤"]), st.sampled_from(VARIABLES), value)
+    pair = st.builds(lambda first, second: {"op": "av", "elements": [first, second]}, value, value)
+    cells = st.builds(at, st.sampled_from(ARRAYS), st.sampled_from([0, 1]))
+    places = st.one_of(st.sampled_from(VARIABLES), cells)
+    read = st.one_of(places, places, places, st.builds(at, st.sampled_from([CONSTANT, *ARRAYS]), st.integers(0, 1)))
+    equal = st.builds(lambda place, number, swaps: op("=", *((number, place) if swaps else (place, number))),
+                      read, value, st.booleans())  # fmt: skip
+    same = st.builds(lambda array, first, second: op("∧", op("=", at(array, 0), first), op("=", at(array, 1), second)),
+                     st.sampled_from(ARRAYS), value, value)  # fmt: skip
+    other = st.builds(op, st.sampled_from(["<", "≠", "≤"]), places, value)
+    computed = st.builds(lambda name: at("v", op("%", op("abs", name), 2)), st.sampled_from(VARIABLES))
+    whole = st.tuples(st.sampled_from(ARRAYS), st.one_of(pair, st.sampled_from(ARRAYS)), st.just(0))
+    change = st.one_of(st.tuples(st.one_of(places, computed), value, st.just(0)), whole)
+    changed = st.lists(change, min_size=1, max_size=3, unique_by=written_variable)
 
     def some_edge(action: str | None) -> Any:
-        guard = draw(equal)
+        guard = draw(st.one_of(equal, same))
         for part in draw(st.lists(st.one_of(equal, equal, other), max_size=2)):
             guard = op("∧", guard, part)
         if draw(st.integers(0, 9)) == 0:
             guard = draw(other)
-        changes = draw(st.dictionaries(st.sampled_from(VARIABLES), value, min_size=1))
-        return edge("l", way("l", **changes), action=action, guard=guard)
+        return edge("l", ways("l", draw(changed)), action=action, guard=guard)
 
     first = automaton("a", "l", [some_edge(None) for _ in range(draw(st.integers(4, 14)))])
     actions = draw(st.lists(st.sampled_from(["s", "t", "u"]), min_size=4, max_size=14))
@@ -46,7 +64,11 @@ def guarded(draw: st.DrawFn) -> dict[str, Any]:
     return document(
         first,
         second,
-        variables=[variable(name, initial=draw(value)) for name in VARIABLES],
+        variables=[
+            *(variable(name, initial=draw(value)) for name in VARIABLES),
+            *(variable(name, {"kind": "array", "base": "int"}, draw(pair)) for name in ARRAYS),
+        ],
+        constants=[{"name": CONSTANT, "type": {"kind": "array", "base": "int"}, "value": draw(pair)}],
         properties={"p": probability(op("F", op("=", "x", 77)))},
     )
 
@@ -77,7 +99,7 @@ def outcomes(checker: ModelChecker) -> list[Any]:
 
 
 def is_finite(checker: ModelChecker) -> bool:
-    return all(name in VARIABLES for name in (v.name for v in checker.model.variables))
+    return all(name in VARIABLES + ARRAYS for name in (v.name for v in checker.model.variables))
 
 
 def check_same(written: dict[str, Any]) -> ModelChecker:
@@ -111,7 +133,8 @@ def grid(size: int) -> dict[str, Any]:
             for dx, dy in ((1, 0), (0, 1), (-1, 0), (0, -1)):
                 if 0 <= x + dx < size and 0 <= y + dy < size:
                     here = op("∧", op("=", "x", x), op("=", "y", y))
-                    edges.append(edge("l", way("l", x=x + dx, y=y + dy), action=f"go{len(edges)}", guard=here))
+                    there = way("l", x=x + dx, y=y + dy)
+                    edges.append(edge("l", there, action=f"go{len(edges)}", guard=here))
     return document(
         automaton("robot", "l", edges),
         variables=[variable("x"), variable("y")],

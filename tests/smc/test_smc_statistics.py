@@ -8,14 +8,16 @@ import math
 import random
 from collections.abc import Callable
 from functools import cache
+from typing import NamedTuple
 
+import numpy as np
 import pytest
 import scipy.special
 import scipy.stats
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roaml.smc.run import BATCH_GROWTH, FIRST_BATCH_TRACES, MAX_BATCH_TRACES, STOPPING_ERROR_SHARE
+from roaml.smc.run import FIRST_BATCH_TRACES, MIN_REWARD_TRACES, batches, stopping_error_share
 from roaml.smc.statistics import (
     Bounds,
     Mean,
@@ -78,7 +80,7 @@ def test_intervals_of_means_are_those_of_scipy(values: list[int], confidence: fl
         mean = mean.add(value)
     error = scipy.stats.sem(values)
     if len(set(values)) == 1:
-        assert mean.bounds(confidence) == (values[0], values[0])
+        assert mean.bounds(confidence) == (-math.inf, math.inf)
     else:
         expected = scipy.stats.t.interval(confidence, len(values) - 1, sum(values) / len(values), error)
         assert mean.bounds(confidence) == pytest.approx(expected, rel=1e-6, abs=1e-6)
@@ -135,9 +137,9 @@ def test_coverage_of_intervals(p: float, confidence: float) -> None:
 
 
 @cache
-def stop(n: int, k: int, confidence: float, epsilon: float) -> tuple[float, float] | None:
+def stop(n: int, k: int, confidence: float, epsilon: float) -> Bounds | None:
     """The interval if sampling stops here."""
-    bounds = clopper_pearson(k, n, 1 - (1 - confidence) * STOPPING_ERROR_SHARE)
+    bounds = clopper_pearson(k, n, 1 - (1 - confidence) * stopping_error_share(confidence))
     return bounds if bounds.half_width <= epsilon else None
 
 
@@ -153,23 +155,59 @@ def added(open_: dict[int, float], size: int, p: float) -> dict[int, float]:
     return after
 
 
-@pytest.mark.parametrize("p", [0.02, 0.05, 0.08, 0.12, 0.29, 0.41, 0.5])
-def test_coverage_when_stopping_as_soon_as_possible(p: float) -> None:
-    """Computed exactly, over all runs until the adaptive method stops."""
-    confidence, epsilon = 0.95, 0.06
-    open_: dict[int, float] = {0: 1.0}
-    done, covered = 0, 0.0
-    while open_:
-        size = max(FIRST_BATCH_TRACES, min(MAX_BATCH_TRACES, int(done * BATCH_GROWTH)))
-        done += size
-        after, open_ = added(open_, size, p), {}
-        for k, weight in after.items():
-            interval = stop(done, k, confidence, epsilon)
-            if interval is None:
-                open_[k] = weight
-            elif interval[0] <= p <= interval[1]:
-                covered += weight
-    assert covered >= confidence
+class Stops(NamedTuple):
+    """The intervals of all numbers of successes after a number of traces, and whether sampling continues."""
+
+    traces: int
+    continues: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
+
+
+def stops(confidence: float, epsilon: float) -> list[Stops]:
+    """The batches of the adaptive method, up to the one after which it stops in any case."""
+    tail = (1 - confidence) * stopping_error_share(confidence) / 2
+    rows: list[Stops] = []
+    for first, size in batches(0, None):
+        n = first + size
+        k = np.arange(n + 1)
+        lower = np.where(k == 0, 0.0, scipy.stats.beta.ppf(tail, np.maximum(k, 1), n - k + 1))
+        upper = np.where(k == n, 1.0, scipy.stats.beta.ppf(1 - tail, k + 1, np.maximum(n - k, 1)))
+        rows.append(Stops(n, (upper - lower) / 2 > epsilon + 1e-12, lower, upper))
+        if not rows[-1].continues.any():
+            break
+    return rows
+
+
+def missed(rows: list[Stops], p: float) -> float:
+    """The probability that the adaptive method stops with an interval that does not contain `p`."""
+    weights, first, before, wrong = np.array([1.0]), 0, 0, 0.0
+    for row in rows:
+        weights = np.convolve(
+            weights, scipy.stats.binom.pmf(np.arange(row.traces - before + 1), row.traces - before, p)
+        )
+        likely = np.nonzero(weights > 1e-14)[0]
+        first, weights, before = first + likely[0], weights[likely[0] : likely[-1] + 1], row.traces
+        at = slice(first, first + len(weights))
+        misses = (p < row.lower[at]) | (row.upper[at] < p)
+        wrong += float(weights[~row.continues[at] & misses].sum())
+        weights = np.where(row.continues[at], weights, 0.0)
+        if weights.sum() < 1e-12:
+            break
+    return wrong
+
+
+@pytest.mark.parametrize("epsilon", [0.2, 0.12, 0.08, 0.05])
+@pytest.mark.parametrize("confidence", [0.8, 0.95, 0.99, 0.999, 0.9999])
+def test_coverage_when_stopping_as_soon_as_possible(confidence: float, epsilon: float) -> None:
+    """Computed exactly, over all runs until the adaptive method stops. The error is greatest beside an end of an
+    interval, so such probabilities are tried, with a grid between them. It is symmetrical about 1/2."""
+    rows = stops(confidence, epsilon)
+    ends = sorted({float(end) for row in rows for end in (*row.lower[~row.continues], *row.upper[~row.continues])})
+    beside = [end * factor for end in ends if 0 < end <= 0.5 for factor in (1 - 1e-9, 1 + 1e-9)]
+    tried = [*beside[:: max(1, len(beside) // 60)], *np.linspace(0.001, 0.5, 40)]
+    worst = max((missed(rows, p), p) for p in tried)
+    assert worst[0] <= 1 - confidence, worst
 
 
 @pytest.mark.parametrize("most", [100, 150, 200, 300])
@@ -188,7 +226,7 @@ def test_coverage_when_stopping_at_a_limit_of_traces(p: float, most: int) -> Non
             if interval is None and done < most:
                 open_[k] = weight
                 continue
-            lower, upper = clopper_pearson(k, done, 1 - (1 - confidence) * STOPPING_ERROR_SHARE)
+            lower, upper = clopper_pearson(k, done, 1 - (1 - confidence) * stopping_error_share(confidence))
             covered += weight if lower <= p <= upper else 0.0
     assert covered >= confidence
 
@@ -330,6 +368,51 @@ def test_intervals_of_means_are_valid_at_all_times() -> None:
     assert missed <= 0.1 * runs
 
 
+REWARDS: dict[str, tuple[float, Callable[[np.random.Generator, int], np.ndarray]]] = {
+    "1000 with probability 0.001": (1.0, lambda source, n: 1000.0 * (source.random(n) < 0.001)),
+    "10,000 with probability 0.0005, otherwise 1": (
+        5.9995,
+        lambda source, n: np.where(source.random(n) < 5e-4, 1e4, 1.0),
+    ),
+    "one of two values": (3.0, lambda source, n: np.where(source.random(n) < 0.5, 1.0, 5.0)),
+    "exponential": (1.0, lambda source, n: source.exponential(1.0, n)),
+    "lognormal": (math.exp(2.0), lambda source, n: source.lognormal(0.0, 2.0, n)),
+    "Pareto with infinite variance": (2.5, lambda source, n: source.pareto(5 / 3, n) + 1),
+    "a loss with probability 0.002": (8.0, lambda source, n: np.where(source.random(n) < 0.002, -990.0, 10.0)),
+}
+"""Rare, skewed and heavy-tailed rewards: their expected values, and random values."""
+
+
+def measured(values: np.ndarray) -> Mean:
+    mean = float(values.mean())
+    return Mean(len(values), mean, float(((values - mean) ** 2).sum()), float(values.min()), float(values.max()))
+
+
+@pytest.mark.parametrize("epsilon", [0.1, 0.02])
+@pytest.mark.parametrize("name", REWARDS)
+def test_coverage_of_rewards_when_stopping_as_soon_as_possible(name: str, epsilon: float) -> None:
+    """With 300 seeds, the intervals contain the expected value at least as often as stated, whenever the rule of the
+    adaptive method ends the traces, or a limit of 60,000."""
+    (expected, sample), confidence, covered = REWARDS[name], 0.95, 0
+    share = 1 - (1 - confidence) * stopping_error_share(confidence)
+    for seed in range(300):
+        source, mean = np.random.default_rng(seed), Mean()
+        for _, size in batches(0, 60_000):
+            mean = mean.joined(measured(sample(source, size)))
+            bounds = mean.bernstein_bounds(share)
+            if mean.number >= MIN_REWARD_TRACES and bounds.half_width <= epsilon * abs(mean.mean):
+                break
+        covered += bounds.lower <= expected <= bounds.upper
+    assert covered >= confidence * 300
+
+
+def test_equal_rewards_have_no_interval() -> None:
+    for number in (2, 100, 100_000):
+        mean = Mean(number, 7.0, 0.0, 7.0, 7.0)
+        for bounds in (mean.bounds(0.95), mean.bernstein_bounds(0.95), mean.anytime_bounds(0.95)):
+            assert bounds == (-math.inf, math.inf)
+
+
 @given(st.lists(st.floats(-1e3, 1e3), min_size=2, max_size=50))
 def test_moments(values: list[float]) -> None:
     mean = Mean()
@@ -338,3 +421,4 @@ def test_moments(values: list[float]) -> None:
     average = math.fsum(values) / len(values)
     assert mean.mean == pytest.approx(average, abs=1e-6)
     assert mean.squares == pytest.approx(math.fsum((v - average) ** 2 for v in values), abs=1e-3)
+    assert (mean.least, mean.greatest) == (min(values), max(values))

@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roaml import suggest
 from roaml.suggest import MAX_COMPARED, MAX_LENGTH, close_names
 
 MANY = [f"sensor_{number}_reading" for number in range(2000)]
@@ -48,7 +47,7 @@ def test_the_number_of_comparisons_does_not_grow_with_the_names(monkeypatch: pyt
         compared.append(len(list(possibilities)))
         return []
 
-    monkeypatch.setattr(suggest.difflib, "get_close_matches", count)
+    monkeypatch.setattr(difflib, "get_close_matches", count)
     for number in range(100):
         close_names(f"snesor_{number}_raeding", MANY)
     assert len(compared) == 100

@@ -108,3 +108,22 @@ def test_the_place_of_a_mistake(text: str, offset: int | None) -> None:
         loads(text)
     assert raised.value.span.start == offset
     assert "line" not in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        ".".join(["a"] * 20_000) + " = 1",
+        "[" + " . ".join(['"a.b"'] * 20_000) + "]",
+        "a = { " + ".".join(["b"] * 21) + " = 1 }",
+    ],
+    ids=["key", "header", "inline table"],
+)
+def test_a_key_with_many_parts_is_refused(text: str) -> None:
+    with pytest.raises(TomlError, match="at most 20 are supported"):
+        loads(text)
+
+
+@pytest.mark.parametrize("quoted", ["'{}'", '"{}"', "'''{}'''", '"""{}\n{}"""', "1 # {}", "[1, '{}']"])
+def test_many_dots_outside_of_keys_are_allowed(quoted: str) -> None:
+    assert "a" in loads(f"a = {quoted.replace('{}', 'x.' * 100)}")

@@ -41,9 +41,9 @@ def gated(tree: Tree) -> Tree:
 
 
 def ungated(tree: Tree) -> Tree:
-    """`tree`, never halted and ticked again when it has answered."""
+    """`tree`, ticked again when it has answered; it is never halted if it uses no variables."""
     writers = _writers(tree)
-    return node("WhileDoElse", node("Sequence", *writers) if writers else node("AlwaysSuccess"), tree)
+    return node("ReactiveSequence", *writers, tree) if writers else tree
 
 
 def _writers(tree: Tree) -> list[Tree]:
@@ -62,30 +62,19 @@ def cases() -> Iterator[Tree]:
     for kind in ("Sequence", "Fallback", "SequenceWithMemory", "SequenceStar", "ReactiveSequence", "ReactiveFallback"):
         for count in (1, 2, 3):
             yield node(kind, *leaves(count))
-    for kind in ("IfThenElse", "WhileDoElse"):
-        for count in (2, 3):
-            yield node(kind, *leaves(count))
-    for kind in ("Inverter", "ForceSuccess", "ForceFailure", "KeepRunningUntilFailure", "RunOnce"):
-        yield node(kind, *leaves(1))
+    for count in (2, 3):
+        yield node("IfThenElse", *leaves(count))
+    yield node("Inverter", *leaves(1))
     for least, most in ((-1, 1), (-2, -1), (-9, 2), (0, 1), (2, 0), (-1, -2), ("{n}", 3), (-1, "{n}")):
         yield node("Parallel", leaf("RRFS"), leaf("RSF"), leaf("RRRS"), success_count=least, failure_count=most)
     for count, least, most in ((1, 1, 1), (2, 1, 1), (2, 1, 2), (2, 2, 1), (2, 2, 2), (3, 2, 2), (3, 3, 2), (3, 1, 3)):
         yield node("Parallel", *leaves(count), success_threshold=least, failure_threshold=most)
         yield node("Parallel", *leaves(count), success_count=least, failure_count=most)
     yield node("Parallel", *leaves(2))
-    yield node("ParallelAll", *leaves(2))
-    for count, most in ((1, 1), (1, -1), (2, 0), (3, 2), (3, -1), (3, -2), (2, "{n}")):
-        yield node("ParallelAll", *leaves(count), max_failures=most)
     for count in (0, 1, 3, -1, "{few}"):
         yield node("Repeat", leaf("SSRFSRS"), num_cycles=count)
         yield node("RetryUntilSuccessful", leaf("FRFFRSR"), num_attempts=count)
     yield node("RetryUntilSuccesful", *leaves(1), num_attempts=2)
-    for milliseconds in (0, 1, 1000, 2001, "{msec}"):
-        yield node("Delay", leaf("RSRFS"), delay_msec=milliseconds)
-        yield node("Timeout", leaf("RRSRRFRRR"), msec=milliseconds)
-    for skip in ("true", "false", "{yes}"):
-        for script in ("RRSF", "RRFS"):
-            yield node("RunOnce", leaf(script), then_skip=skip)
     for one, other, answer in (
         (2, 2, 2),
         (2, 3, 1),
@@ -99,15 +88,6 @@ def cases() -> Iterator[Tree]:
     check = node("BlackboardCheckInt", *leaves(1), value_A="{n}", value_B=1, return_on_mismatch=2)
     for value in (1, -7, "{m}"):
         yield node("Sequence", node("SetBlackboard", value=value, output_key="{n}"), check)
-    for count in range(2, 7):
-        values = {f"case_{i + 1}": i for i in range(count)}
-        yield node(f"Switch{count}", *leaves(count + 1), variable="{n}", **values)
-    for variable, one, other in (
-        ("{word}", "a", "ab"),
-        ("b", "{word}", "b"),
-        ("{n}", "{m}", 2),
-    ):
-        yield node("Switch2", *leaves(3), variable=variable, case_1=one, case_2=other)
 
 
 # ------------------------------------------------------------------- any trees
@@ -116,17 +96,14 @@ setups = st.builds(Setup, st.just(10), st.sampled_from((Fraction(1), Fraction(4)
 
 CHILDREN = {
     **dict.fromkeys(("Sequence", "Fallback", "SequenceWithMemory", "ReactiveSequence", "ReactiveFallback"), (1, 3)),
-    **dict.fromkeys(("Parallel", "ParallelAll"), (1, 3)),
-    **dict.fromkeys(("IfThenElse", "WhileDoElse"), (2, 3)),
-    **dict.fromkeys(("Inverter", "ForceSuccess", "ForceFailure", "KeepRunningUntilFailure", "RunOnce"), (1, 1)),
-    **dict.fromkeys(("Repeat", "RetryUntilSuccessful", "Delay", "Timeout", "BlackboardCheckInt"), (1, 1)),
-    "Switch2": (3, 3),
+    "Parallel": (1, 3),
+    "IfThenElse": (2, 3),
+    **dict.fromkeys(("Inverter", "Repeat", "RetryUntilSuccessful", "BlackboardCheckInt"), (1, 1)),
 }
 """Nodes, and the least and greatest number of their children."""
 
 _numbers = st.sampled_from((-1, 0, 1, 2, "{n}", "{m}"))
 _cycles = st.sampled_from((-1, 0, 1, 2, 3, "{few}"))
-_durations = st.sampled_from((0, 250, 900, 1000, "{msec}"))
 
 
 def ports_of(kind: str, count: int) -> st.SearchStrategy[dict[str, object]]:
@@ -135,23 +112,13 @@ def ports_of(kind: str, count: int) -> st.SearchStrategy[dict[str, object]]:
     match kind:
         case "Parallel":
             return st.fixed_dictionaries({}, optional={"success_count": counts, "failure_threshold": counts})
-        case "ParallelAll":
-            return st.fixed_dictionaries({"max_failures": st.one_of(st.integers(-count, count), st.just("{n}"))})
         case "Repeat":
             return st.fixed_dictionaries({"num_cycles": _cycles})
         case "RetryUntilSuccessful":
             return st.fixed_dictionaries({"num_attempts": _cycles})
-        case "Delay":
-            return st.fixed_dictionaries({"delay_msec": _durations})
-        case "Timeout":
-            return st.fixed_dictionaries({"msec": _durations})
-        case "RunOnce":
-            return st.fixed_dictionaries({"then_skip": st.sampled_from(("true", "false", "{yes}"))})
         case "BlackboardCheckInt":
             answers = st.integers(1, 3)
             return st.fixed_dictionaries({"value_A": _numbers, "value_B": _numbers, "return_on_mismatch": answers})
-        case "Switch2":
-            return st.fixed_dictionaries({"variable": st.just("{n}"), "case_1": _numbers, "case_2": _numbers})
     return st.just({})
 
 

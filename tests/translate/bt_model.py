@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Behavior trees executed in plain Python: a second implementation of the built-in nodes of docs/spec/nodes.md.
+"""Behavior trees executed in plain Python: a second implementation of the nodes of docs/spec/nodes.md#as2fm.
 
 - Nothing here knows how the nodes are translated; each class is a paragraph of the specification.
 - A node is ticked and halted by its parent only. Both, and the answers, are logged in the order in which they happen.
@@ -283,24 +283,6 @@ class Parallel(Node):
         return RUNNING
 
 
-class ParallelAll(Node):
-    """Ticks the children that have not finished; answers when all have. -1 failures are all, -2 all but one."""
-
-    def reset(self) -> None:
-        self.answers: dict[int, Status] = {}
-
-    def on_tick(self) -> Status:
-        most = int(self.port("max_failures", "1"))
-        for i, child in enumerate(self.children):
-            if i not in self.answers and (status := child.tick()) is not RUNNING:
-                self.answers[i] = status
-        if len(self.answers) < len(self.children):
-            return RUNNING
-        failures = list(self.answers.values()).count(FAILURE)
-        self.reset()
-        return FAILURE if failures >= (len(self.children) + most + 1 if most < 0 else most) else SUCCESS
-
-
 class IfThenElse(Node):
     """The condition is not ticked while a branch is running."""
 
@@ -319,39 +301,6 @@ class IfThenElse(Node):
         return RUNNING if status is RUNNING else self.end(status)
 
 
-class WhileDoElse(Node):
-    """The condition is ticked at every tick, and the branch that it does not choose is halted."""
-
-    def on_tick(self) -> Status:
-        condition, *branches = self.children
-        status = condition.tick()
-        if status is RUNNING:
-            return RUNNING
-        chosen = 0 if status is SUCCESS else 1
-        for i, branch in enumerate(branches):
-            if i != chosen:
-                branch.halt()
-        return branches[chosen].tick() if chosen < len(branches) else FAILURE
-
-
-class Switch(Node, names=("Switch2", "Switch3", "Switch4", "Switch5", "Switch6")):
-    """Ticks the child of the first case that holds, else the last one."""
-
-    def reset(self) -> None:
-        self.running: Node | None = None
-
-    def on_tick(self) -> Status:
-        cases = len(self.children) - 1
-        expected = self.port("variable")
-        holds = [i for i in range(cases) if self.port(f"case_{i + 1}") == expected]
-        chosen = self.children[holds[0] if holds else cases]
-        if self.running is not None and self.running is not chosen:
-            self.running.halt()
-        status = chosen.tick()
-        self.running = chosen if status is RUNNING else None
-        return status
-
-
 # ------------------------------------------------------------------ decorators
 
 
@@ -361,14 +310,6 @@ class Inverter(Node):
     def on_tick(self) -> Status:
         status = self.child.tick()
         return RUNNING if status is RUNNING else self.success if status is SUCCESS else self.failure
-
-
-class ForceSuccess(Inverter):
-    success, failure = SUCCESS, SUCCESS
-
-
-class ForceFailure(Inverter):
-    success, failure = FAILURE, FAILURE
 
 
 class Repeat(Node):
@@ -409,65 +350,6 @@ class RetryUntilSuccessful(Node, names=("RetryUntilSuccessful", "RetryUntilSucce
             self.attempt += 1
         self.reset()
         return FAILURE
-
-
-class KeepRunningUntilFailure(Node):
-    def on_tick(self) -> Status:
-        status = self.child.tick()
-        if status is RUNNING:
-            return RUNNING
-        self.child.halt()
-        return FAILURE if status is FAILURE else RUNNING
-
-
-class Delay(Node):
-    """Waits from its first tick on; the duration is the one that holds then."""
-
-    def reset(self) -> None:
-        self.left: int | None = None
-
-    def on_tick(self) -> Status:
-        if self.left is None:
-            self.left = self.world.ticks(int(self.port("delay_msec")))
-        if self.left > 0:
-            self.left -= 1
-            return RUNNING
-        status = self.child.tick()
-        if status is not RUNNING:
-            self.reset()
-        return status
-
-
-class Timeout(Node):
-    """As `Delay`, but the child is ticked meanwhile, and halted after. A duration of 0 ms never passes."""
-
-    def reset(self) -> None:
-        self.left: float | None = None
-
-    def on_tick(self) -> Status:
-        if self.left is None:
-            self.left = self.world.ticks(int(self.port("msec"))) or math.inf
-        status = self.child.tick()
-        if status is RUNNING and self.left > 0:
-            self.left -= 1
-            return RUNNING
-        if status is RUNNING:
-            return self.end(FAILURE)
-        self.reset()
-        return status
-
-
-class RunOnce(Node):
-    """What the child answered is remembered for ever, over halts, too."""
-
-    answer: Status | None = None
-
-    def on_tick(self) -> Status:
-        if self.answer is None:
-            status = self.child.tick()
-            self.answer = None if status is RUNNING else status
-            return status
-        return SUCCESS if self.port("then_skip", "true") == "true" else self.answer
 
 
 class BlackboardCheckInt(Node):

@@ -103,7 +103,7 @@ def main(plugins: Iterable[str], setup: Setup) -> dict[str, str]:
     text = (
         f'<roaml><parameters><max_time value="{milliseconds}" unit="ms"/><bt_tick_rate value="{float(setup.rate)}"/>'
         f'<bt_tick_if_not_running value="{"true" if setup.goes_on else "false"}"/></parameters>'
-        f'<behavior_tree><input type="bt.cpp-xml" src="tree.xml"/>{inputs}</behavior_tree>'
+        f'<behavior_tree tree-semantics="as2fm"><input type="bt.cpp-xml" src="tree.xml"/>{inputs}</behavior_tree>'
         '<properties><input type="jani" src="properties.jani"/></properties></roaml>'
     )
     return {"main.xml": text}

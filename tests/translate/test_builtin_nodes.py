@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The built-in nodes do what the specification says: translated, they take the same steps as a plain model of it."""
+"""With the semantics of AS2FM, the nodes do what the specification says: translated, they take the same steps as a
+plain model of it."""
 
 from __future__ import annotations
 
@@ -73,7 +74,7 @@ def test_node_in_jani(tree: Tree) -> None:
         node("ReactiveFallback", leaf("FFR"), node("Sequence", leaf("SR"), leaf("RSF"))),
         node("Parallel", node("Repeat", leaf("SRF"), num_cycles=2), leaf("RF"), success_count=1, failure_count=2),
         node(
-            "ParallelAll",
+            "Parallel",
             node("SetBlackboard", value=1, output_key="{n}"),
             node("BlackboardCheckInt", leaf("RS"), value_A="{n}", value_B=1, return_on_mismatch=3),
         ),

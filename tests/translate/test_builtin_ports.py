@@ -67,10 +67,10 @@ WORKER_TAG = "Leaf_3_1_2"
     [
         pytest.param(
             f"""<BehaviorTree ID="Main">
-                    <ParallelAll><SubTree ID="Do" times="1"/><SubTree ID="Do" times="2"/></ParallelAll>
+                    <Parallel><SubTree ID="Do" times="1"/><SubTree ID="Do" times="2"/></Parallel>
                 </BehaviorTree>
                 <BehaviorTree ID="Do"><Repeat num_cycles="{{times}}"><{WORKER_TAG}/></Repeat></BehaviorTree>""",
-            node("ParallelAll", *(node("Repeat", WORKER, num_cycles=n) for n in (1, 2))),
+            node("Parallel", *(node("Repeat", WORKER, num_cycles=n) for n in (1, 2))),
             id="constants of a subtree",
         ),
         pytest.param(
@@ -146,10 +146,9 @@ WORKER_TAG = "Leaf_3_1_2"
         pytest.param(
             f"""<TreeNodesModel>
                     <Decorator ID="Repeat"><input_port name="num_cycles" default="3"/></Decorator>
-                    <Decorator ID="RunOnce"><input_port name="then_skip" default="false"/></Decorator>
                 </TreeNodesModel>
-                <BehaviorTree ID="Main"><RunOnce><Repeat><{WORKER_TAG}/></Repeat></RunOnce></BehaviorTree>""",
-            node("RunOnce", node("Repeat", WORKER, num_cycles=3), then_skip="false"),
+                <BehaviorTree ID="Main"><Inverter><Repeat><{WORKER_TAG}/></Repeat></Inverter></BehaviorTree>""",
+            node("Inverter", node("Repeat", WORKER, num_cycles=3)),
             id="defaults of a tree model",
         ),
         pytest.param(

@@ -19,7 +19,7 @@ from roaml.explicit.space import StateLimits
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.record import Recorder, Recording
 from roaml.smc.run import EstimationMethod, Options
-from roaml.verification.results import Exact
+from roaml.verification.results import Exact, Refused
 
 
 def within(name: str, operand: object, **bounds: float) -> dict[str, object]:
@@ -155,7 +155,7 @@ def answered(files: Mapping[str, str]) -> dict[str, object]:
     (result,) = api.verify(
         loaded(files), ["p"], Options(method=EstimationMethod.FIXED, max_traces=300, seed=11), only_uniform=True
     )
-    assert result.refusal is None, result.refusal
+    assert not isinstance(result.outcome, Refused), result.outcome
     assert result.answer.tally.successes > 0
     return {**result.answer.tally.to_json(), "value": result.answer.value, "bounds": result.answer.bounds}
 

@@ -128,9 +128,9 @@ def test_the_limit_is_a_setting() -> None:
     assert [code for _, code, _ in found("branches", 100, Settings(limits=Limits(parts=1000)))] == ["model-too-large"]
 
 
-def test_control_nodes_grow_with_the_cube_of_their_children() -> None:
+def test_control_nodes_grow_with_the_square_of_their_children() -> None:
     assert found("nodes", 40) == []
-    [(file, code, message)] = found("nodes", 200)
+    [(file, code, message)] = found("nodes", 1000)
     assert (file, code) == ("main.xml", "model-too-large")
     assert "`Sequence` takes" in message
 

@@ -67,15 +67,16 @@ def answers(
     verifier = api.verifier(source, [name])
     result = verifier.exhaustive(verifier.checker.compiled_properties[0], api.StateLimits(max_states))
     (sampled,) = api.verify(source, [name], SAMPLING, only_uniform=True)
-    assert sampled.answer is not None, sampled.refusal
+    assert sampled.answer is not None, sampled.outcome
+    undecided = result.outcome.reason if isinstance(result.outcome, api.Undecided) else ""
     exact = result.exact
-    storm = None if result.undecided.startswith("stopped") else storms_answer(api.to_jani(source, [name]), name)
+    storm = None if undecided.startswith("stopped") else storms_answer(api.to_jani(source, [name]), name)
     return Answers(
         None if storm is None else (storm.least, storm.greatest),
         0 if storm is None else storm.states,
         None if exact is None else (exact.minimum.lower, exact.maximum.upper),
         None if exact is None or exact.uniform is None else exact.uniform.lower,
-        result.undecided,
+        undecided,
         sampled.answer.bounds,
         sampled.answer.tally.undecided,
     )

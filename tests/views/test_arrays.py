@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from as2fm_lsp.cli.interactive import Terminal
+from as2fm_lsp.outputs import OutputFiles
 from roaml import api
 from roaml.jani.expressions import ArrayValue, Integer
 from roaml.jani.model import Automaton, Variable
@@ -68,7 +69,7 @@ def test_a_story_shows_used_elements(main: Path) -> None:
 
 def test_the_terminal_shows_used_elements(main: Path, capsys: pytest.CaptureFixture[str]) -> None:
     target = api.as_target(api.load(str(main)))
-    Terminal(api.session(target), target).run(StringIO("t\ns\nt\ns\nq\n"))
+    Terminal(api.session(target), target, OutputFiles(target.files)).run(StringIO("t\ns\nt\ns\nq\n"))
     text = capsys.readouterr().out
     assert "levels: [7, 8] → [7, 8, 0, 9], grid: [] → [[], [4]]" in text
     assert "Collector: full (levels: [7, 8, 0, 9], grid: [[], [4]])" in text

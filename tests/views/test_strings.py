@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from as2fm_lsp.cli.interactive import Terminal
+from as2fm_lsp.outputs import OutputFiles
 from roaml import api
 from roaml.debugging.values import shown
 from roaml.jani.types import element_of, is_text
@@ -133,7 +134,7 @@ def test_a_story_uses_declared_types(main: Path) -> None:
 
 def test_the_terminal_uses_declared_types(main: Path, capsys: pytest.CaptureFixture[str]) -> None:
     target = api.as_target(api.load(str(main)))
-    Terminal(api.session(target), target).run(StringIO("s\ng 100000\ns\nq\n"))
+    Terminal(api.session(target), target, OutputFiles(target.files)).run(StringIO("s\ng 100000\ns\nq\n"))
     before, after = capsys.readouterr().out.split("Sign: start", 1)[1].split("Sign: done", 1)
     assert "angles: [], room: 'Küche €', door: 'x', names: [], rows: [], tag.label: '', tag.codes: []" in before
     assert "angles: [90, 45, 60], room: 'Küche €', door: '', names: ['Zoë', ''], rows: [[72, 105], []]" in after

@@ -94,3 +94,18 @@ def test_what_means_something_to_a_notation(notation: str, kind: Kind) -> None:
     render = NOTATIONS[notation].render
     assert render(hostile).count("\n") == render(plain).count("\n")
     assert all(line.count('"') % 2 == 0 for line in render(hostile).replace('\\"', "").splitlines())
+
+
+TAGS = '<script>alert(1)</script>\n!include /etc/passwd\n    click n0 href "javascript:x"'
+
+
+@pytest.mark.parametrize("kind", list(Kind))
+@pytest.mark.parametrize("notation", ["mermaid", "plantuml"])
+def test_names_end_neither_lines_nor_texts(notation: str, kind: Kind) -> None:
+    def drawn(name: str) -> str:
+        graph = Graph(kind, name, (GraphNode("a", (name,)),), (GraphLink("a", "a", (name,)),), "a")
+        return NOTATIONS[notation].render(graph)
+
+    text = drawn(TAGS)
+    assert "<script" not in text
+    assert text.count("\n") == drawn("name").count("\n")

@@ -18,6 +18,8 @@ from as2fm_lsp.cli.formats import CheckReport, render
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
 from as2fm_lsp.cli.options import check_options
 from as2fm_lsp.cli.output import complain, print_text, takes_color
+from as2fm_lsp.cli.tree_semantics import semantics_of
+from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, OutputFiles, outputs_of
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.project.configuration import find_settings
@@ -48,7 +50,6 @@ def parser() -> ArgumentParser:
         prog="as2fm-lsp check",
         description="Report what is wrong in systems, other files and folders. as2fm-lsp --check does the same.",
         epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     check_options(result)
     return result
@@ -77,12 +78,14 @@ def check(options: argparse.Namespace, name: str = "--check") -> int:
     settings = replace(
         settings,
         ament_prefixes=ament_prefixes(),
+        overrides=replace(settings.overrides, semantics=semantics_of(options)),
         select=frozenset(options.select) or settings.select,
         ignore=(settings.ignore - set(options.select)) | set(options.ignore),
     )
     texts = None if stdin is None else {stdin: sys.stdin.buffer.read()}
     try:
         result = api.check(paths, options.ros_path, settings, texts)
+        outputs = outputs_of(options, result.files)
         if options.fix and (fixed := api.fix(result)):
             for path, data in fixed.items():
                 write_file(path, data)
@@ -107,7 +110,7 @@ def check(options: argparse.Namespace, name: str = "--check") -> int:
     color = options.output is None and takes_color(sys.stdout)
     report = CheckReport(entries, len(result.files), Severity.WARNING if strict else Severity.ERROR, color)
     try:
-        _write(options, report)
+        _write(options, outputs, report)
     except OSError as error:
         if options.output is None:
             raise
@@ -130,10 +133,10 @@ def _unsafe(diagnostics: Sequence[Diagnostic]) -> str:
     return f"{total} more {have} not safe to apply without a review; an editor offers them: {names}"
 
 
-def _write(options: argparse.Namespace, report: CheckReport) -> None:
+def _write(options: argparse.Namespace, outputs: OutputFiles, report: CheckReport) -> None:
     text = _statistics(report.entries) if options.statistics else render(report, options.format)
-    if options.output is not None:
-        write_file(options.output, text)
+    if options.output not in (None, STANDARD_OUTPUT_PATH):
+        outputs.write(options.output, text)
     else:
         print_text(text, options.format.encoding)
 

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import argparse
 import os
 import sys
 from collections.abc import Sequence
@@ -21,6 +20,7 @@ An editor starts this program; docs/debugging.md describes the configuration. Th
   inFavor       N: the N-th trace in which it holds
   session       the file of a saved run (`simulate --save`)
   stopOnEntry   whether the run stops at its start (true, except with `against` and `inFavor`)
+  reactionTime  how long machines may wait before they take a possible step: "any", "instant", or "20 ms"
   maxTime       overrides <max_time> of the system, for example "100 s"
   constants     {"NAME": VALUE}, for constants of a JANI model
   rosPath       folders with ROS interface packages
@@ -51,5 +51,4 @@ def parser() -> ArgumentParser:
         prog="as2fm-lsp debug",
         description="Debug runs of systems and JANI models: a debug adapter (DAP) on standard input and output.",
         epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )

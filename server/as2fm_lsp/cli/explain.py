@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Sequence
 
 from as2fm_lsp.cli.arguments import ArgumentParser, unknown_rule
@@ -28,7 +27,6 @@ def parser() -> ArgumentParser:
         prog="as2fm-lsp explain",
         description="Print the document of a rule: what it reports, why this is a problem, and how to fix it.",
         epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     result.add_argument("code", metavar="CODE", help="the name of the rule, as it is shown after a finding")
     return result

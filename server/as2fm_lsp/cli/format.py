@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import argparse
 import os
 from collections.abc import Iterator, Sequence
 
@@ -82,7 +81,6 @@ def parser() -> ArgumentParser:
         "formatted "
         "only if they are named.",
         epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     result.add_argument("paths", nargs="+", metavar="PATH", help="files, or folders that are searched for them")
     mode = result.add_mutually_exclusive_group()

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import argparse
 import os
 import shlex
 from collections.abc import Iterator, Sequence
@@ -50,7 +49,6 @@ def parser() -> ArgumentParser:
         prog="as2fm-lsp init",
         description="Write a small working system as a starting point.",
         epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     result.add_argument("folder", metavar="DIR", help="the folder to write into; it is created if it does not exist")
     return result

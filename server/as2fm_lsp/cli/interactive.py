@@ -10,10 +10,10 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TextIO
 
-from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.model_arguments import fault_text, line_of
 from as2fm_lsp.cli.output import flush, print_text
-from roaml.model.parameters import duration
+from as2fm_lsp.outputs import OutputFiles
+from roaml.durations import duration
 from roaml.scxml.names import BLACKBOARD
 from roaml.simulation import Choice, Session
 from roaml.smc.fault import FaultError
@@ -53,9 +53,10 @@ def interrupts() -> Iterator[Callable[[], bool]]:
 class Terminal:
     """Shows a session, and executes the commands of the input."""
 
-    def __init__(self, session: Session, target: VerificationTarget) -> None:
+    def __init__(self, session: Session, target: VerificationTarget, outputs: OutputFiles) -> None:
         self._session = session
         self._target = target
+        self._outputs = outputs
         self._arrays: ArrayReader | None = None
         self._read_steps = 0
 
@@ -125,7 +126,7 @@ class Terminal:
         if not path:
             return "`w` needs the name of a file, such as `w run.json`"
         try:
-            write_file(path, self._session.save().to_json())
+            self._outputs.write(path, self._session.save().to_json())
         except OSError as error:
             return f"{path}: {error.strerror or error}"
         return f"written to {path}"

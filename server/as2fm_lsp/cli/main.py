@@ -11,15 +11,13 @@ import argparse
 import importlib
 import os
 import sys
-import traceback
 from collections.abc import Sequence
 
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.exit_status import CLEAN, FAILURE, USAGE
-from as2fm_lsp.cli.options import check_options, serve_options
 from as2fm_lsp.cli.output import STANDARD_OUTPUT, complain, flush, print_text
+from as2fm_lsp.cli.tree_semantics import behind
 from roaml import __version__
-from roaml.suggest import close_names, did_you_mean, listing
 
 COMMANDS = {
     "check": "report what is wrong in systems, other files and folders",
@@ -89,12 +87,15 @@ def _failed(error: Exception) -> int:
     if isinstance(error, OSError) and error.filename == STANDARD_OUTPUT:
         complain(f"{STANDARD_OUTPUT}: {error.strerror or error}")
         return USAGE
+    import traceback  # noqa: PLC0415 - a command without errors does not need it
+
     print_text("".join(traceback.format_exception(error)), stream=sys.stderr)
     complain("internal error; please report it")
     return FAILURE
 
 
 def _dispatch(arguments: Sequence[str]) -> int:
+    arguments = behind(arguments)
     command = arguments[0] if arguments else ""
     asks_for_check = any(len(a) > 2 and "--check".startswith(a) for a in arguments)
     is_path = asks_for_check and command in _ALSO_OPTIONS and os.path.exists(command)
@@ -135,10 +136,20 @@ def _misused(first: str) -> str:
     """The error for arguments that begin with `first`, which is not a command, and do not request a check."""
     if first.startswith("-") or os.path.exists(first):
         return "PATH and the options for checking need --check; see --help"
+    from roaml.suggest import close_names, did_you_mean, listing  # noqa: PLC0415 - only mistakes need it
+
     meant = close_names(first, COMMANDS, 1) or tuple(f"--{name}" for name in close_names(first, _ALONE, 1))
     if meant:
         return f"there is no command `{first}`{did_you_mean(meant)}"
     return f"there is no command or file `{first}`; the commands are {listing(tuple(COMMANDS))}; see --help"
+
+
+class _Version(argparse.Action):
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        from as2fm_lsp.cli.kernel_note import version_line  # noqa: PLC0415
+
+        print_text(f"as2fm-lsp {__version__}\n{version_line()}\n")
+        parser.exit()
 
 
 def _listed() -> str:
@@ -148,13 +159,16 @@ def _listed() -> str:
 
 
 def parser() -> ArgumentParser:
+    from as2fm_lsp.cli.options import check_options, serve_options  # noqa: PLC0415 - the commands have their own parsers
+
     result = ArgumentParser(
         prog="as2fm-lsp",
         description="Check HL-SCXML models of ROS 2 robots, or serve an editor.",
         epilog=f"{_listed()}\n{EXAMPLES}",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    result.add_argument("--version", action="version", version=f"as2fm-lsp {__version__}")
+    result.add_argument(
+        "--version", action=_Version, nargs=0, help="print the version and whether the kernel is compiled"
+    )
     result.add_argument("--explain", metavar="CODE", help="print the document of a rule and exit")
     serve_options(result.add_argument_group("language server"))
     checking = result.add_argument_group("checking")

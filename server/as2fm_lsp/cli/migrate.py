@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import argparse
 import os
 import shutil
 from collections.abc import Sequence
@@ -57,7 +56,6 @@ def parser() -> ArgumentParser:
         prog="as2fm-lsp migrate",
         description="Migrate systems of an older dialect to the current one. Comments and layout are kept.",
         epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     result.add_argument("paths", nargs="+", metavar="PATH", help="system files, or folders with systems")
     result.add_argument("--diff", action="store_true", help="show the changes and write nothing")

@@ -10,6 +10,7 @@ from fractions import Fraction
 from as2fm_lsp.cli.formats.report import shown_path
 from as2fm_lsp.cli.output import complain
 from as2fm_lsp.mocked_models import MAX_RATE, MockDeclarations, MockMessages, read_rate
+from as2fm_lsp.outputs import InputPath
 from roaml.mocks.mock import MockError
 
 MESSAGES = MockMessages(complain, shown_path, '--mock "*: 0.9 in 1 s"')
@@ -32,8 +33,13 @@ def add_mocks(parser: argparse.ArgumentParser) -> argparse._ArgumentGroup:
     add("--mock", action="append", default=[], metavar="'NODE: P in TIME'", help="leaves with this name or type "
         "succeed with probability P; actions are RUNNING for TIME before; `*` in NODE matches any text; may be "
         "repeated")  # fmt: skip
-    add("--mocks", metavar="FILE", help="read mocks from a file, one in each line (default without --mock: the file "
-        "TREE.mocks beside TREE.xml, if there is one)")  # fmt: skip
+    add(
+        "--mocks",
+        type=InputPath,
+        metavar="FILE",
+        help="read mocks from a file, one in each line (default without --mock: the file TREE.mocks beside TREE.xml, "
+        "if there is one)",
+    )
     return group
 
 

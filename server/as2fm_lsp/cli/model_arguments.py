@@ -13,7 +13,8 @@ from as2fm_lsp.cli.formats import CheckReport
 from as2fm_lsp.cli.formats.report import entry, shown_path
 from as2fm_lsp.cli.mock_options import MESSAGES, add_mock_options, declarations_in
 from as2fm_lsp.cli.output import takes_color
-from as2fm_lsp.cli.times import time_of
+from as2fm_lsp.cli.times import add_reaction_time, time_of
+from as2fm_lsp.cli.tree_semantics import add_semantics, semantics_of
 from as2fm_lsp.mocked_models import check_declarations, load_mocked_tree, mocked_system_texts, names_tree
 from roaml import api
 from roaml.diagnostics import Diagnostic
@@ -36,9 +37,11 @@ def add_model_arguments(parser: ArgumentParser) -> None:
     """Add the options that determine the model, except `main`."""
     add = parser.add_argument
     add("--max-time", type=time_of, metavar="TIME", help='overrides <max_time> of MAIN.xml, for example "100 s"')
+    add_reaction_time(parser)
     add("--constant", action="append", default=[], metavar="NAME=VALUE", help="sets a constant that "
         "MODEL.jani declares without a value; may be repeated")  # fmt: skip
     add("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages")
+    add_semantics(parser)
     add_mock_options(parser)
 
 
@@ -82,13 +85,19 @@ def read_target(options: argparse.Namespace, settings: Settings) -> Verification
     try:
         declared = declarations_in(options)
         if names_tree(options.main):
+            settings = with_reaction_time(settings, options)
             return load_mocked_tree(options.main, declared, options.max_time, settings, MESSAGES, counts=False).target
         if not declared.is_empty:
             texts = mocked_system_texts(options.main, declared, options.ros_path, settings, MESSAGES)
     except MockError as error:
         raise UsageError(str(error)) from None
-    overrides = Overrides(options.max_time, None)
+    overrides = Overrides(options.max_time, None, options.reaction_time, semantics=semantics_of(options))
     return api.target(options.main, options.ros_path, settings, texts, overrides, options.constant)
+
+
+def with_reaction_time(settings: Settings, options: argparse.Namespace) -> Settings:
+    """The settings with the reaction time of the command line, for a tree, whose file states none."""
+    return settings if options.reaction_time is None else replace(settings, reaction_time=options.reaction_time)
 
 
 def error_report(error: api.ModelError | api.JaniError) -> CheckReport:

@@ -7,6 +7,8 @@ import argparse
 
 from as2fm_lsp.cli.arguments import WordAction
 from as2fm_lsp.cli.formats import Format
+from as2fm_lsp.cli.tree_semantics import add_semantics
+from as2fm_lsp.outputs import InputPath, OutputPath
 from roaml.project.settings import SEVERITIES
 
 
@@ -17,23 +19,29 @@ def check_options(check: argparse._ActionsContainer) -> None:
         action="store_true",
         help="first apply all safe fixes: those that do not guess and do not change the behaviour of a model",
     )
-    check.add_argument("paths", nargs="*", metavar="PATH", help="system files, other files or folders")
+    check.add_argument("paths", nargs="*", type=InputPath, metavar="PATH", help="system files, other files or folders")
     check.add_argument(
         "--format", action=WordAction, words=Format, default=Format.TEXT, help="format of the diagnostics"
     )
-    check.add_argument("--output", metavar="FILE", help="write to FILE instead of standard output")
+    check.add_argument("--output", type=OutputPath, metavar="FILE", help="write to FILE instead of standard output")
     check.add_argument(
         "--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages"
     )
+    add_semantics(check)
     check.add_argument("--select", action=_Codes, default=[], metavar="CODE,...", help="report only these rules")
     check.add_argument("--ignore", action=_Codes, default=[], metavar="CODE,...", help="do not report these rules")
     check.add_argument("--severity", default="hint", choices=tuple(SEVERITIES), help="the minimum severity to report")
     check.add_argument("--warnings-as-errors", action="store_true", help="exit with 1 on warnings as well")
     check.add_argument("--statistics", action="store_true", help="count the findings of each rule")
     check.add_argument(
-        "--baseline", metavar="FILE", help="do not report the findings in FILE; create it if it does not exist"
+        "--baseline",
+        type=InputPath,
+        metavar="FILE",
+        help="do not report the findings in FILE; create it if it does not exist",
     )
-    check.add_argument("--stdin-filename", metavar="FILE", help="read the text of FILE from standard input")
+    check.add_argument(
+        "--stdin-filename", type=InputPath, metavar="FILE", help="read the text of FILE from standard input"
+    )
 
 
 def serve_options(serve: argparse._ActionsContainer) -> None:

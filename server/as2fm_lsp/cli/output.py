@@ -10,11 +10,9 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from typing import TextIO
 
-from as2fm_lsp.atomic_write import write_file
+from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, OutputFiles
 
 STANDARD_OUTPUT = "standard output"
-STANDARD_OUTPUT_PATH = "-"
-"""The path that means standard output."""
 """The `filename` of an `OSError` raised for standard output."""
 
 
@@ -67,14 +65,17 @@ def takes_color(stream: TextIO) -> bool:
     return stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
 
 
-def write_output(path: str, content: str | Iterable[str]) -> None:
+def write_output(outputs: OutputFiles, path: str, content: str | Iterable[str], *, translates: bool = False) -> None:
     """Write a text file, or write to standard output if the path is `-`. Both are UTF-8.
 
+    Args:
+        translates: whether the content is a translation, which may replace an older translation.
+
     Raises:
-        OSError: the file or standard output cannot be written.
+        OSError: the file may not be replaced, or the file or standard output cannot be written.
     """
     if path != STANDARD_OUTPUT_PATH:
-        write_file(path, content)
+        outputs.write(path, content, translates=translates)
         return
     for text in [content] if isinstance(content, str) else content:
         print_text(text, encoding="utf-8")

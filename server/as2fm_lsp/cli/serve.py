@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import argparse
 import logging
 import os
 import secrets
@@ -54,7 +53,6 @@ def parser() -> ArgumentParser:
         prog="as2fm-lsp serve",
         description="Serve one editor with the Language Server Protocol. as2fm-lsp without a command does the same.",
         epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     serve_options(result)
     return result

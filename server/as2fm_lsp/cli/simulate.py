@@ -6,7 +6,6 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
@@ -25,8 +24,10 @@ from as2fm_lsp.cli.model_arguments import (
 from as2fm_lsp.cli.numbers import natural, positive
 from as2fm_lsp.cli.output import complain, flush, print_text, write_output
 from as2fm_lsp.cli.times import time_of
+from as2fm_lsp.outputs import InputPath, OutputFiles, OutputPath, outputs_of
 from as2fm_lsp.verification.run_files import csv_lines, json_text, timeline_svg
 from roaml import api
+from roaml.disk import MAX_DATA, required
 from roaml.figures.themes import THEMES
 from roaml.jani.node import Origin
 from roaml.simulation import RunError, SavedSession, Session
@@ -71,6 +72,7 @@ def _run(options: argparse.Namespace) -> int:
     status = CLEAN
     try:
         target = read_target(options, settings)
+        outputs = outputs_of(options, target.files)
         session = api.session(target, _property(options, target), options.seed, options.trace, _saved(options))
     except (api.ModelError, api.JaniError) as error:
         print_text(render(error_report(error), Format.TEXT), stream=sys.stderr)
@@ -81,14 +83,14 @@ def _run(options: argparse.Namespace) -> int:
     if options.interactive:
         from as2fm_lsp.cli.interactive import Terminal  # noqa: PLC0415
 
-        Terminal(session, target).run(sys.stdin)
+        Terminal(session, target, outputs).run(sys.stdin)
     else:
         try:
             _advance(options, session, target)
         except FaultError as fault:
             complain(f"the run fails after step {session.position}: {fault_text(target, fault)}")
             status = FOUND
-    _write(options, session, target)
+    _write(options, outputs, session, target)
     return status
 
 
@@ -96,7 +98,7 @@ def _saved(options: argparse.Namespace) -> SavedSession | None:
     if options.script is None:
         return None
     try:
-        return SavedSession.from_json(Path(options.script).read_text(encoding="utf-8"))
+        return SavedSession.from_json(required(options.script, MAX_DATA).decode("utf-8"))
     except ValueError as error:
         raise UsageError(f"{options.script}: {error}") from None
 
@@ -133,7 +135,7 @@ def _advance(options: argparse.Namespace, session: Session, target: Verification
         session.until_decided(options.max_steps)
 
 
-def _write(options: argparse.Namespace, session: Session, target: VerificationTarget) -> None:
+def _write(options: argparse.Namespace, outputs: OutputFiles, session: Session, target: VerificationTarget) -> None:
     from roaml.views.story import as_html, as_mermaid, as_text  # noqa: PLC0415
 
     def place_of(origin: Origin) -> str:
@@ -141,17 +143,17 @@ def _write(options: argparse.Namespace, session: Session, target: VerificationTa
 
     story = session.story()
     if options.save is not None:
-        write_output(options.save, session.save().to_json())
+        write_output(outputs, options.save, session.save().to_json())
     if options.html is not None:
-        write_output(options.html, as_html([story], place_of, shown_path(options.main)))
+        write_output(outputs, options.html, as_html([story], place_of, shown_path(options.main)))
     if options.mermaid is not None:
-        write_output(options.mermaid, as_mermaid(story, place_of))
+        write_output(outputs, options.mermaid, as_mermaid(story, place_of))
     if options.svg is not None:
-        write_output(options.svg, timeline_svg(session, shown_path(options.main), options.theme))
+        write_output(outputs, options.svg, timeline_svg(session, shown_path(options.main), options.theme))
     if options.csv is not None:
-        write_output(options.csv, csv_lines(session))
+        write_output(outputs, options.csv, csv_lines(session))
     if options.json is not None:
-        write_output(options.json, json_text(session, target))
+        write_output(outputs, options.json, json_text(session, target))
     if not options.interactive and not any((options.html, options.mermaid, options.svg, options.csv, options.json)):
         print_text(as_text(story, place_of) + _summary(session))
         flush()
@@ -178,10 +180,9 @@ def parser() -> ArgumentParser:
         prog="as2fm-lsp simulate",
         description="Simulate one run of a system or JANI model, and show its steps.",
         epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add = result.add_argument
-    add("main", metavar="MAIN.xml|MODEL.jani", help="the system file, or a JANI model")
+    add("main", type=InputPath, metavar="MAIN.xml|MODEL.jani", help="the system file, or a JANI model")
     add("--property", metavar="NAME", help="the property that is evaluated on the run (the first one)")
     add("--seed", type=natural, default=0, metavar="N", help="seed of the random numbers (0)")
     add("--trace", type=natural, default=0, metavar="N", help="number of the trace (0)")
@@ -192,22 +193,29 @@ def parser() -> ArgumentParser:
         help="end when this property is decided, or this event or a message of this topic, service or action is sent",
     )
     add("--max-steps", type=positive, default=1_000_000, metavar="N", help="end after N steps (1000000)")
-    add("--script", metavar="FILE", help="repeat a run that --save has written")
+    add("--script", type=InputPath, metavar="FILE", help="repeat a run that --save has written")
     add(
         "--save",
+        type=OutputPath,
         metavar="FILE",
         help="write the decisions of the run, for --script",
     )
     add("--interactive", "-i", action="store_true", help="choose each next step on the terminal, and go back")
     add(
         "--csv",
+        type=OutputPath,
         metavar="FILE",
         help="write the state after each step as CSV; - is standard output, also for the options below",
     )
-    add("--json", metavar="FILE", help="write the steps as JSON")
-    add("--mermaid", metavar="FILE", help="write the run as a Mermaid sequence diagram")
-    add("--svg", metavar="FILE", help="write the run as a timeline: states, statuses, messages and variables")
+    add("--json", type=OutputPath, metavar="FILE", help="write the steps as JSON")
+    add("--mermaid", type=OutputPath, metavar="FILE", help="write the run as a Mermaid sequence diagram")
+    add(
+        "--svg",
+        type=OutputPath,
+        metavar="FILE",
+        help="write the run as a timeline: states, statuses, messages and variables",
+    )
     add("--theme", choices=tuple(THEMES), default="light", help="the colors of the timeline (light)")
-    add("--html", metavar="FILE", help="write the run as an HTML page")
+    add("--html", type=OutputPath, metavar="FILE", help="write the run as an HTML page")
     add_model_arguments(result)
     return result

@@ -9,16 +9,25 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
-from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.arguments import ArgumentParser, WordAction
 from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
 from as2fm_lsp.cli.formats import CheckReport, Format, render
 from as2fm_lsp.cli.formats.report import entry, shown_path
 from as2fm_lsp.cli.numbers import positive
-from as2fm_lsp.cli.output import STANDARD_OUTPUT_PATH, complain, print_text, takes_color, write_output
+from as2fm_lsp.cli.output import complain, print_text, takes_color, write_output
 from as2fm_lsp.cli.status_line import StatusLine
-from as2fm_lsp.cli.times import time_of
-from as2fm_lsp.translation import OutputError, check_not_an_input, jani_path, summary, without_bounded
+from as2fm_lsp.cli.times import add_reaction_time, time_of
+from as2fm_lsp.cli.tree_semantics import add_semantics, semantics_of
+from as2fm_lsp.outputs import (
+    STANDARD_OUTPUT_PATH,
+    InputPath,
+    OutputFiles,
+    OutputFolder,
+    OutputPath,
+    TranslationPath,
+    outputs_of,
+)
+from as2fm_lsp.translation import jani_path, summary, without_bounded
 from roaml import api
 from roaml.diagnostics import Diagnostic
 from roaml.jani.model import Model
@@ -29,6 +38,7 @@ from roaml.project.settings import ament_prefixes
 from roaml.record import replace
 from roaml.scxml.lowered_properties import FILE_NAME, NOBODY_TEXT, lowered_properties
 from roaml.scxml.model import Network
+from roaml.scxml.names import TRANSLATION_MARK
 from roaml.scxml.writer import NOBODY
 from roaml.scxml.writer import write as scxml_texts
 from roaml.text import SourceFile
@@ -51,8 +61,11 @@ written; 2 usage error; 3 internal error
 
 def run(arguments: Sequence[str]) -> int:
     options = parser().parse_args(arguments)
-    overrides = Overrides(options.max_time, options.max_array_size)
-    output = options.output or jani_path(options.main)
+    overrides = Overrides(
+        options.max_time, options.max_array_size, options.reaction_time, semantics=semantics_of(options)
+    )
+    options.output = options.output or TranslationPath(jani_path(options.main))
+    output = options.output
     settings, problems = find_settings(os.path.abspath(options.main))
     if problems:
         return _fail(problems[0])
@@ -63,17 +76,15 @@ def run(arguments: Sequence[str]) -> int:
         try:
             status.stage("reading")
             system = api.load(options.main, options.ros_path, settings, overrides=overrides)
-            for path in (output, options.map):
-                if path is not None:
-                    check_not_an_input(path, system)
+            outputs = outputs_of(options, system.files)
             status.stage("translating")
             network = api.to_scxml(system)
             model, left_out = without_bounded(api.to_jani(system, options.property or None))
             is_refused = bool(left_out and options.property)
             if not is_refused:
                 status.stage("writing")
-                _write(options, output, system, network, model)
-        except (api.PathError, api.PropertyError, OutputError) as error:
+                _write(options, outputs, system, network, model)
+        except (api.PathError, api.PropertyError) as error:
             return _fail(str(error))
         except api.ModelError as error:
             failure: api.ModelError | None = error
@@ -104,18 +115,24 @@ def parser() -> ArgumentParser:
         prog="as2fm-lsp translate",
         description="Translate a system to JANI, and to plain SCXML on request.",
         epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    result.add_argument("main", metavar="MAIN.xml", help="the system file")
-    result.add_argument("-o", "--output", metavar="FILE", help="the JANI file (MAIN.jani); - for standard output")
-    result.add_argument("--indent", type=_count, metavar="N", help="indent the JANI file by N spaces (one line)")
-    result.add_argument("--map", metavar="FILE", help="write the source position of each automaton, edge and variable")
+    result.add_argument("main", type=InputPath, metavar="MAIN.xml", help="the system file")
     result.add_argument(
-        "--scxml-dir", metavar="DIR", help="write a plain SCXML file for each automaton, and the properties in XML"
+        "-o", "--output", type=TranslationPath, metavar="FILE", help="the JANI file (MAIN.jani); - for standard output"
+    )
+    result.add_argument("--indent", type=_count, metavar="N", help="indent the JANI file by N spaces (one line)")
+    result.add_argument(
+        "--map", type=OutputPath, metavar="FILE", help="write the source position of each automaton, edge and variable"
+    )
+    result.add_argument(
+        "--scxml-dir",
+        type=OutputFolder,
+        metavar="DIR",
+        help="write a plain SCXML file for each automaton, and the properties in XML",
     )
     for notation in NOTATIONS.values():
         help_ = f"write diagrams of the machines, the tree and the network ({notation.title})"
-        result.add_argument(f"--{notation.name}", metavar="DIR", help=help_)
+        result.add_argument(f"--{notation.name}", type=OutputFolder, metavar="DIR", help=help_)
     result.add_argument(
         "--property", action="append", default=[], metavar="NAME", help="translate only this property; may be repeated"
     )
@@ -123,7 +140,9 @@ def parser() -> ArgumentParser:
     result.add_argument(
         "--max-time", type=time_of, metavar="TIME", help='overrides <max_time> of MAIN.xml, for example "100 s"'
     )
+    add_reaction_time(result)
     result.add_argument("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interfaces")
+    add_semantics(result)
     result.add_argument(
         "--format",
         action=WordAction,
@@ -141,30 +160,34 @@ def _count(text: str) -> int:
     return value
 
 
-def _write(options: argparse.Namespace, output: str, system: api.LoadedSystem, network: Network, model: Model) -> None:
+def _write(
+    options: argparse.Namespace, outputs: OutputFiles, system: api.LoadedSystem, network: Network, model: Model
+) -> None:
     """Write the requested files; the JANI file is last, so that a failure leaves it unchanged."""
     if options.scxml_dir is not None:
-        _write_folder(options.scxml_dir, _scxml_files(options, system, network))
+        _write_folder(outputs, options.scxml_dir, _scxml_files(options, system, network))
     for notation in NOTATIONS.values():
         folder = getattr(options, notation.name)
         if folder is not None:
-            _write_folder(folder, _diagrams(system, model, notation))
+            _write_folder(outputs, folder, _diagrams(system, model, notation))
     if options.map is not None:
         text = json.dumps(api.source_map(system, model), ensure_ascii=False, indent=1) + "\n"
-        write_output(options.map, [text])
-    write_output(output, (*jani_text(model, options.indent), "\n"))
+        write_output(outputs, options.map, [text])
+    write_output(outputs, options.output, (*jani_text(model, options.indent), "\n"), translates=True)
 
 
 def _scxml_files(options: argparse.Namespace, system: api.LoadedSystem, network: Network) -> Iterator[tuple[str, str]]:
-    """File name and text of each machine of the network, and of the properties in XML."""
+    """File name and text of each machine of the network, and of the properties in XML. The mark is at the end, because
+    not every tool that reads SCXML accepts comments before the root element."""
+    mark = f"<!-- {TRANSLATION_MARK} -->\n"
     for name, text in scxml_texts(network):
-        yield f"{name}.scxml", text
+        yield f"{name}.scxml", text + mark
     chosen = [p for p in system.observed if not options.property or p.name in options.property]
     lowered = lowered_properties(network, chosen)
     if lowered.text:
-        yield FILE_NAME, lowered.text
+        yield FILE_NAME, lowered.text + mark
     if lowered.names_nobody:
-        yield f"{NOBODY}.scxml", NOBODY_TEXT
+        yield f"{NOBODY}.scxml", NOBODY_TEXT + mark
     for property_, reason in lowered.left_out:
         complain(f"the property `{property_.name}` is not written to {FILE_NAME}: {reason}")
 
@@ -185,10 +208,13 @@ def _diagrams(system: api.LoadedSystem, model: Model, notation: Notation) -> Ite
     yield f"network.{notation.extension}", notation.render(network_graph(model, title))
 
 
-def _write_folder(folder: str, files: Iterable[tuple[str, str]]) -> None:
+def _write_folder(outputs: OutputFiles, folder: str, files: Iterable[tuple[str, str]]) -> None:
+    """Write files into a folder, if all of them may be written."""
+    texts = {os.path.join(folder, name): text for name, text in files}
+    outputs.check(texts, translates=True)
     os.makedirs(folder, exist_ok=True)
-    for name, text in files:
-        write_file(os.path.join(folder, name), text)
+    for path, text in texts.items():
+        outputs.write(path, text, translates=True)
 
 
 def _source(system: api.LoadedSystem, path: str) -> SourceFile:

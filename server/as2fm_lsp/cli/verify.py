@@ -13,11 +13,11 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from typing import TYPE_CHECKING, Any
 
-from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
 from as2fm_lsp.cli.formats import CheckReport, Format, render
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
 from as2fm_lsp.cli.interrupts import Interrupts
+from as2fm_lsp.cli.kernel_note import slow_kernel_note
 from as2fm_lsp.cli.mock_options import MESSAGES, declarations_in
 from as2fm_lsp.cli.model_arguments import (
     UsageError,
@@ -26,8 +26,9 @@ from as2fm_lsp.cli.model_arguments import (
     read_target,
     report_of,
     settings_of,
+    with_reaction_time,
 )
-from as2fm_lsp.cli.output import STANDARD_OUTPUT_PATH, complain, flush, print_text, takes_color
+from as2fm_lsp.cli.output import complain, flush, print_text, takes_color
 from as2fm_lsp.cli.progress_bar import ProgressBar
 from as2fm_lsp.cli.status_line import StatusLine
 from as2fm_lsp.cli.verify_arguments import (
@@ -36,8 +37,10 @@ from as2fm_lsp.cli.verify_arguments import (
     expectations_in,
     limits_in,
     parser,
+    state_limits_in,
 )
 from as2fm_lsp.mocked_models import load_mocked_tree, names_tree
+from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, outputs_of
 from as2fm_lsp.verification import stuck_report
 from as2fm_lsp.verification.doubts import can_get_stuck
 from as2fm_lsp.verification.node_names import explained
@@ -45,6 +48,7 @@ from as2fm_lsp.verification.report import as_json, as_text
 from as2fm_lsp.verification.saved_state import SavedState, StateError
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
+from roaml.durations import INSTANT
 from roaml.explicit.space import MAX_STATES, StateLimits
 from roaml.mocks.mock import MockError
 from roaml.record import replace
@@ -61,7 +65,7 @@ from roaml.verification.counterexample import unwanted_trace, unwanted_verdict
 from roaml.verification.exhaustive import ExplorationInterruptedError
 from roaml.verification.expectations import Expectation, RangeError
 from roaml.verification.refusal import fault_message
-from roaml.verification.results import Exact, Result
+from roaml.verification.results import Computed, CutShort, Estimated, Exact, Refused, Result, Sampled
 from roaml.verification.searches import Searches
 from roaml.verification.small import EXAMPLE_TRACES
 from roaml.verification.target import VerificationTarget
@@ -86,6 +90,7 @@ longer than it saves."""
 
 def run(arguments: Sequence[str]) -> int:
     options = parser().parse_args(arguments)
+    print_text(slow_kernel_note(), stream=sys.stderr)
     with Interrupts() as interrupts:
         try:
             return _checked(options, interrupts)
@@ -128,6 +133,7 @@ def _run(options: argparse.Namespace, interrupts: Interrupts) -> int:
                 only_uniform=only_uniform,
                 exact_if_small=not asks_for_traces(options),
                 example_traces=EXAMPLE_TRACES,
+                limits=state_limits_in(options),
             )
     except (api.ModelError, api.JaniError) as error:
         return _errors(options, error_report(error))
@@ -162,6 +168,7 @@ def _run_tree(
             status.stage("reading and translating")
             counts = not options.exhaustive
             declared = declarations_in(options)
+            settings = with_reaction_time(settings, options)
             tree = load_mocked_tree(options.main, declared, options.max_time, settings, MESSAGES, counts=counts)
             status.stage("compiling")
             names = options.property or [SUCCEEDS]
@@ -173,6 +180,10 @@ def _run_tree(
     except api.ModelError as error:
         return _errors(options, error_report(error))
     return _Verification(options, verifier, interrupts, (tree.mocked, outcome)).run()
+
+
+REACTIONS = {INSTANT: "assumed: machines take possible steps at once, before time advances"}
+"""Reaction time -> the assumption in the words of users."""
 
 
 class _Verification:
@@ -192,6 +203,7 @@ class _Verification:
         self.interrupts = interrupts
         self.target = verifier.target
         self.limits = verifier.options
+        self.outputs = outputs_of(options, self.target.files)
         self.stuck_result: stuck.StuckResult | None = None
         self.state = None if options.resume is None else SavedState(options.resume, self.limits)
         self.results: list[Result] = []
@@ -269,7 +281,7 @@ class _Verification:
         if self.state is not None:
             for property_, tally in zip(properties, tallies, strict=True):
                 self.state.keep(property_.question.name, by_name[property_.question.name], tally, now=True)
-        self.faults += [result.fault for result in results if result.fault is not None]
+        self.faults += [result.outcome.fault for result in results if isinstance(result.outcome, Refused)]
         return {result.name: self._with_shown_path(result) for result in results}
 
     def _answer_alone(self, name: str, pool: Pool, bar: ProgressBar) -> Result:
@@ -282,10 +294,12 @@ class _Verification:
 
     def _with_shown_path(self, result: Result) -> Result:
         """The result, with the path in its refusal as `shown_path` returns it."""
-        why = result.refusal
-        if why is None or why.place is None:
-            return result
-        return replace(result, refusal=replace(why, place=why.place._replace(path=shown_path(why.place.path))))
+        match result.outcome:
+            case Refused(reason=reason) as refused if reason.place is not None:
+                place = reason.place._replace(path=shown_path(reason.place.path))
+                return replace(result, outcome=replace(refused, reason=replace(reason, place=place)))
+            case _:
+                return result
 
     def _answer(self, property_: CompiledProperty, pool: Pool, bar: ProgressBar) -> Result:
         began = time.monotonic()
@@ -345,10 +359,10 @@ class _Verification:
             )
         except KeyboardInterrupt as interrupt:
             self.interrupts.ignore()
-            result = Result(property_.question.name, None, (), time.monotonic() - began, is_interrupted=True)
+            outcome = CutShort()
             if isinstance(interrupt, ExplorationInterruptedError):
-                result = replace(result, explored=interrupt.states, growing=interrupt.growing)
-            return result
+                outcome = CutShort(interrupt.states, interrupt.growing)
+            return Result(property_.question.name, outcome, seconds=time.monotonic() - began)
 
     def _print(self) -> None:
         text = self._text()
@@ -411,7 +425,15 @@ class _Verification:
         return "" if named is None else f"above, below `{named}`"
 
     def _assumptions(self) -> str:
-        """The assumptions of all results: one line, or two lines if some values are exact and others are estimates."""
+        """The assumptions of all results: how they were computed, and the reaction time if it is not `any`."""
+        metadata = self.target.model.metadata
+        reactions = "" if metadata is None else REACTIONS.get(metadata.reaction_time.text, "")
+        if metadata is not None and not reactions and not metadata.reaction_time.is_any:
+            reactions = f"assumed: each machine takes a possible step within {metadata.reaction_time.text}"
+        return self._computation() + (f"\n{reactions} (reaction time)" if reactions else "")
+
+    def _computation(self) -> str:
+        """How the results were computed: one line, or two lines if some values are exact and others are estimates."""
         if self.options.exhaustive:
             return self._exploration("computed", uniform_only=False)
         if self.options.scheduler is Scheduler.LSS:
@@ -427,7 +449,8 @@ class _Verification:
         computed += "; use --method adaptive for estimates from traces"
         has_estimate = self.stuck_result is not None and self.stuck_result.answer is not None
         has_estimate = has_estimate or any(
-            r.answer is not None and (r.exact is None or r.has_uniform_estimate) for r in self.results
+            isinstance(r.outcome, Estimated) or (isinstance(r.outcome, Computed) and r.outcome.has_uniform_estimate)
+            for r in self.results
         )
         return f"{computed}\nestimates: {how}" if has_estimate else computed
 
@@ -489,17 +512,18 @@ class _Verification:
 
         stories: list[Story] = []
         for result in self.results:
-            if result.exact is not None:
-                stories += self._shortest(result, result.exact)
+            if isinstance(result.outcome, Computed):
+                stories += self._shortest(result, result.outcome.exact)
                 continue
             traces = result.traces
             if result.answer is None or traces is None:
-                if result.sampled and (self.options.explain or self.options.traces is not None):
+                if isinstance(result.outcome, Sampled) and (self.options.explain or self.options.traces is not None):
                     complain(f"{result.name}: traces of sampled schedulers can be neither explained nor written")
                 continue
             if self.options.traces is not None:
                 recorder = traces.recorder()
-                write_traces(self.options.traces, self.target, recorder, result.answer, self.options.traces_limit)
+                folder, limit = self.options.traces, self.options.traces_limit
+                write_traces(self.outputs, folder, self.target, recorder, result.answer, limit)
             if self.options.explain:
                 seen = unwanted_trace(result)
                 if seen is None:
@@ -554,7 +578,7 @@ class _Verification:
             # With a format for programs, standard output contains only the results.
             print_text(text, stream=sys.stdout if self.options.format is Format.TEXT else sys.stderr)
         else:
-            write_file(file, text)
+            self.outputs.write(file, text)
 
 
 @contextmanager

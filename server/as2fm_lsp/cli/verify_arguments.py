@@ -12,10 +12,13 @@ from as2fm_lsp.cli.arguments import ArgumentParser, WordAction
 from as2fm_lsp.cli.formats import Format
 from as2fm_lsp.cli.model_arguments import UsageError, add_model_arguments
 from as2fm_lsp.cli.numbers import natural, positive, size
-from as2fm_lsp.cli.output import STANDARD_OUTPUT_PATH
+from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, InputPath, OutputFolder, OutputPath
 from roaml.exhaustive import Vocabulary
+from roaml.explicit.space import StateLimits
+from roaml.record import replace
 from roaml.smc.run import MIN_EPSILON, EstimationMethod, Options
 from roaml.verification.expectations import Expectation, parse
+from roaml.verification.small import SHARED_LIMITS
 from roaml.verification.stuck import StuckLevel
 
 EXAMPLES = """\
@@ -68,10 +71,12 @@ def parser() -> ArgumentParser:
         description="Compute the probabilities of the properties of a system or JANI model: exactly if the model has "
         "few states, otherwise as estimates from random traces.",
         epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     result.add_argument(
-        "main", metavar="MAIN.xml|MODEL.jani|TREE.xml", help="the system file, a JANI model, or a tree without a system"
+        "main",
+        type=InputPath,
+        metavar="MAIN.xml|MODEL.jani|TREE.xml",
+        help="the system file, a JANI model, or a tree without a system",
     )
     add = result.add_argument
     add("--property", action="append", default=[], metavar="NAME", help="verify only this property; may be repeated")
@@ -106,10 +111,13 @@ def parser() -> ArgumentParser:
         "and a warning or note states whether other schedulers may have another value")  # fmt: skip
     add("--exhaustive", "--exact", action="store_true", help="explore all states, for the exact minimum, maximum and "
         "uniform value of each property, and the shortest trace")  # fmt: skip
-    add("--max-states", type=positive, metavar="N", help="with --exhaustive: stop at N states; the result is then "
-        "undecided")  # fmt: skip
-    add("--max-memory", type=size, metavar="SIZE", help="with --exhaustive: stop when the states occupy "
-        "this much memory, for example 4G or 500M; the result is then undecided (half of the free memory)")  # fmt: skip
+    add("--max-states", type=positive, metavar="N", help="explore at most N states for each property (2000000; with "
+        "--exhaustive: no limit). Without --exhaustive, a property with more states is estimated from traces, with it, "
+        "the property is undecided")  # fmt: skip
+    add("--max-transitions", type=positive, metavar="N", help="without --exhaustive: explore at most N transitions for "
+        "all properties together (6000000, which takes 5 to 10 s)")  # fmt: skip
+    add("--max-memory", type=size, metavar="SIZE", help="stop when the states occupy this much memory, for example 4G "
+        "or 500M (1G; with --exhaustive: half of the free memory)")  # fmt: skip
     add("--no-reductions", action="store_true", help="with --exhaustive: explore all states even if there are many; "
         "without it, choices are left out that change neither the minimum nor the maximum, and states that differ only "
         "in variables without influence are one state")  # fmt: skip
@@ -119,8 +127,13 @@ def parser() -> ArgumentParser:
         "warning (default), or as an error with exit status 1")  # fmt: skip
     add("--separate", action="store_true", help="generate traces for each property; without it, properties share "
         "traces, with the same results")  # fmt: skip
-    add("--resume", metavar="FILE", help="save the intermediate state in FILE, and continue from it if it exists")
-    add("--traces", metavar="DIR", help="write traces as CSV and JSON files into DIR")
+    add(
+        "--resume",
+        type=InputPath,
+        metavar="FILE",
+        help="save the intermediate state in FILE, and continue from it if it exists",
+    )
+    add("--traces", type=OutputFolder, metavar="DIR", help="write traces as CSV and JSON files into DIR")
     add("--traces-limit", type=natural, default=10, metavar="N", help="with --traces: write the first N "
         "traces of each verdict, and the shortest one (10)")  # fmt: skip
     add("--explain", nargs="?", action="append", const=STANDARD_OUTPUT_PATH, default=[], type=_story_file,
@@ -159,12 +172,12 @@ def _width(text: str) -> float:
     return value
 
 
-def _story_file(text: str) -> str:
+def _story_file(text: str) -> OutputPath:
     if text != STANDARD_OUTPUT_PATH and not text.endswith((".txt", ".mmd", ".html")):
         raise argparse.ArgumentTypeError(
             f"`{text}` does not end in .txt, .mmd or .html; if it is the model, name it before --explain"
         )
-    return text
+    return OutputPath(text)
 
 
 def expectations_in(texts: Sequence[str]) -> list[Expectation]:
@@ -191,6 +204,12 @@ def limits_in(options: argparse.Namespace) -> Options:
         return Options(**given)
     except ValueError as error:
         raise UsageError(str(error)) from None
+
+
+def state_limits_in(options: argparse.Namespace) -> StateLimits:
+    """The limits of searches for exact values without --exhaustive."""
+    given = {"states": options.max_states, "transitions": options.max_transitions, "bytes": options.max_memory}
+    return replace(SHARED_LIMITS, **{name: value for name, value in given.items() if value is not None})
 
 
 def asks_for_traces(options: argparse.Namespace) -> bool:

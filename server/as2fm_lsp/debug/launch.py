@@ -22,10 +22,11 @@ from roaml.debugging.debugger import Debugger, Log
 from roaml.debugging.sources import Sources
 from roaml.debugging.start import Start, StartError, Watch, start
 from roaml.diagnostics import Diagnostic
-from roaml.disk import NotReadableError, is_valid_path, required
+from roaml.disk import MAX_DATA, NotReadableError, UnreadableReason, is_valid_path, required, status_of
+from roaml.durations import REACTION_TIME, ReactionTime, duration, reaction_time
 from roaml.language.grammar import XML_GRAMMARS
 from roaml.mocks.mock import MockError
-from roaml.model.parameters import Overrides, duration
+from roaml.model.parameters import Overrides
 from roaml.project.configuration import find_settings
 from roaml.project.settings import ament_prefixes
 from roaml.record import Record, replace
@@ -47,6 +48,7 @@ class Launch(Record, frozen=True):
         program: the system file, a file of behavior trees, or a JANI model.
         stops_on_entry: whether the run stops at its start.
         max_time: overrides the time limit of the system, in ns.
+        reaction_time: overrides the reaction time of the system.
         constants: `NAME=VALUE` for constants of a JANI model.
         mocks: the mocks of leaves without a plugin, and the parameters of a tree without a system.
     """
@@ -55,6 +57,7 @@ class Launch(Record, frozen=True):
     start: Start
     stops_on_entry: bool
     max_time: int | None
+    reaction_time: ReactionTime | None
     constants: tuple[str, ...]
     ros_paths: tuple[str, ...]
     mocks: MockDeclarations
@@ -74,7 +77,7 @@ def launch_of(arguments: Arguments) -> Launch:
     Raises:
         RequestError: an argument is missing or not valid, or the saved session cannot be read.
     """
-    program = os.path.abspath(arguments.text("program", None))
+    program = _program(arguments.text("program", None))
     against, in_favour = arguments.natural("against", 0), arguments.natural("inFavor", 0)
     if against and in_favour:
         raise RequestError("`against` and `inFavor` exclude each other")
@@ -83,6 +86,10 @@ def launch_of(arguments: Arguments) -> Launch:
     nanoseconds = duration(max_time) if max_time else None
     if max_time and nanoseconds is None:
         raise RequestError(f'`maxTime` is `{max_time}`, which is not a duration such as "10 s"')
+    written = arguments.text("reactionTime")
+    reaction = reaction_time(written) if written else None
+    if written and reaction is None:
+        raise RequestError(f"`reactionTime` is `{written}`; {REACTION_TIME}")
     begin = Start(
         arguments.text("property"),
         arguments.natural("seed", 0),
@@ -96,10 +103,26 @@ def launch_of(arguments: Arguments) -> Launch:
         begin,
         arguments.flag("stopOnEntry", not begin.nth),
         nanoseconds,
+        reaction,
         tuple(f"{name}={value}" for name, value in _values(arguments, "constants").items()),
         tuple(arguments.texts("rosPath")),
         _mocks(arguments, os.path.dirname(program)),
     )
+
+
+def _program(text: str) -> str:
+    """The absolute path of the model.
+
+    Raises:
+        RequestError: there is no file that can be read.
+    """
+    if not text or not is_valid_path(text):
+        raise RequestError("`program` is not the path of a file")
+    path = os.path.abspath(text)
+    status = status_of(path, MAX_DATA)
+    if isinstance(status, UnreadableReason):
+        raise RequestError(f"{path}: {status.value}")
+    return path
 
 
 def _mocks(arguments: Arguments, folder: str) -> MockDeclarations:
@@ -163,14 +186,16 @@ def _sources(launch: Launch, log: Log) -> Sources:
         raise RequestError(problems[0])
     settings = replace(settings, ament_prefixes=ament_prefixes())
     check_declarations(path, mocks)
+    overrides = Overrides(launch.max_time, None, launch.reaction_time)
     if path.endswith(".jani"):
-        return Sources(api.target(path, launch.ros_paths, settings, constants=launch.constants))
+        return Sources(api.target(path, launch.ros_paths, settings, None, overrides, launch.constants))
     messages = MockMessages(lambda text: log(text, None), str, '`"mocks": ["*: 0.9 in 1 s"]`')
     if names_tree(path):
+        settings = replace(settings, reaction_time=launch.reaction_time or settings.reaction_time)
         tree = load_mocked_tree(path, mocks, launch.max_time, settings, messages, counts=False)
         return Sources(_with_one_property(tree.target, launch.start), tree=tree.mocked.tree)
     texts = None if mocks.is_empty else mocked_system_texts(path, mocks, launch.ros_paths, settings, messages)
-    system = api.load(path, launch.ros_paths, settings, texts, Overrides(launch.max_time, None))
+    system = api.load(path, launch.ros_paths, settings, texts, overrides)
     return Sources(api.as_target(system), system.analysis)
 
 

@@ -42,6 +42,7 @@ from roaml.smc.goal import STUCK_PROPERTY
 from roaml.text import Location
 from roaml.verification.counterexample import counterexample, unwanted_trace, witness, witness_trace
 from roaml.verification.expectations import NO_EXPECTATION
+from roaml.verification.headline import headline
 from roaml.verification.results import Result
 from roaml.verification.target import VerificationTarget
 from roaml.views.story import StoryLine
@@ -207,6 +208,7 @@ def hints(context: Context, on: RequestedDocument, within: types.Range) -> Itera
                 continue
             is_uniform = any(verdict.is_uniform for verdict in known.result.verdicts)
             mark = "✗" if missed(known.result) else "~" if is_uniform else "✓" if known.result.verdicts else "="
+            mark = "?" if mark == "=" and headline(known.result).claim else mark
             mark = "⚠" if known.result.stuck else mark
             # Editors cut long hints. The value and its system come first.
             text = f"{mark} {_words(current, known, where)}"

@@ -14,8 +14,9 @@ from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.context import Context
 from as2fm_lsp.convert import Converter
 from as2fm_lsp.handlers.first_error import counted, show
+from as2fm_lsp.outputs import check_can_write
 from as2fm_lsp.progress import Progress
-from as2fm_lsp.translation import OutputError, check_not_an_input, jani_path, summary, without_bounded
+from as2fm_lsp.translation import jani_path, summary, without_bounded
 from roaml import api
 from roaml.diagnostics import Diagnostic
 from roaml.ide.system_names import system_names
@@ -70,7 +71,7 @@ def register(context: Context) -> None:
                 context.client.show_message(types.MessageType.Error, f"{name} has {errors} and was not translated.")
                 await show(context, error.result.snapshot, error.result.diagnostics)
                 return None
-            except (api.PathError, OutputError) as error:
+            except api.PathError as error:
                 context.client.show_message(types.MessageType.Error, str(error))
                 return None
             except OSError as error:
@@ -105,7 +106,7 @@ async def _write(context: Context, shown: Progress, path: str, target: str) -> t
     snapshot = context.session.moment().snapshot(path)
     await shown.step("checking")
     system = api.loaded(snapshot, path)
-    check_not_an_input(target, system)
+    check_can_write(target, system.files, translates=True)
     await shown.step("translating")
     model, left_out = without_bounded(api.to_jani(system))
     await shown.step("writing")

@@ -35,7 +35,7 @@ from roaml.smc.tally import Tally
 from roaml.text import Location
 from roaml.verification import stuck
 from roaml.verification.expectations import RangeError, check_range
-from roaml.verification.results import Result, Traces
+from roaml.verification.results import Estimated, Refused, Result, Traces
 from roaml.verification.target import VerificationTarget
 from roaml.verification.verifier import Verifier, checker_of
 
@@ -220,8 +220,8 @@ class _VerifyCommand:
                 self.bar.set_message(f"{done}; trying other schedulers")
 
         def keep(result: Result) -> None:
-            if result.fault is not None:
-                self.refuse(result.name, result.fault, analysis)
+            if isinstance(result.outcome, Refused):
+                self.refuse(result.name, result.outcome.fault, analysis)
             else:
                 results.append(result)
                 self.publish(result, verifier.target, analysis, texts)
@@ -285,9 +285,8 @@ class _VerifyCommand:
             if known.answer is not None and is_free:
                 traces = Traces(target, checker, stuck_property, known.answer.options)
                 seconds = time.monotonic() - began
-                result = Result(
-                    stuck_property.question.name, known.answer, (), seconds, stuck=known.stuck, traces=traces
-                )
+                outcome = Estimated(known.answer, stuck=known.stuck, traces=traces)
+                result = Result(stuck_property.question.name, outcome, seconds=seconds)
                 self.context.results.put(self.path, KnownResult(result, analysis, texts, self.options))
             self.context.refresh.update()
         known = replace(known, stuck=stuck.shortest([known.stuck, *(result.stuck for result in results)]))
@@ -315,7 +314,7 @@ class _VerifyCommand:
 
 def _so_far(verifier: Verifier, property_: CompiledProperty, tally: Tally) -> str:
     """The estimate of a property whose verification is not complete."""
-    result = Result(property_.question.name, summary(property_.question, verifier.options, tally), (), 0)
+    result = Result(property_.question.name, Estimated(summary(property_.question, verifier.options, tally)))
     return f"{short(result)}, {tally.traces:,} traces"
 
 

@@ -10,8 +10,7 @@ from lsprotocol import types
 
 from as2fm_lsp.context import Context
 from roaml.model.config_files import CONFIG_FILES
-from roaml.model.kinds import EXTENSIONS, PROJECT_EXTENSION
-from roaml.project.mock_files import MOCKS_EXTENSION
+from roaml.model.kinds import EXTENSIONS, MOCKS_EXTENSION, PROJECT_EXTENSION
 
 WATCHED = (
     *(f"**/*{extension}" for extension in (*EXTENSIONS, PROJECT_EXTENSION, MOCKS_EXTENSION)),

@@ -101,7 +101,7 @@ async def answer_together(
         seconds = time.monotonic() - began
         for property_, tally in zip(properties, tallies, strict=True):
             if tally.is_finished:
-                keep(replace(verifier.interrupted(property_, tally, seconds), is_interrupted=False))
+                keep(verifier.interrupted(property_, tally, seconds, is_partial=False))
         raise
     for result in results:
         keep(result)

@@ -7,7 +7,7 @@ from __future__ import annotations
 from roaml.scxml.names import FIELD_PREFIX, flag_of
 from roaml.smc.end import End
 from roaml.smc.goal import Question
-from roaml.verification.results import Result
+from roaml.verification.results import Computed, Result
 
 CAN_GET_STUCK = (
     "the system can get stuck before the property is decided, and then F is false and G is true; `verify` without "
@@ -33,8 +33,11 @@ def doubts(result: Result) -> list[str]:
 def can_get_stuck(result: Result) -> bool:
     """Whether an exploration of all states has shown that the system can get stuck. Traces show more: the automata that
     wait (`stuck_report`)."""
-    exact = None if result.includes_stuck or result.answer is not None else result.exact
-    return exact is not None and exact.can_get_stuck
+    match result.outcome:
+        case Computed(question=question, exact=exact, sample=None):
+            return exact.can_get_stuck and not question.is_stuck
+        case _:
+            return False
 
 
 def _question_decided_at_once(result: Result) -> Question | None:
@@ -43,10 +46,11 @@ def _question_decided_at_once(result: Result) -> Question | None:
         ends, question = result.answer.tally.ends, result.answer.question
         is_at_once = set(ends) == {End.DECIDED} and ends[End.DECIDED].shortest.steps == 0
         return question if is_at_once and question.initial_states == 1 else None
-    if result.exact is None or result.exact.initial_states > 1 or result.exact.states > 1:
-        return None
-    questions = [trace.compiled_property.question for trace in result.exact.traces if trace.steps == 0]
-    return questions[0] if questions else None
+    match result.outcome:
+        case Computed(question=question, exact=exact) if exact.initial_states == 1 == exact.states:
+            return question if any(trace.steps == 0 for trace in exact.traces) else None
+        case _:
+            return None
 
 
 def _default_values(question: Question) -> str:

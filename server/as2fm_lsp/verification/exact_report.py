@@ -9,7 +9,7 @@ from typing import Any
 from roaml.smc.goal import InitialFold
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.statistics import Bounds
-from roaml.verification.results import EXACT_WIDTH, Exact, Proof, Result
+from roaml.verification.results import EXACT_WIDTH, Computed, Exact, Proof, is_same
 
 EXACT = "exact"
 """The method and the kind of interval of an exact value in JSON."""
@@ -39,11 +39,12 @@ def lines(
     quality = "exact" if exact.is_precise else "not exact, because the bounds no longer converge"
     shown: list[str] = []
     if exact.agrees:
-        shown.append(f"{name}: = {_number(exact.minimum)} for all schedulers, {quality}, {end}")
+        value = _below_one(exact) or f"= {_number(exact.minimum)}"
+        shown.append(f"{name}: {value} for all schedulers, {quality}, {end}")
     elif only_uniform and exact.uniform is not None:
         shown.append(f"{name}: = {_number(exact.uniform)} under uniform choices, {quality}, {end}")
     else:
-        both = f"minimum {_number(exact.minimum)}, maximum {_number(exact.maximum)}"
+        both = f"minimum {_below_one(exact) or _number(exact.minimum)}, maximum {_number(exact.maximum)}"
         if exact.uniform is not None:
             both += f", {_number(exact.uniform)} under uniform choices"
         shown.append(f"{name}: {both}, {quality}, {end}")
@@ -66,6 +67,15 @@ def lines(
     if shortest:
         shown.append(f"  {'example traces' if exact.is_reduced else 'shortest traces'}: it {', it '.join(shortest)}")
     return shown
+
+
+def short(exact: Exact) -> str:
+    """The values, in one line for users."""
+    states = "1 state" if exact.states == 1 else f"{exact.states:,} states"
+    end = f"{states}{' after reductions' if exact.is_reduced else ''}"
+    if is_same(exact.minimum, exact.maximum):
+        return f"= {_number(exact.minimum)} for all schedulers, exact, {end}"
+    return f"minimum {_number(exact.minimum)}, maximum {_number(exact.maximum)}, exact, {end}"
 
 
 def row(exact: Exact) -> dict[str, Any]:
@@ -104,14 +114,11 @@ ESTIMATE = (
 """The members for JSON that describe an estimate."""
 
 
-def estimate_row(result: Result) -> dict[str, Any]:
+def estimate_row(computed: Computed) -> dict[str, Any]:
     """The members for JSON that replace the estimate of the traces (`ESTIMATE`)."""
-    asked = result.asked_value()
-    assert asked is not None
-    assert result.answer is not None
-    bounds, value = asked
+    bounds, value = computed.asked_value()
     return {
-        "expected_value" if result.answer.question.is_reward else "probability": _finite(value),
+        "expected_value" if computed.question.is_reward else "probability": _finite(value),
         "lower": _finite(bounds.lower),
         "upper": _finite(bounds.upper),
         "complete": True,
@@ -120,6 +127,14 @@ def estimate_row(result: Result) -> dict[str, Any]:
         "epsilon": EXACT_WIDTH,
         "method": EXACT,
     }
+
+
+def _below_one(exact: Exact) -> str:
+    """The words for a minimum that would be shown as 1 although a trace fails; "" for all other values."""
+    fails = exact.shortest(FALSE)
+    if fails is None or fails.compiled_property.question.is_reward or _number(exact.minimum) != "1":
+        return ""
+    return f"less than 1 by at most {1 - exact.minimum.lower:.1g}" if exact.minimum.lower < 1 else "less than 1"
 
 
 def _number(bounds: Bounds) -> str:

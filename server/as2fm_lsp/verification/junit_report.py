@@ -13,7 +13,7 @@ from as2fm_lsp.verification.report import one_as_text, warning
 from as2fm_lsp.verification.stuck_report import NOT_STUCK
 from roaml.record import replace
 from roaml.verification.expectations import NO_EXPECTATION
-from roaml.verification.results import Result
+from roaml.verification.results import Refused, Result, Undecided
 from roaml.verification.stuck import StuckLevel, StuckResult
 
 if TYPE_CHECKING:
@@ -46,10 +46,13 @@ def _case(result: Result, title: str, text: str) -> Case:
     if about := warning(result):
         properties.append(("warning", about))
     case = Case(title, result.name, CaseOutcome.PASSED, text, "", "", result.seconds, tuple(properties))
-    if result.refusal is not None:
-        return replace(case, outcome=CaseOutcome.ERROR, message=result.refusal.message, type=result.refusal.code)
-    if result.undecided:
-        return replace(case, outcome=CaseOutcome.ERROR, message=f"undecided: {result.undecided}", type="undecided")
+    match result.outcome:
+        case Refused(reason=refusal):
+            return replace(case, outcome=CaseOutcome.ERROR, message=refusal.message, type=refusal.code)
+        case Undecided(reason=reason):
+            return replace(case, outcome=CaseOutcome.ERROR, message=f"undecided: {reason}", type="undecided")
+        case _:
+            pass
     if result.has_no_expectation:
         return replace(case, outcome=CaseOutcome.SKIPPED, message=NO_EXPECTATION)
     if result.is_met:

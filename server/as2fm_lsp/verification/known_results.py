@@ -7,7 +7,6 @@ again when the change is undone.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 
 from as2fm_lsp.verification.settings import verification_settings
@@ -17,6 +16,7 @@ from roaml.project.analysis import Analysis
 from roaml.project.workspace import Snapshot
 from roaml.record import Record, field, replace
 from roaml.verification.expectations import expectation_of
+from roaml.verification.headline import headline
 from roaml.verification.results import Result
 from roaml.verification.target import VerificationTarget
 from roaml.verification.verifier import with_expectations
@@ -102,23 +102,9 @@ class KnownResults(Record):
 
 def short(result: Result) -> str:
     """A short form of a result, such as `0.48 [0.47, 0.49]`, `0.4832, exact` or `unknown`; "" if there is no result."""
-    answer, exact = result.answer, result.asked_value()
-    if exact is not None:
-        return f"{_number(exact[1], 4)}, exact"
-    if answer is None or answer.tally.traces == 0:
-        return ""
-    if answer.is_unknown:
-        return "unknown"
-    lower, upper = answer.bounds
-    return f"{_number(answer.value)} [{_number(lower)}, {_number(upper)}]"
+    return headline(result).short
 
 
 def missed(result: Result) -> str:
     """The texts of the expectations that do not hold, joined by `and`; "" if all hold."""
     return " and ".join(verdict.expectation.text for verdict in result.verdicts if not verdict.is_met)
-
-
-def _number(value: float, digits: int = 3) -> str:
-    if math.isinf(value):
-        return "∞" if value > 0 else "-∞"
-    return f"{value:.{digits}g}"

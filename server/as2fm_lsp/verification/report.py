@@ -11,13 +11,23 @@ from typing import TYPE_CHECKING, Any
 from as2fm_lsp.verification import activity_report, ends, exact_report, scheduler_report, stuck_report
 from as2fm_lsp.verification.doubts import CAN_GET_STUCK, can_get_stuck, doubts
 from as2fm_lsp.verification.stuck_report import PROBABILITY
+from roaml.exhaustive import assert_never
 from roaml.smc.choices import Choices
-from roaml.smc.end import End
 from roaml.smc.run import Answer, ratio_of
 from roaml.verification.expectations import NO_EXPECTATION
-from roaml.verification.growth import advice
+from roaml.verification.growth import GrowingVariable, advice
+from roaml.verification.headline import NO_TRACES, estimate_text, headline, number
 from roaml.verification.refusal import Refusal
-from roaml.verification.results import Result
+from roaml.verification.results import (
+    Computed,
+    CutShort,
+    Estimated,
+    Refused,
+    Result,
+    Sampled,
+    Undecided,
+    UnderAssumption,
+)
 from roaml.verification.schedulers import may_differ
 from roaml.verification.stuck import Stuck, StuckLevel
 
@@ -43,12 +53,11 @@ def as_text(
         if result.stuck is not None and not result.includes_stuck:
             shown_at.setdefault(result.stuck.chain, f"above, below `{result.name}`")
     open_ = [
-        (result.answer.question, result.choices or Choices())
-        for result in results
-        if result.answer is not None
-        and result.exact is None
-        and may_differ(result.choices)
-        and not result.answer.question.asks_for_extreme_state
+        (estimated.answer.question, estimated.choices or Choices())
+        for estimated in (result.outcome for result in results)
+        if isinstance(estimated, Estimated)
+        and may_differ(estimated.choices)
+        and not estimated.answer.question.asks_for_extreme_state
     ]
     return "".join(f"{line}\n" for line in (*blocks, *_without_expectation(results), *scheduler_report.note(open_)))
 
@@ -65,49 +74,26 @@ def one_as_text(result: Result, place_of: PlaceOf, level: StuckLevel = StuckLeve
 
 
 def _block(result: Result, place_of: PlaceOf, level: StuckLevel, shown: str, *, is_alone: bool) -> str:
-    lines = []
-    if result.refusal is not None:
-        lines.append(f"{result.name}: not answered: {_refusal_text(result.refusal)}")
-    if result.undecided:
-        lines.append(f"{result.name}: undecided: {result.undecided}, {result.seconds:.1f} s")
-    if result.exact is not None:
-        name = f"{result.name} ({PROBABILITY})" if result.includes_stuck else result.name
-        estimate = _estimate(result.answer) if result.answer is not None and result.has_uniform_estimate else ""
-        lines += exact_report.lines(
-            name, result.exact, result.seconds, only_uniform=result.is_uniform, uniform_estimate=estimate
-        )
-        if result.answer is not None:
-            lines += _remarks(result.answer) if estimate else [f"  {line}" for line in _example_remarks(result.answer)]
-            if estimate and not result.answer.is_complete:
-                lines.append("  the interval is wider than requested (--epsilon)")
-    for sampled in result.sampled:
-        lines.append(f"{result.name}: {sampled.side} probability found {_estimate(sampled.answer)}")
-        lines.append(f"  by {sampled.words}")
-        if sampled.stuck is not None and not sampled.answer.question.is_stuck:
-            lines += _stuck_lines(sampled.stuck, place_of, level, shown)
-        lines += _remarks(sampled.answer)
-    if result.tried:
-        lines.append(f"  {result.tried:,} schedulers were tried, {result.seconds:.1f} s")
-    if result.answer is not None and result.exact is None:
-        is_stuck = result.answer.question.is_stuck
-        name = f"{result.name} ({PROBABILITY})" if is_stuck else result.name
-        lines.append(f"{name}: {_estimate(result.answer)}, {result.seconds:.1f} s")
-        if result.stuck is not None and not is_stuck:
-            lines += _stuck_lines(result.stuck, place_of, level, shown)
-        lines += _remarks(result.answer)
-        if is_alone or not may_differ(result.choices) or result.answer.question.asks_for_extreme_state:
-            about = scheduler_report.remark(result.answer.question, result.choices)
-            lines += [f"  {about}"] if about else []
-        if not result.is_interrupted and not result.answer.is_complete:
-            lines.append("  the interval is wider than requested (--epsilon)")
-    if result.is_interrupted:
-        clause = "this is the result so far" if result.answer or result.sampled else "there is no result so far"
-        after = f" after {result.explored:,} states, {result.seconds:.1f} s" if result.explored else ""
-        lines.append(f"  interrupted; {clause}" if lines else f"{result.name}: interrupted{after}; {clause}")
-    lines += _growing_lines(result)
+    match result.outcome:
+        case Refused(reason=refusal):
+            lines = [f"{result.name}: not answered: {_refusal_text(refusal)}"]
+        case Undecided(reason=reason, growing=growing):
+            lines = [f"{result.name}: undecided: {reason}, {result.seconds:.1f} s", *_growing_lines(growing)]
+        case CutShort(states=states, growing=growing):
+            after = f" after {states:,} states, {result.seconds:.1f} s" if states else ""
+            lines = [f"{result.name}: interrupted{after}; there is no result so far", *_growing_lines(growing)]
+        case Computed() as computed:
+            lines = _computed_lines(result, computed)
+        case Estimated() as estimated:
+            lines = _estimated_lines(result, estimated, place_of, level, shown, is_alone=is_alone)
+        case Sampled() as sampled:
+            lines = _sampled_lines(result, sampled, place_of, level, shown)
+        case never:
+            assert_never(never)
     lines += _doubt_lines(result, level)
+    lines += _conditional_lines(result)
     for verdict in result.verdicts:
-        if result.undecided:
+        if isinstance(result.outcome, Undecided):
             lines.append(f"  expected {verdict.expectation.text}: undecided")
             continue
         doubt = verdict.doubt(result.epsilon)
@@ -118,6 +104,76 @@ def _block(result: Result, place_of: PlaceOf, level: StuckLevel, shown: str, *, 
     if not is_alone and result.comment and lines:
         lines.insert(1, f"  {' '.join(result.comment.split())}")
     return "\n".join(lines)
+
+
+def _conditional_lines(result: Result) -> list[str]:
+    """The results under assumptions, each in one line, and what the assumptions exclude."""
+    lines = []
+    for under in result.conditional:
+        match under.outcome:
+            case Computed(exact=exact):
+                lines.append(f"  {under.assumption}: {exact_report.short(exact)}")
+            case Estimated(answer=answer):
+                lines.append(f"  {under.assumption}: {_estimate(answer)}")
+            case Undecided(reason=reason):
+                lines.append(f"  {under.assumption}: undecided: {reason}")
+            case never:
+                assert_never(never)
+        if under.remark:
+            lines.append(f"  {under.remark}")
+    return lines
+
+
+def _computed_lines(result: Result, computed: Computed) -> list[str]:
+    sample = computed.sample
+    name = f"{result.name} ({PROBABILITY})" if result.includes_stuck else result.name
+    has_estimate = sample is not None and computed.has_uniform_estimate
+    estimate = _estimate(sample.answer) if sample is not None and has_estimate else ""
+    lines = exact_report.lines(
+        name, computed.exact, result.seconds, only_uniform=computed.is_uniform, uniform_estimate=estimate
+    )
+    if sample is not None:
+        lines += _remarks(sample.answer) if has_estimate else [f"  {line}" for line in _example_remarks(sample.answer)]
+        if has_estimate and not sample.answer.is_complete:
+            lines.append("  the interval is wider than requested (--epsilon)")
+    return lines
+
+
+def _estimated_lines(
+    result: Result, estimated: Estimated, place_of: PlaceOf, level: StuckLevel, shown: str, *, is_alone: bool
+) -> list[str]:
+    answer, choices = estimated.answer, estimated.choices
+    is_stuck = answer.question.is_stuck
+    name = f"{result.name} ({PROBABILITY})" if is_stuck else result.name
+    words = headline(result).text if answer.tally.traces else _estimate(answer)
+    lines = [f"{name}: {words}, {result.seconds:.1f} s"]
+    if estimated.stuck is not None and not is_stuck:
+        lines += _stuck_lines(estimated.stuck, place_of, level, shown)
+    lines += _remarks(answer)
+    if is_alone or not may_differ(choices) or answer.question.asks_for_extreme_state:
+        about = scheduler_report.remark(answer.question, choices)
+        lines += [f"  {about}"] if about else []
+    if estimated.is_interrupted:
+        lines.append("  interrupted; this is the result so far")
+    elif not answer.is_complete:
+        lines.append("  the interval is wider than requested (--epsilon)")
+    return lines
+
+
+def _sampled_lines(result: Result, sampled: Sampled, place_of: PlaceOf, level: StuckLevel, shown: str) -> list[str]:
+    lines = []
+    for extreme in sampled.extremes:
+        lines.append(f"{result.name}: {extreme.side} probability found {_estimate(extreme.answer)}")
+        lines.append(f"  by {extreme.words}")
+        if extreme.stuck is not None and not extreme.answer.question.is_stuck:
+            lines += _stuck_lines(extreme.stuck, place_of, level, shown)
+        lines += _remarks(extreme.answer)
+    if sampled.tried:
+        lines.append(f"  {sampled.tried:,} schedulers were tried, {result.seconds:.1f} s")
+    if sampled.is_interrupted:
+        clause = "this is the result so far" if sampled.extremes else "there is no result so far"
+        lines.append(f"  interrupted; {clause}" if lines else f"{result.name}: interrupted; {clause}")
+    return lines
 
 
 def _refusal_text(refusal: Refusal) -> str:
@@ -136,11 +192,11 @@ def _stuck_lines(stuck: Stuck, place_of: PlaceOf, level: StuckLevel, shown: str)
     return [f"  {line}" for line in stuck_report.stuck_lines(stuck, place_of, level, shown)]
 
 
-def _growing_lines(result: Result) -> list[str]:
-    if not result.growing:
+def _growing_lines(growing: Sequence[GrowingVariable]) -> list[str]:
+    if not growing:
         return []
-    growing = ", ".join(variable.text for variable in result.growing)
-    return [f"  more and more values so far: {growing}; {advice(result.growing)}"]
+    text = ", ".join(variable.text for variable in growing)
+    return [f"  more and more values so far: {text}; {advice(growing)}"]
 
 
 def _doubt_lines(result: Result, level: StuckLevel) -> list[str]:
@@ -149,22 +205,15 @@ def _doubt_lines(result: Result, level: StuckLevel) -> list[str]:
 
 
 def _estimate(answer: Answer) -> str:
-    tally, (lower, upper) = answer.tally, answer.bounds
-    if tally.traces == 0:
-        return activity_report.warning(answer) or "no result yet"
-    value = "unknown" if answer.is_unknown else "infinite" if math.isinf(answer.value) else _number(answer.value)
-    interval = f" in [{_number(lower)}, {_number(upper)}]"
-    good, bad = ("stuck", "not stuck") if answer.question.is_stuck else ("passed", "failed")
-    counts = f"{tally.traces:,} traces: {tally.successes:,} {good}, {answer.failures:,} {bad}"
-    if tally.undecided:
-        counts += f", {tally.undecided:,} undecided"
-    return f"{value}{interval} from {counts}"
+    return estimate_text(answer) if answer.tally.traces else activity_report.warning(answer) or NO_TRACES
 
 
 def _remarks(answer: Answer) -> list[str]:
     lines = [f"  ends: {ends.as_line(answer.tally)}"] if answer.tally.traces else []
     if answer.question.is_reward and answer.failures:
         lines.append("  infinite: some traces never reach the condition up to which the reward is accumulated")
+    if answer.question.is_reward and answer.tally.successes:
+        lines.append(_reward_remark(answer))
     ratio = ratio_of(answer.question, answer.options)
     if answer.tally.accepted is not None and ratio is not None:
         low, high = max(0.0, ratio.threshold - ratio.epsilon), min(1.0, ratio.threshold + ratio.epsilon)
@@ -174,24 +223,29 @@ def _remarks(answer: Answer) -> list[str]:
         )
     if answer.is_anytime and answer.tally.traces:
         lines.append("  the interval is valid at any stopping time: it is one of a confidence sequence")
-    cut = answer.tally.ended(End.CUT)
-    if cut:
-        steps = f"{answer.options.max_steps:,}"
-        lines.append(f"  {cut:,} undecided traces were cut after {steps} steps (--max-steps); they widen the interval")
     lines += [f"  {remark}" for remark in activity_report.remarks(answer)]
     return lines
+
+
+def _reward_remark(answer: Answer) -> str:
+    """What the interval of a reward assumes: the greatest possible reward is not known."""
+    mean, error = answer.tally.mean, 1 - answer.options.confidence
+    if mean.is_constant:
+        rare = -math.expm1(math.log(error) / mean.number)
+        return (
+            f"  no interval: all {mean.number:,} rewards were {number(mean.mean)}, but another value may have a "
+            f"probability of up to {rare:.2g}"
+        )
+    return (
+        f"  no guarantee: the interval is valid if all possible rewards are from {number(mean.least)} to "
+        f"{number(mean.greatest)}, as they were in these traces"
+    )
 
 
 def _example_remarks(answer: Answer) -> list[str]:
     """Remarks on the traces that were generated as examples for an exact value."""
     lines = [f"ends of {answer.tally.traces:,} random traces: {ends.as_line(answer.tally)}"]
     return lines + activity_report.remarks(answer)
-
-
-def _number(value: float) -> str:
-    if math.isinf(value):
-        return "∞" if value > 0 else "-∞"
-    return f"{value:.6g}"
 
 
 def as_json(
@@ -222,33 +276,38 @@ def row(result: Result) -> dict[str, Any]:
     values: dict[str, Any] = {"property": result.name, "seconds": round(result.seconds, 3)}
     if result.comment:
         values["comment"] = result.comment
-    if result.refusal is not None:
-        values["error"] = _refusal_row(result.refusal)
-    if result.answer is not None:
-        values.update(_answer(result.answer))
-        if result.exact is not None:
-            estimate = {name: values[name] for name in exact_report.ESTIMATE if name in values}
-            values.update(exact_report.estimate_row(result))
-            if result.has_uniform_estimate:
-                values["uniform"] = estimate
-        values.update(scheduler_report.rows(result.choices))
     if about := warning(result):
         values["warning"] = about
-    for sampled in result.sampled:
-        values[sampled.side.value] = {**_answer(sampled.answer), "scheduler": sampled.scheduler, "by": sampled.words}
-    if result.tried:
-        values["schedulers"] = {"wanted": "lss", "tried": result.tried}
-    if result.exact is not None:
-        values["exact"] = exact_report.row(result.exact)
-    if result.undecided:
-        values["undecided"] = result.undecided
-    if result.explored:
-        values["explored"] = result.explored
-    if result.undecided or result.explored:
-        values["growing"] = [
-            {"variable": v.name, "automaton": v.automaton, "values": v.values, "least": v.least, "greatest": v.greatest}
-            for v in result.growing
-        ]
+    match result.outcome:
+        case Refused(reason=refusal):
+            values["error"] = _refusal_row(refusal)
+        case Undecided(reason=reason, growing=growing):
+            values["undecided"] = reason
+            values["growing"] = _growing_rows(growing)
+        case CutShort(states=states, growing=growing):
+            if states:
+                values["explored"] = states
+                values["growing"] = _growing_rows(growing)
+        case Estimated() as estimated:
+            values.update(_estimated_row(estimated))
+        case Computed() as computed:
+            if computed.sample is not None:
+                values.update(_estimated_row(computed.sample))
+                estimate = {name: values[name] for name in exact_report.ESTIMATE if name in values}
+                values.update(exact_report.estimate_row(computed))
+                if computed.has_uniform_estimate:
+                    values["uniform"] = estimate
+            values["exact"] = exact_report.row(computed.exact)
+        case Sampled(extremes=extremes, tried=tried):
+            for extreme in extremes:
+                row_ = {**_answer(extreme.answer), "scheduler": extreme.scheduler, "by": extreme.words}
+                values[extreme.side.value] = row_
+            if tried:
+                values["schedulers"] = {"wanted": "lss", "tried": tried}
+        case never:
+            assert_never(never)
+    if result.conditional:
+        values["conditional"] = [_conditional_row(under) for under in result.conditional]
     values["interrupted"] = result.is_interrupted
     values["verdict"] = _verdict(result)
     values["expectations"] = [
@@ -265,8 +324,33 @@ def row(result: Result) -> dict[str, Any]:
     return values
 
 
+def _conditional_row(under: UnderAssumption) -> dict[str, Any]:
+    row_: dict[str, Any] = {"assumption": under.assumption, "remark": under.remark}
+    match under.outcome:
+        case Computed(exact=exact):
+            row_["exact"] = exact_report.row(exact)
+        case Estimated() as estimated:
+            row_.update(_estimated_row(estimated))
+        case Undecided(reason=reason):
+            row_["undecided"] = reason
+        case never:
+            assert_never(never)
+    return row_
+
+
+def _estimated_row(estimated: Estimated) -> dict[str, Any]:
+    return {**_answer(estimated.answer), **scheduler_report.rows(estimated.choices)}
+
+
+def _growing_rows(growing: Sequence[GrowingVariable]) -> list[dict[str, Any]]:
+    return [
+        {"variable": v.name, "automaton": v.automaton, "values": v.values, "least": v.least, "greatest": v.greatest}
+        for v in growing
+    ]
+
+
 def _verdict(result: Result) -> str:
-    if result.refusal is not None or result.undecided:
+    if not result.has_answer:
         return "no answer"
     return NO_EXPECTATION if result.has_no_expectation else "met" if result.is_met else "not met"
 
@@ -279,8 +363,8 @@ def warning(result: Result) -> str:
         parts.append(result.stuck.warning)
     if result.answer is not None:
         parts.append(activity_report.warning(result.answer))
-    if result.answer is not None and result.exact is None:
-        parts.append(scheduler_report.warning(result.answer.question, result.choices))
+    if isinstance(result.outcome, Estimated):
+        parts.append(scheduler_report.warning(result.outcome.answer.question, result.outcome.choices))
     parts += doubts(result)
     if can_get_stuck(result):
         parts.append(CAN_GET_STUCK)

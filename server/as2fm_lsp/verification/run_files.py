@@ -1,24 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A simulated run as files: CSV in the terms of the model, JSON with the steps as `trace_files` writes them, and a
-timeline as SVG.
-
-CSV has a line for each state, including the first one, and columns for its number, the time in s if the model has a
-clock, the action of the step before it, the state and variables of each machine, the status of each node of the tree,
-the blackboard, and the other variables of the model. Arrays and truth values are written as in `trace_files`.
-"""
+"""A simulated run as files: CSV with the table of `roaml.simulation.table`, JSON with the steps as `trace_files` writes
+them, and a timeline as SVG."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterator
 
-from as2fm_lsp.verification.trace_files import cells_of, csv_line, step_row, suffixes_of
+from as2fm_lsp.verification.trace_files import csv_line, step_row
 from roaml.figures.assembly import moved
 from roaml.figures.drawing import Drawing
 from roaml.figures.geometry import Extent
 from roaml.figures.svg import TIMELINE_STYLES, svg_file
-from roaml.simulation import Session, SystemState
-from roaml.smc.record import Plain
+from roaml.simulation import Session
+from roaml.simulation.table import rows
 from roaml.timeline import Axis, Timeline, View, draw_names, draw_timeline, position_of
 from roaml.verification.target import VerificationTarget
 
@@ -26,34 +21,10 @@ from roaml.verification.target import VerificationTarget
 def csv_lines(session: Session, first: int = 0) -> Iterator[str]:
     """The header, and a line for each state from step `first` to the current position of the session, both included.
     The session moves to `first` and from there back to its position."""
-    for position in range(first, session.position + 1):
-        session.jump(position)
-        state = session.state()
-        row: list[tuple[str, int | float | str]] = [("step", position)]
-        if state.time is not None:
-            row.append(("time", state.time))
-        row.append(("action", session.steps[position - 1].action or "" if position else ""))
-        row += _columns(session, state)
-        if position == first:
-            yield csv_line(name for name, _ in row)
-        yield csv_line(cell for _, cell in row)
-
-
-def _columns(session: Session, state: SystemState) -> Iterator[tuple[str, int | float | str]]:
-    for machine in state.machines:
-        yield f"{machine.identifier}.state", machine.state
-        phrases = session.phrases(machine.automaton)
-        for name, value in machine.variables.items():
-            yield from _cells(f"{machine.identifier}.{phrases.get(name, name)}", value)
-    for node in state.nodes:
-        yield f"bt_{node.number}", node.status.value
-    for name, value in {**state.blackboard, **state.shared}.items():
-        yield from _cells(name, value)
-
-
-def _cells(name: str, value: Plain) -> Iterator[tuple[str, int | float]]:
-    for suffix, cell in zip(suffixes_of(value), cells_of(value), strict=True):
-        yield name + suffix, cell
+    for number, row in enumerate(rows(session, first)):
+        if number == 0:
+            yield csv_line(row)
+        yield csv_line(row.values())
 
 
 TIMELINE_WIDTH, NAMES_WIDTH = 1400.0, 200.0

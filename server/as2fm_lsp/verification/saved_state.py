@@ -12,7 +12,6 @@ import os
 import time
 from typing import Any
 
-from as2fm_lsp.atomic_write import write_file
 from roaml.disk import MEGABYTE, required
 from roaml.smc.batch import Payload
 from roaml.smc.goal import Question
@@ -91,6 +90,8 @@ class SavedState:
             "tally": tally.to_json(),
         }
         text = json.dumps({"version": VERSION, "properties": self._properties}, indent=1)
+        from as2fm_lsp.atomic_write import write_file  # noqa: PLC0415 - few runs are saved
+
         write_file(self.path, text + "\n")
 
     def _read(self) -> None:

@@ -14,9 +14,10 @@ import os
 import re
 from collections.abc import Iterable, Iterator, Sequence
 
-from as2fm_lsp.atomic_write import write_file
+from as2fm_lsp.outputs import OutputFiles
 from roaml.jani.node import Origin
 from roaml.project.paths import seen_from
+from roaml.simulation.table import cells_of, suffixes_of
 from roaml.smc.end import End
 from roaml.smc.record import VERDICTS, Plain, Recorder, Recording, TraceStep
 from roaml.smc.run import Answer
@@ -31,7 +32,12 @@ _UNSAFE = re.compile(r"[^\w.-]")
 
 
 def write_traces(
-    folder: str, target: VerificationTarget, recorder: Recorder, answer: Answer, limit: int = DEFAULT_LIMIT
+    outputs: OutputFiles,
+    folder: str,
+    target: VerificationTarget,
+    recorder: Recorder,
+    answer: Answer,
+    limit: int = DEFAULT_LIMIT,
 ) -> list[str]:
     """Write the first `limit` traces of each verdict, and the shortest one; return the paths of the files. With the
     limit 0, nothing is written.
@@ -51,7 +57,7 @@ def write_traces(
             texts = {"csv": csv_lines(recorder, trace, target.clock), "json": json_lines(target, recorder, trace)}
             for extension, lines in texts.items():
                 path = os.path.join(folder, f"{name}.{extension}")
-                write_file(path, lines)
+                outputs.write(path, lines)
                 written.append(path)
     return written
 
@@ -172,22 +178,3 @@ def csv_line(cells: Iterable[int | float | str]) -> str:
     """A line of a CSV file, with LF at its end."""
     line: str = _CSV.writerow(cells)
     return line.removesuffix("\r\n") + "\n"
-
-
-def cells_of(value: Plain) -> Iterator[int | float]:
-    """The cells of a value: one for each element of an array; true is 1, false 0."""
-    if isinstance(value, list):
-        for element in value:
-            yield from cells_of(element)
-    else:
-        yield int(value) if isinstance(value, bool) else value
-
-
-def suffixes_of(value: Plain) -> Iterator[str]:
-    """The suffixes of a variable's name in the columns of its value, in the order of `cells_of`: for example `[0][1]`
-    for an element of an array of arrays, and "" for a value that is not an array."""
-    if isinstance(value, list):
-        for position, element in enumerate(value):
-            yield from (f"[{position}]{more}" for more in suffixes_of(element))
-    else:
-        yield ""

@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from roaml.api.checking import CheckResult, check, fix
+    from roaml.api.drawing import DrawingError, DrawnPicture, draw
     from roaml.api.jani_files import JaniError, PathError, read_jani
     from roaml.api.migrating import SharedFileError, migrate
     from roaml.api.simulating import session
@@ -31,11 +32,14 @@ if TYPE_CHECKING:
     from roaml.comparison import Comparison
     from roaml.diagnostics import Diagnostic, Severity
     from roaml.explicit.space import ExplorationProgress, ExplorationWatch, StateLimits
+    from roaml.figures.layout import LayoutDirection
+    from roaml.ide.diagrams import DiagramKind
     from roaml.jani.model import Model
     from roaml.jani.node import Origin
     from roaml.jani.properties import Property
     from roaml.jani.selection import PropertyError
     from roaml.jani.writer import write as write_jani
+    from roaml.mocks.mock import Mock, MockError, read_mocks
     from roaml.model.parameters import NO_OVERRIDES, Overrides
     from roaml.project.analysis import Analysis
     from roaml.project.migrate import Migration
@@ -49,6 +53,7 @@ if TYPE_CHECKING:
     from roaml.simulation.run import Decision, RunError
     from roaml.simulation.session import SavedSession, Session
     from roaml.simulation.state import EventState, MachineState, NodeState, NodeStatus, SystemState
+    from roaml.simulation.table import Cell, columns
     from roaml.smc.choices import Choices, Extreme, ExtremeMethod
     from roaml.smc.end import End
     from roaml.smc.fault import FaultError
@@ -67,8 +72,23 @@ if TYPE_CHECKING:
     from roaml.verification.explorations import Explorations
     from roaml.verification.growth import GrowingVariable
     from roaml.verification.refusal import Refusal
-    from roaml.verification.results import Exact, Proof, Result, SampledResult, ShortestTrace, Traces
+    from roaml.verification.results import (
+        Computed,
+        CutShort,
+        Estimated,
+        Exact,
+        Proof,
+        Refused,
+        Result,
+        Sampled,
+        SampledResult,
+        ShortestTrace,
+        Traces,
+        Undecided,
+        UnderAssumption,
+    )
     from roaml.verification.searches import Searches
+    from roaml.verification.small import Budget
     from roaml.verification.stuck import Stuck, StuckLevel, StuckResult
     from roaml.verification.target import LineColumn, VerificationTarget
     from roaml.verification.verifier import NoThresholdError, Verifier
@@ -78,16 +98,20 @@ else:
     _IMPORTED_ON_USE = {
         "roaml.comparison": ("Comparison",),
         "roaml.api.checking": ("CheckResult", "check", "fix"),
+        "roaml.api.drawing": ("DrawingError", "DrawnPicture", "draw"),
         "roaml.api.jani_files": ("JaniError", "PathError", "read_jani"),
         "roaml.api.migrating": ("SharedFileError", "migrate"),
         "roaml.api.simulating": ("session",),
         "roaml.api.systems": ("LoadedSystem", "ModelError", "load", "loaded", "source_map", "to_jani", "to_scxml"),
         "roaml.api.verifying": ("ConstantError", "as_target", "checker", "target", "verifier", "verify"),
         "roaml.diagnostics": ("Diagnostic", "Severity"),
+        "roaml.figures.layout": ("LayoutDirection",),
+        "roaml.ide.diagrams": ("DiagramKind",),
         "roaml.jani.model": ("Model",),
         "roaml.jani.node": ("Origin",),
         "roaml.jani.properties": ("Property",),
         "roaml.jani.selection": ("PropertyError",),
+        "roaml.mocks.mock": ("Mock", "MockError", "read_mocks"),
         "roaml.model.parameters": ("NO_OVERRIDES", "Overrides"),
         "roaml.project.analysis": ("Analysis",),
         "roaml.project.migrate": ("Migration",),
@@ -101,6 +125,7 @@ else:
         "roaml.simulation.run": ("Decision", "RunError"),
         "roaml.simulation.session": ("SavedSession", "Session"),
         "roaml.simulation.state": ("EventState", "MachineState", "NodeState", "NodeStatus", "SystemState"),
+        "roaml.simulation.table": ("Cell", "columns"),
         "roaml.smc.choices": ("Choices", "Extreme", "ExtremeMethod"),
         "roaml.smc.end": ("End",),
         "roaml.smc.fault": ("FaultError",),
@@ -118,8 +143,23 @@ else:
         "roaml.verification.expectations": ("Expectation", "RangeError", "Verdict"),
         "roaml.verification.explorations": ("Explorations",),
         "roaml.verification.refusal": ("Refusal",),
-        "roaml.verification.results": ("Exact", "Proof", "Result", "SampledResult", "ShortestTrace", "Traces"),
+        "roaml.verification.results": (
+            "Computed",
+            "UnderAssumption",
+            "Estimated",
+            "Exact",
+            "CutShort",
+            "Proof",
+            "Refused",
+            "Result",
+            "Sampled",
+            "SampledResult",
+            "ShortestTrace",
+            "Traces",
+            "Undecided",
+        ),
         "roaml.verification.searches": ("Searches",),
+        "roaml.verification.small": ("Budget",),
         "roaml.verification.stuck": ("StuckResult", "Stuck", "StuckLevel"),
         "roaml.verification.target": ("LineColumn", "VerificationTarget"),
         "roaml.verification.verifier": ("NoThresholdError", "Verifier"),
@@ -142,16 +182,24 @@ __all__ = [
     "Analysis",
     "Answer",
     "Bounds",
+    "Budget",
+    "Cell",
     "CheckResult",
     "Choice",
     "Choices",
     "Comparison",
     "CompiledProperty",
+    "Computed",
     "ConstantError",
     "Counterexample",
+    "CutShort",
     "Decision",
     "Diagnostic",
+    "DiagramKind",
+    "DrawingError",
+    "DrawnPicture",
     "End",
+    "Estimated",
     "EstimationMethod",
     "EventState",
     "Exact",
@@ -165,11 +213,14 @@ __all__ = [
     "GrowingVariable",
     "InitialFold",
     "JaniError",
+    "LayoutDirection",
     "LineColumn",
     "LoadedSystem",
     "Location",
     "MachineState",
     "Migration",
+    "Mock",
+    "MockError",
     "Model",
     "ModelChecker",
     "ModelError",
@@ -193,8 +244,10 @@ __all__ = [
     "Recorder",
     "Recording",
     "Refusal",
+    "Refused",
     "Result",
     "RunError",
+    "Sampled",
     "SampledResult",
     "SavedSession",
     "Search",
@@ -221,6 +274,8 @@ __all__ = [
     "TraceStep",
     "TraceVerdict",
     "Traces",
+    "Undecided",
+    "UnderAssumption",
     "Verdict",
     "VerificationTarget",
     "Verifier",
@@ -230,12 +285,15 @@ __all__ = [
     "as_target",
     "check",
     "checker",
+    "columns",
     "counterexample",
+    "draw",
     "fix",
     "load",
     "loaded",
     "migrate",
     "read_jani",
+    "read_mocks",
     "session",
     "source_map",
     "target",

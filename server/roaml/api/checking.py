@@ -141,7 +141,7 @@ def _files(named: list[str], snapshot: Snapshot, kinds: Mapping[str, FileKind]) 
             paths.update(dict.fromkeys(member for system in systems for member in analysis.files_of(system)))
             paths.update(dict.fromkeys(inside))
         elif kinds[path] is FileKind.SYSTEM:
-            paths.update(dict.fromkeys(analysis.files_of(path)))
+            paths.update(dict.fromkeys((*analysis.files_of(path), *analysis.interface_files_of(path))))
         else:
             paths[path] = None
     return tuple(path for path in paths if analysis.source(path) is not None)

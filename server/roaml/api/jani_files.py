@@ -44,7 +44,7 @@ def read_jani(path: str) -> tuple[Model, SourceFile]:
     value, syntax = parse(source.text)
     model, findings = (None, ()) if syntax else read_model(value, path)
     diagnostics = tuple(
-        Diagnostic(path, finding.code, finding.severity or Severity.ERROR, finding.span, finding.message)
+        Diagnostic(path, finding.code, finding.severity or Severity.ERROR, finding.span, finding.message, source=source)
         for finding in (*syntax, *findings)
     )
     errors = tuple(diagnostic for diagnostic in diagnostics if diagnostic.severity is Severity.ERROR)

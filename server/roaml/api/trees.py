@@ -68,7 +68,8 @@ def load_tree(
         tree = mocked(forest, options)
     except TreeRefusal as refusal:
         origin = refusal.origin
-        reason = Diagnostic(origin.path, UNTRANSLATABLE, Severity.ERROR, origin.span, refusal.reason)
+        source = analysis.source(origin.path)
+        reason = Diagnostic(origin.path, UNTRANSLATABLE, Severity.ERROR, origin.span, refusal.reason, source=source)
         raise ModelError(replace(result, diagnostics=(reason,))) from None
     model = translate(tree.network)
     model = replace(model, properties=tree_properties(tree.tree.root))

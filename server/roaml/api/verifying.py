@@ -3,18 +3,25 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from roaml.api.jani_files import read_jani
+from roaml.disk import MAX_DATA, required
+from roaml.durations import ANY_TIME, ReactionTime
 from roaml.jani.model import Model
 from roaml.model.parameters import NO_OVERRIDES, Overrides
 from roaml.project.settings import Settings
+from roaml.record import replace
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from roaml.api.systems import LoadedSystem
     from roaml.comparison import Comparison
+    from roaml.explicit.space import StateLimits
     from roaml.smc.model import ModelChecker
     from roaml.smc.run import Options
     from roaml.verification.expectations import Expectation
@@ -35,39 +42,82 @@ def target(
     texts: Mapping[str, str | bytes] | None = None,
     overrides: Overrides = NO_OVERRIDES,
     constants: Sequence[str] = (),
+    mocks: Mapping[str, str] | None = None,
+    entries: Mapping[str, str] | None = None,
+    tick_rate: float | None = None,
 ) -> VerificationTarget:
-    """Read a system or model to verify; a file whose name ends in `.jani` is a JANI model, any other file is a system.
+    """Read a system, a tree or a model to verify. A file whose name ends in `.jani` is a JANI model; with mocks, and if
+    a file `TREE.mocks` is beside it, a file is a tree without a system; any other file is a system.
 
     Args:
-        path: the system file, or a JANI model.
+        path: the system file, a JANI model, or a tree.
         ros_paths, settings, texts, overrides: as for `load`.
         constants: `NAME=VALUE`, for constants that a JANI model declares without a value.
+        mocks: node of the tree -> its mock, such as `{"Grasp": "0.9 in 2 s", "*": "1"}` (docs/spec/mocks.md). By
+            default, the mocks are those of the file `TREE.mocks` beside `TREE.xml`.
+        entries: entry of the root blackboard of the tree -> its text at the start.
+        tick_rate: the number of ticks of the tree per second, in Hz; 10 by default.
 
     Raises:
         ConstantError: a constant is not declared, or its value does not match its type; a system is given constants, or
-            a JANI model is given overrides.
+            a JANI model is given overrides, except for a reaction time, which its metadata must permit.
         PathError: the file cannot be read, or is not a system file.
-        ModelError: the system has errors.
+        ModelError: the system or tree has errors.
         JaniError: the JANI model has errors.
+        MockError: a mock is not valid.
+        MissingMocksError: leaves of the tree have no mock.
     """
     from roaml.verification.target import target_of  # noqa: PLC0415
 
+    mocks_path = f"{os.path.splitext(path)[0]}.mocks"
+    if mocks is not None or (not path.endswith(".jani") and os.path.exists(mocks_path)):
+        from roaml.api.trees import load_tree  # noqa: PLC0415
+        from roaml.mocks.mock import named_mocks, read_mocks  # noqa: PLC0415
+        from roaml.mocks.network import DEFAULT_RATE, MockOptions  # noqa: PLC0415
+
+        if mocks is None:
+            declared = read_mocks(required(mocks_path, MAX_DATA).decode("utf-8", "replace"))
+        else:
+            declared = named_mocks(mocks)
+        rate = DEFAULT_RATE if tick_rate is None else Fraction(str(tick_rate))
+        assumed = overrides.reaction_time or (ANY_TIME if settings is None else settings.reaction_time)
+        options = MockOptions(declared, entries or {}, rate, reaction_time=assumed)
+        loaded = load_tree(path, options, settings, texts)
+        return loaded.target.expecting(_expected(settings))
     if not path.endswith(".jani"):
         if constants:
             raise ConstantError("a system has no constants; only JANI models have them")
         from roaml.api.systems import load  # noqa: PLC0415 - a JANI model needs no system
 
         return as_target(load(path, ros_paths, settings, texts, overrides)).expecting(_expected(settings))
-    if overrides != NO_OVERRIDES:
+    if replace(overrides, reaction_time=None) != NO_OVERRIDES:
         raise ConstantError("a JANI model has no parameters to override; only systems have them")
     from roaml.jani.constants import with_constants  # noqa: PLC0415
 
     model, source = read_jani(path)
     try:
         model = with_constants(model, constants)
+        if overrides.reaction_time is not None:
+            model = _reacting(model, overrides.reaction_time)
     except ValueError as error:
         raise ConstantError(str(error)) from None
     return target_of(model, path, (path,), lambda _: source).expecting(_expected(settings))
+
+
+def _reacting(model: Model, time: ReactionTime) -> Model:
+    """A model from a file with a reaction time.
+
+    Raises:
+        ValueError: the file does not permit the reaction time.
+    """
+    from roaml.jani.reaction import reacting  # noqa: PLC0415
+
+    if not time.is_any and (model.metadata is None or model.metadata.clock is None):
+        raise ValueError(
+            "the metadata of the model name no clock, so it cannot have a reaction time; translate a system with "
+            "timers, or leave out the reaction time"
+        )
+    return reacting(model, time)
 
 
 def _expected(settings: Settings | None) -> Mapping[str, Comparison]:
@@ -119,6 +169,7 @@ def verifier(
     only_uniform: bool = False,
     exact_if_small: bool = False,
     example_traces: int | None = None,
+    limits: StateLimits | None = None,
 ) -> Verifier:
     """A verifier, which verifies properties one by one. A verification can be observed, interrupted and continued.
 
@@ -126,6 +177,7 @@ def verifier(
         subject, properties, options, expectations, only_uniform, exact_if_small: as for `verify`.
         example_traces: the number of traces for a result with exact values; `None` for the number that an estimate
             needs.
+        limits: the limits of all searches for exact values together, with `exact_if_small`.
 
     Raises:
         PropertyError, FaultError, ValueError: as for `verify`.
@@ -142,6 +194,7 @@ def verifier(
         only_uniform=only_uniform,
         exact_if_small=exact_if_small,
         example_traces=example_traces,
+        limits=limits,
     )
 
 

@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Callable, Mapping, Sequence
 
 from roaml.debugging.values import Value, bytes_of, shown, type_of
 from roaml.expr import parse as parser
-from roaml.expr.operators import FUNCTIONS, Operator, UnaryOperator
+from roaml.expr.operators import FUNCTIONS, FunctionResult, Operator, UnaryOperator
 from roaml.expr.tree import (
     ArrayLiteral,
     Binary,
@@ -28,6 +29,10 @@ from roaml.expr.tree import (
 )
 from roaml.suggest import alternatives, close_names
 from roaml.text import Decoded
+
+MAX_STEPS = 100_000
+"""The maximum number of steps of one evaluation: parts of the expression, and elements of arrays. They take
+at most some 50 ms, after which the debugger handles the next request, such as `pause`."""
 
 Scope = Callable[[str], "Value | None"]
 """A function that returns the value of a name; `None` if there is no such name."""
@@ -52,18 +57,14 @@ def parsed(text: str) -> Expr:
 
 
 def evaluate(expr: Expr, scope: Scope) -> Value:
-    """The value of an expression.
+    """The value of an expression, computed as `verify` does: integers have 64 bits, and an operation with an integer
+    and a real is one of reals.
 
     Raises:
-        WatchError: the expression has no value, because of an unknown name, a wrong type, a division by zero, or an
-            index outside of its array.
+        WatchError: the expression has no value, because of an unknown name, a wrong type, a division by zero, an index
+            outside of its array, or a number that is too large; or its computation takes too many steps.
     """
-    try:
-        return _value(expr, scope)
-    except (OverflowError, ValueError) as error:
-        if isinstance(error, WatchError):
-            raise
-        raise WatchError(str(error)) from None
+    return _Evaluation(scope).value(expr)
 
 
 def condition(expr: Expr, scope: Scope) -> bool:
@@ -75,47 +76,96 @@ def condition(expr: Expr, scope: Scope) -> bool:
     return _boolean(evaluate(expr, scope))
 
 
-def _value(expr: Expr, scope: Scope) -> Value:
-    match expr:
-        case Number() | String() | Boolean():
-            return expr.value
-        case Name():
-            value = scope(expr.name)
-            if value is None:
-                raise WatchError(f"there is no variable `{expr.name}` here")
-            return value
-        case Member():
-            return _member(expr, scope)
-        case Index():
-            return _element(_value(expr.object, scope), _value(expr.index, scope))
-        case Call():
-            return _call(expr, scope)
-        case Unary():
-            return _unary(expr.operator, _value(expr.operand, scope))
-        case Binary():
-            return _binary(expr, scope)
-        case Conditional():
-            return _value(expr.then if _boolean(_value(expr.test, scope)) else expr.otherwise, scope)
-        case ArrayLiteral():
-            return [_value(element, scope) for element in expr.elements]
-        case ObjectLiteral():
-            return {member.key: _value(member.value, scope) for member in expr.members}
-        case ErrorExpr():
-            raise WatchError("the expression is not complete")
+class _Evaluation:
+    """The evaluation of one expression.
 
+    Attributes:
+        steps: the number of steps that are left.
+    """
 
-def _member(expr: Member, scope: Scope) -> Value:
-    path = dotted(expr)
-    if path is not None:  # the name of a variable may contain dots
-        value = scope(path)
-        if value is not None:
-            return value
-    owner = _value(expr.object, scope)
-    if expr.name == "length" and isinstance(owner, (list, str)):
-        return len(bytes_of(owner) if isinstance(owner, str) else owner)
-    if isinstance(owner, list):
-        return [_part(element, expr.name) for element in owner]
-    return _part(owner, expr.name)
+    def __init__(self, scope: Scope) -> None:
+        self.scope = scope
+        self.steps = MAX_STEPS
+
+    def take(self, steps: int = 1) -> None:
+        self.steps -= steps
+        if self.steps < 0:
+            raise WatchError(f"the expression needs more than {MAX_STEPS:,} steps")
+
+    def value(self, expr: Expr) -> Value:
+        self.take()
+        match expr:
+            case Number() | String() | Boolean():
+                return expr.value
+            case Name():
+                value = self.scope(expr.name)
+                if value is None:
+                    raise WatchError(f"there is no variable `{expr.name}` here")
+                return value
+            case Member():
+                return self.member(expr)
+            case Index():
+                return _element(self.value(expr.object), self.value(expr.index))
+            case Call():
+                return self.call(expr)
+            case Unary():
+                return _unary(expr.operator, self.value(expr.operand))
+            case Binary():
+                return self.binary(expr)
+            case Conditional():
+                return self.value(expr.then if _boolean(self.value(expr.test)) else expr.otherwise)
+            case ArrayLiteral():
+                return [self.value(element) for element in expr.elements]
+            case ObjectLiteral():
+                return {member.key: self.value(member.value) for member in expr.members}
+            case ErrorExpr():
+                raise WatchError("the expression is not complete")
+
+    def member(self, expr: Member) -> Value:
+        path = dotted(expr)
+        if path is not None:  # the name of a variable may contain dots
+            value = self.scope(path)
+            if value is not None:
+                return value
+        owner = self.value(expr.object)
+        if expr.name == "length" and isinstance(owner, (list, str)):
+            return len(bytes_of(owner) if isinstance(owner, str) else owner)
+        if isinstance(owner, list):
+            self.take(len(owner))
+            return [_part(element, expr.name) for element in owner]
+        return _part(owner, expr.name)
+
+    def binary(self, expr: Binary) -> Value:
+        left = self.value(expr.left)
+        if expr.operator is Operator.AND:
+            return _boolean(left) and _boolean(self.value(expr.right))
+        if expr.operator is Operator.OR:
+            return _boolean(left) or _boolean(self.value(expr.right))
+        right = self.value(expr.right)
+        symbol = expr.operator.symbol
+        if expr.operator in (Operator.EQUAL, Operator.NOT_EQUAL):
+            _check_comparable(left, right, symbol)
+            if isinstance(left, list):
+                self.take(len(left))
+            return _are_equal(left, right) is (expr.operator is Operator.EQUAL)
+        return _computed(_OPERATORS[expr.operator], symbol, _number(left, symbol), _number(right, symbol))
+
+    def call(self, expr: Call) -> Value:
+        match expr.function:
+            case Member(object=Name(name="Math"), name=name) if name in FUNCTIONS:
+                function = FUNCTIONS[name]
+            case _:
+                raise WatchError("only functions of `Math` can be called")
+        if name == "random":
+            raise WatchError("`Math.random()` has no value here, because each execution draws a new number")
+        given = len(expr.arguments)
+        if not len(function.parameters) - function.optional <= given <= len(function.parameters):
+            raise WatchError(f"`{function.signature}` does not take {given} arguments")
+        symbol = f"Math.{name}"
+        arguments = [_number(self.value(argument), symbol) for argument in expr.arguments]
+        if function.result is FunctionResult.REAL:
+            arguments = [float(argument) for argument in arguments]
+        return _computed(_FUNCTIONS[name], symbol, *arguments)
 
 
 def dotted(expr: Expr) -> str | None:
@@ -149,25 +199,11 @@ def _element(owner: Value, index: Value) -> Value:
     return elements[index]
 
 
-def _unary(operator: UnaryOperator, operand: Value) -> Value:
-    if operator is UnaryOperator.NOT:
+def _unary(sign: UnaryOperator, operand: Value) -> Value:
+    if sign is UnaryOperator.NOT:
         return not _boolean(operand)
-    number = _number(operand, operator.symbol)
-    return -number if operator is UnaryOperator.NEGATE else number
-
-
-def _binary(expr: Binary, scope: Scope) -> Value:
-    left = _value(expr.left, scope)
-    if expr.operator is Operator.AND:
-        return _boolean(left) and _boolean(_value(expr.right, scope))
-    if expr.operator is Operator.OR:
-        return _boolean(left) or _boolean(_value(expr.right, scope))
-    right = _value(expr.right, scope)
-    if expr.operator in (Operator.EQUAL, Operator.NOT_EQUAL):
-        _check_comparable(left, right, expr.operator.symbol)
-        return (left == right) is (expr.operator is Operator.EQUAL)
-    symbol = expr.operator.symbol
-    return _COMPUTED[expr.operator](_number(left, symbol), _number(right, symbol))
+    number = _number(operand, sign.symbol)
+    return _limited(-number, sign.symbol) if sign is UnaryOperator.NEGATE else number
 
 
 def _check_comparable(left: Value, right: Value, symbol: str) -> None:
@@ -176,63 +212,60 @@ def _check_comparable(left: Value, right: Value, symbol: str) -> None:
         raise WatchError(f"`{symbol}` cannot compare {shown(left)} with {shown(right)}")
 
 
-def _quotient(a: float, b: float) -> float:
-    if b == 0:
-        raise WatchError("division by zero")
-    return a / b
+def _are_equal(left: Value, right: Value) -> bool:
+    if isinstance(left, (int, float)) and isinstance(right, (int, float)):
+        left, right = _alike((left, right))
+    return left == right
 
 
-def _remainder(a: float, b: float) -> float:
-    if b == 0:
-        raise WatchError("division by zero")
-    return a % abs(b)
+def _computed(function: Callable[..., float], symbol: str, *operands: int | float) -> Value:
+    """The result of an operation on numbers, with the limits of `verify`."""
+    try:
+        result = function(*_alike(operands))
+    except ZeroDivisionError:
+        raise WatchError("division by zero") from None
+    except OverflowError:
+        raise WatchError(f"the result of `{symbol}` is too large") from None
+    except ValueError:
+        raise WatchError(f"`{symbol}` has no value for {' and '.join(map(shown, operands))}") from None
+    return _limited(result, symbol)
 
 
-_COMPUTED: Mapping[Operator, Callable[[float, float], Value]] = {
-    Operator.LESS: lambda a, b: a < b,
-    Operator.LESS_EQUAL: lambda a, b: a <= b,
-    Operator.GREATER: lambda a, b: a > b,
-    Operator.GREATER_EQUAL: lambda a, b: a >= b,
-    Operator.ADD: lambda a, b: a + b,
-    Operator.SUBTRACT: lambda a, b: a - b,
-    Operator.MULTIPLY: lambda a, b: a * b,
-    Operator.DIVIDE: _quotient,
-    Operator.REMAINDER: _remainder,
+def _alike(operands: Sequence[int | float]) -> Sequence[int | float]:
+    """The operands as reals, if one of them is real."""
+    return [float(operand) for operand in operands] if float in map(type, operands) else operands
+
+
+def _limited(number: int | float, symbol: str) -> int | float:
+    if isinstance(number, int) and not _MIN_INT <= number <= _MAX_INT:
+        raise WatchError(f"integer overflow: the result of `{symbol}` does not fit into 64 bits")
+    return number
+
+
+_MIN_INT, _MAX_INT = -(1 << 63), (1 << 63) - 1
+
+_OPERATORS: Mapping[Operator, Callable[[float, float], float]] = {
+    Operator.LESS: operator.lt,
+    Operator.LESS_EQUAL: operator.le,
+    Operator.GREATER: operator.gt,
+    Operator.GREATER_EQUAL: operator.ge,
+    Operator.ADD: operator.add,
+    Operator.SUBTRACT: operator.sub,
+    Operator.MULTIPLY: operator.mul,
+    Operator.DIVIDE: operator.truediv,
+    Operator.REMAINDER: lambda left, right: left % abs(right),
 }
 
-
-def _call(expr: Call, scope: Scope) -> Value:
-    match expr.function:
-        case Member(object=Name(name="Math"), name=name) if name in FUNCTIONS:
-            function = FUNCTIONS[name]
-        case _:
-            raise WatchError("only functions of `Math` can be called")
-    if name == "random":
-        raise WatchError("`Math.random()` has no value here, because each execution draws a new number")
-    given = len(expr.arguments)
-    if not len(function.parameters) - function.optional <= given <= len(function.parameters):
-        raise WatchError(f"`{function.signature}` does not take {given} arguments")
-    arguments = [_number(_value(argument, scope), f"Math.{name}") for argument in expr.arguments]
-    return _FUNCTIONS[name](arguments)
-
-
-def _power(arguments: Sequence[float]) -> float:
-    power = arguments[0] ** arguments[1]
-    if isinstance(power, complex):
-        raise WatchError("a negative number to the power of a fraction is not a real number")
-    return float(power)
-
-
-_FUNCTIONS: Mapping[str, Callable[[Sequence[float]], Value]] = {
-    "abs": lambda a: abs(a[0]),
-    "ceil": lambda a: math.ceil(a[0]),
-    "cos": lambda a: math.cos(a[0]),
-    "floor": lambda a: math.floor(a[0]),
-    "log": lambda a: math.log(*a),
+_FUNCTIONS: Mapping[str, Callable[..., float]] = {
+    "abs": abs,
+    "ceil": math.ceil,
+    "cos": math.cos,
+    "floor": math.floor,
+    "log": math.log,
     "max": max,
     "min": min,
-    "pow": _power,
-    "sin": lambda a: math.sin(a[0]),
+    "pow": math.pow,
+    "sin": math.sin,
 }
 
 

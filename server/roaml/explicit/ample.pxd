@@ -16,7 +16,7 @@ cdef class AmpleSets:
     cdef int[::1] slot_start, slot_vector, hidden, dependent_start, dependent_vector, guard_start, guard_vector
     cdef int[::1] open_guards, frozen_at, candidates, busy_with
     cdef int[::1] own_start, own_slot, gates_start, gates, gate_slot_start, gate_slot, list_end, list_slot
-    cdef int writes_seen, is_fleeting, count, alone, chosen, is_chosen_open
+    cdef int writes_seen, is_fleeting, count, alone, chosen, chosen_rank
     cdef i64 runs, searches
     cdef i64[::1] frozen, waits, listed, busy
 
@@ -37,7 +37,7 @@ cdef class AmpleSets:
     cdef int _bar(self, int vector) noexcept
     @cython.locals(i=int, slot=int, gate=int, group=int, k=int)
     cdef int _let_wait(self, int vector) noexcept
-    @cython.locals(is_open=int)
+    @cython.locals(rank=int, instance=int)
     cdef int _is_stopped(self, int slot) noexcept
     @cython.locals(missing=int, at=int, end=int, slot=int)
     cdef void _list(self, int gate) noexcept

@@ -68,7 +68,7 @@ class AmpleSets:
         self.busy = array("q", [0] * self.kernel.instances)
         self.busy_with = array("i", [0] * self.kernel.instances)
         self.chosen = -1
-        self.is_chosen_open = 0
+        self.chosen_rank = 0
         self.writes_seen = 0
         self.candidates = array("i", [0] * (len(self.kernel.enabled) + 1))
 
@@ -176,7 +176,10 @@ class AmpleSets:
         return 1
 
     def _bar(self, vector: int) -> int:
-        """Ensure that a vector has a frozen participant; return 0 if that is not possible."""
+        """Ensure that a vector has a frozen participant, or is held until the current one is taken; return 0 if that is
+        not possible."""
+        if vector >= self.kernel.first_held:
+            return 1 if self.alone < self.kernel.first_held else 0
         for i in range(self.kernel.all_start[vector], self.kernel.all_start[vector + 1]):
             if self.frozen[self.kernel.slot_instance[self.kernel.all_slot[i]]] == self.runs:
                 return 1
@@ -189,7 +192,11 @@ class AmpleSets:
         return 0
 
     def _let_wait(self, vector: int) -> int:
-        """Ensure that a vector waits for a frozen instance; return 0 if that is not possible."""
+        """Ensure that a vector waits for a frozen instance, or is held until the current one is taken; return 0 if that
+        is not possible."""
+        if vector >= self.kernel.first_held and self.alone < self.kernel.first_held:
+            self.waits[vector] = self.runs
+            return 1
         if self.kernel.vector_missing[vector] == 0:
             return 0
         self.waits[vector] = self.runs
@@ -218,13 +225,17 @@ class AmpleSets:
 
     def _is_stopped(self, slot: int) -> int:
         """Whether a slot without enabled edges keeps its vectors from being taken, because its instance is frozen.
-        Otherwise it may become `chosen`, which is the first one without open guards, or the first one."""
-        is_open = 1 if self.open_guards[slot] != 0 and self._group(slot) >= 0 else 0
-        if is_open == 0 and self.frozen[self.kernel.slot_instance[slot]] == self.runs:
+        Otherwise it may become `chosen`. Slots of instances that no other enabled vector can move are preferred, then
+        those without open guards, then the first ones."""
+        instance = self.kernel.slot_instance[slot]
+        rank = 1 if self.open_guards[slot] != 0 and self._group(slot) >= 0 else 0
+        if rank == 0 and self.frozen[instance] == self.runs:
             return 1
-        if self.chosen < 0 or is_open < self.is_chosen_open or (is_open == self.is_chosen_open and slot < self.chosen):
+        if self.busy[instance] == self.searches and self.busy_with[instance] != self.alone:
+            rank += 2
+        if self.chosen < 0 or rank < self.chosen_rank or (rank == self.chosen_rank and slot < self.chosen):
             self.chosen = slot
-            self.is_chosen_open = is_open
+            self.chosen_rank = rank
         return 0
 
     def _list(self, gate: int) -> None:

@@ -32,7 +32,8 @@ class GoalValues(Record, frozen=True):
 
     Attributes:
         minimum, maximum: the bounds of the extreme values over all schedulers.
-        uniform: the bounds of the value under uniform choices; `None` if the states do not determine it.
+        uniform: the bounds of the value under uniform choices; `None` if the states do not determine it, or if it
+            takes too much work.
         is_precise: whether the bounds of all three values are as close as intended.
 
     With several initial states, these are the minimum, the maximum or the mean of their values, as the property asks
@@ -78,8 +79,19 @@ class _Question:
                     f"{share:.6g}"
                 )
         minimum, maximum = self.bounds(MINIMUM), self.bounds(MAXIMUM)
-        uniform = None if self.space.is_reduced else self.bounds(MEAN)
-        return GoalValues(minimum, maximum, uniform, self.is_precise)
+        return GoalValues(minimum, maximum, self.uniform(), self.is_precise)
+
+    def uniform(self) -> Bounds | None:
+        """The bounds of the value under uniform choices; `None` if the states do not determine it, or if its
+        computation needs more work than a limit on it allows."""
+        if self.space.is_reduced:
+            return None
+        try:
+            return self.bounds(MEAN)
+        except NoValueError:
+            if self.work is None:
+                raise
+            return None
 
     def solver(self, mode: int) -> Any:
         solver_ = self.module.Solver(self.space.search, mode)

@@ -39,6 +39,7 @@ from roaml.expr.types import (
     UNKNOWN,
     Array,
     EmptyArray,
+    Scalar,
     ScalarKind,
     Struct,
     Type,
@@ -133,6 +134,14 @@ class IntegerDivision(Record, frozen=True):
     span: Span
 
 
+class RealEquality(Record, frozen=True):
+    """`==` or `!=` compares numbers of which at least one is real."""
+
+    span: Span
+    left: Expr
+    right: Expr
+
+
 class RandomUsed(Record, frozen=True):
     span: Span
 
@@ -168,6 +177,7 @@ Problem: TypeAlias = (
     | MixedTypes
     | DivisionByZero
     | IntegerDivision
+    | RealEquality
     | RandomUsed
     | LengthOfStruct
     | ObjectUsed
@@ -356,6 +366,8 @@ class _Inference:
         )
         if not comparable or isinstance(unwrap(left)[0], Struct) or isinstance(unwrap(right)[0], Struct):
             self.problems.append(BadComparison(expr.span, expr.operator.symbol, left, right))
+        elif is_number(left) and is_number(right) and ScalarKind.REAL in map(_kind, (left, right)):
+            self.problems.append(RealEquality(expr.span, expr.left, expr.right))
 
     def unary(self, expr: Unary) -> Type:
         if expr.operator is UnaryOperator.NOT:
@@ -425,6 +437,10 @@ class _Inference:
         type_ = self.type_of(expr)
         if not fits(type_, required):
             self.problems.append(BadOperand(expr.span, operator, type_, required))
+
+
+def _kind(type_: Type) -> ScalarKind | None:
+    return type_.kind if isinstance(type_, Scalar) else None
 
 
 def _function_name(function: Expr) -> str | None:

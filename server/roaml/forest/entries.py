@@ -15,7 +15,7 @@ from functools import cached_property
 from typing import TypeAlias
 
 from roaml.forest.cpp_types import ANY
-from roaml.forest.forest import Forest, port_type
+from roaml.forest.forest import OLD_ATTRIBUTES, Forest, port_type
 from roaml.forest.ports import ports_of
 from roaml.forest.scripts import scripts_of
 from roaml.libraries import Node
@@ -42,6 +42,7 @@ _NAMING_PORTS = {
 """The ports whose value is the name of an entry even without braces -> whether the node writes the entry."""
 _CONSUMED = frozenset((f"Loop{element}", "queue") for element in ("Int", "Bool", "Double", "String"))
 """The ports that take elements from an entry and never add one."""
+_TRUE = ("1", "true", "True", "TRUE")
 _NAME = re.compile(r"@?[A-Za-z_][\w.:-]*\Z", re.ASCII)
 
 
@@ -281,6 +282,15 @@ def _name(tree: Tree) -> str:
     return tree.id.value if tree.id else ""
 
 
-def is_autoremapped(node: TreeNode) -> bool:
-    attribute = node.element.get("_autoremap")
-    return attribute is not None and attribute.value.strip() in ("1", "true", "True", "TRUE")
+def is_autoremapped(node: TreeNode, *, version_3: bool = False) -> bool:
+    """Whether a `<SubTree>` binds all entries that are not set. `version_3`: whether its file is of version 3."""
+    names = ("_autoremap", *OLD_ATTRIBUTES) if version_3 else ("_autoremap",)
+    given = (node.element.get(name) for name in names)
+    return any(attribute is not None and attribute.value.strip() in _TRUE for attribute in given)
+
+
+def old_entry_of(node: TreeNode, setting: PortSetting) -> str | None:
+    """The name of the entry that an attribute of a subtree is bound to in a file of version 3; `None` if it is a
+    constant. There, the values of a `SubTree` are names of entries without braces."""
+    name = setting.value.value.strip()
+    return name if node.element.name == "SubTree" and _NAME.match(name) else entry_of(setting)

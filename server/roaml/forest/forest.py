@@ -19,6 +19,7 @@ from roaml.model.kinds import PROJECT_EXTENSION
 from roaml.model.tree import NodeModel, Tree, TreeFile, TreeNode, nodes
 from roaml.record import Record, replace
 from roaml.roles import NodeKind
+from roaml.suggest import close_names
 
 CPP = library(BEHAVIORTREE_CPP)
 
@@ -33,7 +34,10 @@ _COMMON_NAMES = frozenset(
 used."""
 
 OLD_ATTRIBUTES = ("__autoremap", "__shared_blackboard")
-_OLD_TAGS = ("SubTreePlus", *CPP.renamed, *(name for name in CPP.absent if name.startswith("BlackboardCheck")))
+_OLD_TAGS = (
+    *("SubTreePlus", *CPP.renamed, *(name for name, node in CPP.nodes.items() if node.until)),
+    *(name for name in CPP.absent if name.startswith("BlackboardCheck")),
+)
 
 
 class Forest(Record, frozen=True, eq=False, dict=True):
@@ -45,6 +49,8 @@ class Forest(Record, frozen=True, eq=False, dict=True):
             list it, and the files of models. The files that include it come first.
         beside: the names of the trees in all files of the folder, because a program may load these files together.
         complete: whether all included files could be read.
+        models_beside: the models in other files of the folder. A node that they describe is not the node of that name
+            in a library, unless they describe that one.
     """
 
     path: str
@@ -52,6 +58,7 @@ class Forest(Record, frozen=True, eq=False, dict=True):
     settings: TreeSettings
     beside: frozenset[str] = frozenset()
     complete: bool = True
+    models_beside: tuple[NodeModel, ...] = ()
 
     @cached_property
     def file(self) -> TreeFile:
@@ -71,9 +78,7 @@ class Forest(Record, frozen=True, eq=False, dict=True):
     @cached_property
     def is_version_3(self) -> bool:
         """Whether the file declares version 3, or declares no version and uses names that only version 3 has."""
-        if self.file.format:
-            return self.file.format == "3"
-        return any(_is_old(node) for tree in self.file.trees for node in nodes(tree))
+        return is_version_3(self.file)
 
     @cached_property
     def trees(self) -> Mapping[str, tuple[str, Tree]]:
@@ -168,14 +173,39 @@ class Forest(Record, frozen=True, eq=False, dict=True):
         return len(names) > 1
 
     def node(self, name: str) -> Node | None:
-        """The declaration of the node type `name`; `None` if there is none."""
-        declaration = CPP.nodes.get(name)
-        if declaration is not None and not declaration.until and not self.is_newer_than_used(declaration):
+        """The declaration of the node type `name`; `None` if there is none. In a file of version 3, the names of
+        version 3 are known, too."""
+        renamed = CPP.renamed.get(name) if self.is_version_3 else None
+        declaration = CPP.nodes.get(renamed.now if renamed else name)
+        is_known = declaration is not None and (self.is_version_3 or not declaration.until)
+        if declaration is not None and is_known and not self.is_newer_than_used(declaration):
             return declaration
         declaration = self._described.get(name)
         if declaration is not None:
             return declaration
-        return next((known.nodes[name] for known in self.libraries if name in known.nodes), None)
+        known = next((known.nodes[name] for known in self.libraries if name in known.nodes), None)
+        return None if known is None or self._is_own(known) else known
+
+    def _is_own(self, node: Node) -> bool:
+        """Whether the program has a node of its own with the name of a node of a library: a model in another file of
+        the folder describes it differently, or its name is common and no attribute of its uses resembles a port of the
+        library's node. A library that the settings name is always meant."""
+        if node.name not in self._own_nodes:
+            beside = [node_of(m) for m in self.models_beside if m.id is not None and m.id.value == node.name]
+            is_other = bool(beside) and not any(_is_model_of(model, node) for model in beside)
+            if not beside and node.name in _COMMON_NAMES:
+                uses = [use for _, _, use in self.all_nodes if use.plugin is not None and use.plugin.value == node.name]
+                ports = [name for use in uses for name in (setting.attribute.name for setting in ports_of(use))]
+                names = tuple(port.name for port in node.ports)
+                is_other = bool(ports) and not any(name in names or close_names(name, names) for name in ports)
+            named = any(node.library == library(name).name for name in self.settings.libraries)
+            self._own_nodes[node.name] = is_other and not named
+        return self._own_nodes[node.name]
+
+    @cached_property
+    def _own_nodes(self) -> dict[str, bool]:
+        """The results of `_is_own`."""
+        return {}
 
     @cached_property
     def _described(self) -> Mapping[str, Node]:
@@ -210,7 +240,8 @@ class Forest(Record, frozen=True, eq=False, dict=True):
     def names(self) -> tuple[str, ...]:
         """The names of all declared nodes."""
         own = (name for name, node in CPP.nodes.items() if not node.until)
-        return (*own, *self.models, *(name for known in self.libraries for name in known.nodes))
+        others = (node for known in self.libraries for node in known.nodes.values())
+        return (*own, *self.models, *(node.name for node in others if not self._is_own(node)))
 
     @cached_property
     def has_own_models(self) -> bool:
@@ -262,8 +293,19 @@ class Forest(Record, frozen=True, eq=False, dict=True):
         return node.compact and node.plugin is not None and node.plugin.value in self.trees
 
 
+def is_version_3(file: TreeFile) -> bool:
+    """Whether a file declares version 3 of BehaviorTree.CPP, or declares no version and uses names that only version 3
+    has."""
+    if file.format:
+        return file.format == "3"
+    return any(_is_old(node) for tree in file.trees for node in nodes(tree))
+
+
 def _is_old(node: TreeNode) -> bool:
     name = node.plugin.value if node.plugin else ""
+    if name == "Parallel":
+        ports = (CPP.nodes[name].port(attribute.name) for attribute in node.element.attributes)
+        return any(port is not None and port.alias_of for port in ports)
     return (
         node.element.name in _OLD_TAGS
         or (not node.compact and not node.is_subtree and name in _OLD_TAGS)

@@ -93,7 +93,7 @@ class Registry:
     def __init__(self, search_path: SearchPath, read: Callable[[str], SourceFile | None]) -> None:
         self.search_path = search_path
         self._read = read
-        self._parsed: dict[str, tuple[tuple[Kind, str, str, bytes], Parsed]] = {}
+        self._parsed: dict[str, tuple[tuple[Kind, str, str, str], Parsed]] = {}
 
     def reading(self, read: Callable[[str], SourceFile | None]) -> Registry:
         """A registry that reads files with `read`. Both registries share the parsed definitions."""
@@ -150,11 +150,11 @@ class Registry:
         if source is None:
             return None
         known = self._parsed.get(path)
-        if known and known[0] == (kind, package, name, source.digest):
+        if known and known[0] == (kind, package, name, source.text):
             return known[1]
         definition, findings = parse(source.text, package, name, kind)
         parsed = Parsed(replace(definition, path=path), findings)
-        self._parsed[path] = ((kind, package, name, source.digest), parsed)
+        self._parsed[path] = ((kind, package, name, source.text), parsed)
         return parsed
 
     def _not_found(self, kind: Kind, package: str, name: str) -> NotFound:

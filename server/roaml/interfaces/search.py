@@ -297,6 +297,11 @@ def _is_ament_prefix(folder: str) -> bool:
     return os.path.isdir(os.path.join(folder, "share", "ament_index"))
 
 
+def is_standard(path: str) -> bool:
+    """Whether a file is a definition of the standard packages that are part of this tool."""
+    return path.startswith(os.path.join(_standard(), ""))
+
+
 @cache
 def _standard() -> str:
     from importlib import resources  # noqa: PLC0415  takes longer to import than all of this package

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import enum
 
+from roaml.durations import ANY_TIME, ReactionTime
 from roaml.jani.expressions import ArrayAccess, Expression, LValue, Name
 from roaml.jani.node import CommentedNode, Node
 from roaml.jani.properties import Property
@@ -33,14 +34,30 @@ class ModelType(enum.Enum):
     SHA = "sha"
 
 
+class Clock(Node, frozen=True):
+    """The automaton that advances the time of a translated system (docs/spec/jani.md#clock-metadata).
+
+    Attributes:
+        actions: the actions with which it begins its steps.
+        step: the length of a step, in ns.
+    """
+
+    automaton: str
+    actions: tuple[str, ...]
+    step: int
+
+
 class Metadata(Node, frozen=True):
-    """The authors and the purpose of the model."""
+    """The authors and the purpose of the model; for a translated system with timers, its clock, and the reaction time
+    that the model assumes."""
 
     version: str | None = None
     author: str | None = None
     description: str | None = None
     doi: str | None = None
     url: str | None = None
+    clock: Clock | None = None
+    reaction_time: ReactionTime = ANY_TIME
 
 
 class Clause(CommentedNode, frozen=True):
@@ -195,7 +212,12 @@ class System(CommentedNode, frozen=True):
 
 
 class Model(Node, frozen=True):
-    """A whole model. `features` need not contain the features that its parts require, because the writer adds them."""
+    """A whole model. `features` need not contain the features that its parts require, because the writer adds them.
+
+    Attributes:
+        holds_clock: whether the clock of the metadata begins a step only if no other step is possible. JANI cannot
+            express this, so the writer replaces it by guards (`reaction`).
+    """
 
     type: ModelType
     automata: tuple[Automaton, ...]
@@ -210,3 +232,4 @@ class Model(Node, frozen=True):
     functions: tuple[Function, ...] = ()
     restrict_initial: Clause | None = None
     properties: tuple[Property, ...] = ()
+    holds_clock: bool = False

@@ -14,12 +14,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
+from roaml.durations import ANY, ANY_TIME, REACTION_TIME, ReactionTime, duration, reaction_time
 from roaml.jani.expressions import Missing
 from roaml.jani.features import SUPPORTED, Feature
 from roaml.jani.members import Members, shape
 from roaml.jani.model import (
     Assignment,
     Automaton,
+    Clock,
     Destination,
     Edge,
     Element,
@@ -72,7 +74,8 @@ _MODEL = shape(
     "jani-version type automata system",
     "name metadata features actions constants variables datatypes functions restrict-initial properties",
 )
-_METADATA = shape("metadata", "", "version author description doi url", is_open=True)
+_METADATA = shape("metadata", "", "version author description doi url clock reaction-time", is_open=True)
+_CLOCK = shape("a clock", "automaton actions step", is_open=True)
 _AUTOMATON = shape(
     "an automaton", "name locations initial-locations edges", "variables functions restrict-initial comment"
 )
@@ -153,8 +156,30 @@ class _ModelReader(DeclarationReader):
             members.comment("description"),
             members.comment("doi"),
             members.comment("url"),
+            self.clock(members),
+            self.reaction_time(members),
             origin=members.origin,
         )
+
+    def clock(self, metadata: Members) -> Clock | None:
+        members = self.members(metadata.values.get("clock"), _CLOCK)
+        if members is None:
+            return None
+        step = duration(members.text("step") or "")
+        actions = tuple(item.value for item in members.items("actions") if isinstance(item, JsonString))
+        if step is None:
+            self.notes.syntax(members.origin.span, "the step of the clock must be a duration such as `500 ms`")
+            return None
+        return Clock(members.text("automaton") or "", actions, step, origin=members.origin)
+
+    def reaction_time(self, metadata: Members) -> ReactionTime:
+        value = metadata.values.get("reaction-time")
+        text = metadata.text("reaction-time") if value is not None else ANY
+        time = reaction_time(text or ANY)
+        if time is None:
+            assert value is not None
+            self.notes.syntax(value.span, REACTION_TIME)
+        return time or ANY_TIME
 
     # ---------------------------------------------------------------- automata
 

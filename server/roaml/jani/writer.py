@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from roaml.durations import duration_text
 from roaml.exhaustive import assert_never
 from roaml.jani.features import Feature
 from roaml.jani.model import (
@@ -19,6 +20,7 @@ from roaml.jani.model import (
     Assignment,
     Automaton,
     Clause,
+    Clock,
     Constant,
     Datatype,
     DatatypeMember,
@@ -35,6 +37,7 @@ from roaml.jani.model import (
     Variable,
 )
 from roaml.jani.properties import Property
+from roaml.jani.reaction import without_hold
 from roaml.jani.types import ArrayType, BasicType, BoundedType, DatatypeType, OptionType, Type, UnknownType
 from roaml.jani.write_formulas import FormulaWriter
 from roaml.json_syntax import indented, quote
@@ -46,7 +49,7 @@ def write(model: Model, indent: int | None = None) -> Iterator[str]:
     Raises:
         ValueError: the model has parts that the reader could not read; see `FormulaWriter.text`.
     """
-    chunks = _Writer().model(model)
+    chunks = _Writer().model(without_hold(model))
     return chunks if indent is None else indented(chunks, indent)
 
 
@@ -238,7 +241,14 @@ def _metadata(metadata: Metadata) -> str:
         description=_text(metadata.description),
         doi=_text(metadata.doi),
         url=_text(metadata.url),
+        clock=None if metadata.clock is None else _clock(metadata.clock),
+        reaction_time=None if metadata.clock is None else quote(metadata.reaction_time.text),
     )
+
+
+def _clock(clock: Clock) -> str:
+    actions = _list(map(quote, clock.actions))
+    return _object(automaton=quote(clock.automaton), actions=actions, step=quote(duration_text(clock.step)))
 
 
 def _action(action: Action) -> str:

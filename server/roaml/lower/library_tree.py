@@ -17,7 +17,7 @@ from roaml.forest.scripts import script_attributes
 from roaml.libraries import BEHAVIORTREE_CPP, Node, Port, library, node_in_libraries
 from roaml.lower.programs.assembly import NodeProgram, programs
 from roaml.lower.programs.automaton import CONDITION_MACHINE, MACHINE, MACHINES, NodeTooLargeError, node_automaton
-from roaml.lower.programs.board import Board, build_board
+from roaml.lower.programs.board import Board, build_board, set_entry
 from roaml.lower.programs.code import FAILURE, RUNNING, SUCCESS, Child, NodeCode
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree, identifier
 from roaml.lower.programs.nodes import (
@@ -39,7 +39,7 @@ from roaml.roles import Direction, NodeKind
 from roaml.script.names import names_in
 from roaml.scxml.model import Automaton
 from roaml.scxml.names import CONDITIONS_PREFIX
-from roaml.text import Location
+from roaml.text import NO_SPAN, Location
 
 STATUSES = frozenset((SUCCESS, FAILURE, RUNNING))
 """The statuses with which a machine answers a tick, as codes."""
@@ -143,10 +143,10 @@ class LibraryTreeBuilder:
             return
         names = _FrameNames(self.system.tree_uses[instance.use].frame, self.initial)
         origin = Location(instance.source.path, source.element.name_span)
-        known = _declared(automaton)
+        known = _declared(automaton, is_program=self.system.is_program(automaton))
         node = ExecutedNode(instance.number, known.name, instance.name, source, known, names, instance.children, origin)
         try:
-            program = None if automaton.path else program_of(node)
+            program = program_of(node) if self.system.is_program(automaton) else None
         except TreeRefusal as refusal:
             self.refusals.append(refusal)
             return
@@ -185,6 +185,10 @@ class LibraryTreeBuilder:
                 names = _FrameNames(use.frame.outer, self.initial)
                 yield ExecutedNode(0, "SubTree", use.name, source, None, names, (instance.number,), origin)
 
+    def origin(self, instance: Instance) -> Location:
+        source = self.source(instance)
+        return Location(instance.source.path, source.element.name_span if source is not None else NO_SPAN)
+
     def source(self, instance: Instance) -> TreeNode | None:
         file = self.files.get(instance.source.path)
         return node_at(file, instance.source) if file else None
@@ -193,7 +197,7 @@ class LibraryTreeBuilder:
         """Variable to which a port of a machine is bound -> the name of its type."""
         types: dict[str, str] = {}
         for variable, ports in self.system.blackboard.items():
-            if any(bound.automaton.path for bound in ports):
+            if not all(self.system.is_program(bound.automaton) for bound in ports):
                 types[variable] = self.system.variable_type(variable)
         return types
 
@@ -205,10 +209,26 @@ class LibraryTreeBuilder:
         def outline(name: str, type_: str) -> EntryOutline:
             ports = self.system.blackboard.get(name, ())
             read = name in self.board.read or any(bound.port.read for bound in ports)
-            return EntryOutline(type_, read, name in self.board.written)
+            written = name in by_programs or any(bound.port.written for bound in ports)
+            return EntryOutline(type_, read, written)
 
+        by_programs = self.written_by_programs()
         flags = {flag.variable: EntryOutline(flag.type_name, True, True) for flag in self.board.flag_of.values()}
         return {name: outline(name, entry.type_name) for name, entry in self.board.entries.items()} | flags
+
+    def written_by_programs(self) -> frozenset[str]:
+        """The entries that scripts and nodes of the libraries write."""
+        written: set[str | None] = set()
+        for part in (part for parts in self.parts.values() for part in parts):
+            node = part.node
+            for attribute in script_attributes(node.node):
+                names = names_in(attribute.value)
+                written |= {node.frame.entry(name) for name, operator in names if operator != "read"}
+            if part.program is not None and node.known is not None:
+                written.add(set_entry(node, in_system=True) if node.type == "SetBlackboard" else None)
+                ports = ((node.known.port(port), entry) for port, entry, _, _ in node.ports())
+                written |= {entry for port, entry in ports if port is not None and port.direction.writes}
+        return frozenset(name for name in written if name is not None)
 
     def tree(self) -> LibraryTree:
         """Translate the tree. Parts that cannot be translated are left out, with a refusal for each."""
@@ -217,13 +237,14 @@ class LibraryTreeBuilder:
         children: dict[int, Child] = {}
         for instance in reversed(self.system.instances):
             translated: list[NodeCode] = []
-            child = Child(str(instance.number), STATUSES, False)
+            origin = self.origin(instance)
+            child = Child(str(instance.number), STATUSES, False, origin)
             for part in reversed(self.parts[instance.number]):
                 try:
                     self.check(part)
                     if part.program is None:
                         self.check_machine(instance, part, children)
-                        child = Child(part.address, STATUSES, False)
+                        child = Child(part.address, STATUSES, False, origin)
                         continue
                     below = [child] if part.address != self.parts[instance.number][-1].address else None
                     below = below or [children[number] for number in instance.children]
@@ -257,7 +278,7 @@ class LibraryTreeBuilder:
         known = self.known_children[shape]
         if known is None:
             raise NodeTooLargeError
-        return replace(known, address=code.address)
+        return replace(known, address=code.address, origin=code.origin)
 
     @cached_property
     def constants_of_machines(self) -> frozenset[str]:
@@ -288,9 +309,7 @@ class LibraryTreeBuilder:
             if not children[number].answers <= STATUSES:
                 below = self.system.by_instance[number].instance
                 name = below.name if below else ""
-                reason = (
-                    f"`{name}` can be skipped, but its parent, the plugin `{instance.plugin}`, cannot handle SKIPPED"
-                )
+                reason = f"`{name}` can be skipped, but its parent `{instance.plugin}` cannot handle SKIPPED"
                 raise TreeRefusal(part.node.origin, reason)
 
     def code(self, part: _Part, program: NodeProgram, children: tuple[Child, ...]) -> NodeCode:
@@ -337,10 +356,10 @@ def _address(number: int, level: int) -> str:
     return str(number) if level == 0 else f"{number}_inner" if level == 1 else f"{number}_inner{level}"
 
 
-def _declared(automaton: SystemAutomaton) -> Node:
+def _declared(automaton: SystemAutomaton, *, is_program: bool) -> Node:
     """The declaration of a node in its library; for a machine, a declaration with its ports."""
     name = automaton.outline.name
-    if automaton.path:
+    if not is_program:
         return _of_machine(automaton.outline)
     cpp = library(BEHAVIORTREE_CPP)
     renamed = cpp.renamed.get(name)

@@ -74,7 +74,7 @@ def thread_name(machine: Machine, chart: Chart, number: int) -> str:
 def lower_machine(
     automaton: SystemAutomaton, machine: Machine, program: TranslatableSystem, timers: TimerEvents
 ) -> Iterator[PlainAutomaton]:
-    ports = {} if automaton.path else builtin_ports(automaton, program)
+    ports = {} if automaton.path else builtin_ports(automaton)
     for plain_name, chart, thread in copies(automaton, machine):
         events = {timer: event for (user, timer), event in timers.items() if user == plain_name}
         variables = variables_of(chart, program)

@@ -121,9 +121,9 @@ def _cells(program: TranslatableSystem, globals_: Mapping[str, GlobalVariable]) 
 
 def _members(program: TranslatableSystem) -> Iterator[tuple[SystemAutomaton, Machine]]:
     for automaton in program.system.automata:
-        if not automaton.path and program.system.is_library_tree:
+        if program.system.is_program(automaton):
             continue  # programs have few variables, and the size of a tree is limited
-        machine = program.machines.get(automaton.path) if automaton.path else builtin_machine(automaton, program)
+        machine = program.machines.get(automaton.path) if automaton.path else builtin_machine(automaton)
         if machine is not None:
             yield automaton, machine
 
@@ -161,7 +161,23 @@ def _parts(program: TranslatableSystem, globals_: Mapping[str, GlobalVariable]) 
         yield Share(counted[key][0], f"`{automaton.outline.name}`", automaton.path, _machine_symbol(automaton))
         automata += sum(copies for _, copies in _charts(machine))
         syncs += counted[key][1] + sum(timer.users for timer in automaton.outline.timers)
+    for automaton in program.system.automata:
+        if program.system.is_program(automaton) and automaton.instance is not None:
+            children = len(automaton.instance.children)
+            yield Share(_program_parts(children), f"`{automaton.outline.name}`", "")
+            automata += 1
+            syncs += _PROGRAM_SYNCS * (children + 1)
     yield Share(automata * syncs // _PLACES, f"the synchronisation of {automata:,} automata", "")
+
+
+def _program_parts(children: int) -> int:
+    """The approximate number of parts of the automaton of a node of a library with so many children. It depends on the
+    node: a `Sequence` with 16 children has 2 times as many, a `SequenceWithMemory` 13 times."""
+    return 300 + 60 * children + 6 * children**2
+
+
+_PROGRAM_SYNCS = 4
+"""The number of events between a node of a library and its parent, or one of its children."""
 
 
 def _machine_symbol(automaton: SystemAutomaton) -> Symbol | None:

@@ -6,13 +6,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from roaml.durations import ANY_TIME
 from roaml.lower.actions import action_handler
 from roaml.lower.blackboard import blackboard
 from roaml.lower.machine import TimerEvents, lower_machine
 from roaml.lower.nodes import builtin_machine
 from roaml.lower.program import TranslatableSystem
 from roaml.lower.services import service_handler
-from roaml.lower.timers import clock, timers_of
+from roaml.lower.timers import clock, clock_step, timers_of
 from roaml.lower.tree import tick_timer, tree_root
 from roaml.model.machine import Machine
 from roaml.model.system import SystemAutomaton
@@ -25,20 +26,27 @@ def lower(program: TranslatableSystem) -> Network:
     members = [
         (automaton, _machine(automaton, program))
         for automaton in program.system.automata
-        if automaton.path or program.library is None
+        if not program.system.is_program(automaton)
     ]
     timers = timers_of(program, members)
     events = {(timer.user, timer.handle): timer.event for timer in timers if timer.event is not None}
     automata = list(_automata(program, members, events))
     if timers:
         automata.append(clock(timers, program.parameters.max_time or 0, program.place))
-    return Network(tuple(automata), program.parameters.max_array_size, program.parameters.random_values)
+    parameters = program.parameters
+    return Network(
+        tuple(automata),
+        parameters.max_array_size,
+        parameters.random_values,
+        clock_step(timers),
+        parameters.reaction_time or ANY_TIME,
+    )
 
 
 def _machine(automaton: SystemAutomaton, program: TranslatableSystem) -> Machine:
     if automaton.path:
         return program.machines[automaton.path]
-    return builtin_machine(automaton, program)
+    return builtin_machine(automaton)
 
 
 def _automata(

@@ -112,11 +112,16 @@ def _rate(declaration: Declaration, automaton: SystemAutomaton) -> Fraction:
 STEP = ScxmlEvent(CLOCK_STEP, EventRole.CLOCK_STEP)
 
 
+def clock_step(timers: Iterable[Timer]) -> int:
+    """The length of a step of the clock, in ns; 0 if there are no timers."""
+    return math.gcd(*(timer.period.nanoseconds for timer in timers))
+
+
 def clock(timers: list[Timer], max_time: int, origin: Location) -> PlainAutomaton:
     """The automaton that advances the time and triggers timers. `max_time`, in ns, is its maximum time."""
     unit = min(timer.period.unit for timer in timers)
     periods = [timer.period.nanoseconds // unit for timer in timers]
-    step = math.gcd(*periods)
+    step = clock_step(timers) // unit
     end = -(-max_time // unit)
     now = name("current_time")
     ticks = [

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fnmatch import fnmatchcase
 from fractions import Fraction
 
@@ -79,6 +79,15 @@ def read_mocks(text: str) -> tuple[Mock, ...]:
     """
     lines = (line.partition("#")[0].strip() for line in text.splitlines())
     return tuple(read_mock(line) for line in lines if line)
+
+
+def named_mocks(mocks: Mapping[str, str]) -> tuple[Mock, ...]:
+    """The mocks in a mapping from nodes to texts such as `0.9 in 2 s`.
+
+    Raises:
+        MockError: a mock is not valid.
+    """
+    return tuple(read_mock(f"{node}: {mock}") for node, mock in mocks.items())
 
 
 def mock_for(mocks: Sequence[Mock], name: str, type_: str, succeeds: bool = False) -> Mock | None:

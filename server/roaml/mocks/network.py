@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
+from roaml.durations import ANY_TIME, ReactionTime
 from roaml.expr.operators import Operator
 from roaml.expr.types import BASE_TYPES
 from roaml.forest.forest import Forest, port_type
@@ -29,7 +30,7 @@ from roaml.lower.programs.nodes import (
 )
 from roaml.lower.programs.refusal import TreeRefusal
 from roaml.lower.programs.values import ticks_of
-from roaml.lower.timers import Timer, clock
+from roaml.lower.timers import Timer, clock, clock_step
 from roaml.mocks.mock import Mock, mock_for
 from roaml.mocks.unfolding import unfold
 from roaml.model.timing import period
@@ -58,6 +59,7 @@ class MockOptions(Record, frozen=True):
         rate: the number of ticks per second.
         max_time: the limit of the simulated time, in ns.
         counts: whether the model counts ticks and the answers of mocks, for measurements.
+        reaction_time: how long nodes may wait before they take a possible step.
     """
 
     mocks: tuple[Mock, ...] = ()
@@ -65,6 +67,7 @@ class MockOptions(Record, frozen=True):
     rate: Fraction = DEFAULT_RATE
     max_time: int = DEFAULT_MAX_TIME
     counts: bool = False
+    reaction_time: ReactionTime = ANY_TIME
 
 
 class MockedLeaf(Record, frozen=True, eq=False):
@@ -151,7 +154,7 @@ class _Builder:
         if blackboard is not None:
             members.append(blackboard)
         members.append(clock([timer], self.options.max_time, origin))
-        network = Network(tuple(members), MAX_TEXT_LENGTH, 2)
+        network = Network(tuple(members), MAX_TEXT_LENGTH, 2, clock_step([timer]), self.options.reaction_time)
         self.leaves.reverse()
         self.assumed.reverse()
         return MockedTree(self.tree, network, tuple(self.leaves), tuple(self.assumed), self.options)

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from roaml.forest.entries import entry_of, is_autoremapped
+from roaml.forest.entries import entry_of, is_autoremapped, old_entry_of
 from roaml.forest.forest import Forest
 from roaml.forest.ports import ports_of
 from roaml.lower.programs.executed import SUBTREE, ExecutedNode, ExecutedTree, identifier
@@ -15,6 +15,9 @@ from roaml.model.expand import MAX_NODES, ROOT_NUMBER
 from roaml.model.tree import Tree, TreeNode
 from roaml.record import Record, field, replace
 from roaml.text import Location
+
+UNNAMED = "BehaviorTree_0"
+"""The name that BehaviorTree.CPP gives to the only tree of a file if it has no `ID`."""
 
 MAX_DEPTH = 200
 """The maximum nesting depth of nodes and subtrees."""
@@ -55,9 +58,9 @@ def unfold(forest: Forest) -> ExecutedTree:
     """
     tree = _main_tree(forest)
     unfolder = _Unfolder(forest)
-    assert tree.id is not None
-    unfolder.tree(forest.path, tree, TreeFrame("", {}, False, None, frozenset((tree.id.value,))), 0)
-    return ExecutedTree(tree.id.value, _numbered(unfolder.nodes), unfolder.initial, forest.settings.version)
+    name = tree.id.value if tree.id is not None else UNNAMED
+    unfolder.tree(forest.path, tree, TreeFrame("", {}, False, None, frozenset((name,))), 0)
+    return ExecutedTree(name, _numbered(unfolder.nodes), unfolder.initial, forest.settings.version)
 
 
 def _numbered(places: Mapping[int, ExecutedNode]) -> tuple[ExecutedNode, ...]:
@@ -90,6 +93,8 @@ def _main_tree(forest: Forest) -> Tree:
     candidates = named if len(named) == 1 else [tree for tree in named if tree.id and tree.id.value not in used]
     if len(candidates) == 1:
         return candidates[0]
+    if len(file.trees) == 1:
+        return file.trees[0]
     place = Location(forest.path, file.element.name_span)
     if not named:
         raise TreeRefusal(place, "the file has no tree with an `ID`")
@@ -127,9 +132,23 @@ class _Unfolder(Record):
             self.nodes[place] = ExecutedNode(place, SUBTREE, name, node, None, frame, (child,), origin)
             return place
         known = self.forest.known_node(node)
+        if self.forest.is_version_3:
+            self.refuse_old(node, origin)
+            # Version 4 has other names for some nodes of version 3.
+            type_ = known.name if known is not None else type_
         children = tuple(self.node(path, below, frame, depth + 1) for below in node.children)
         self.nodes[place] = ExecutedNode(place, type_, name, node, known, frame, children, origin)
         return place
+
+    def refuse_old(self, node: TreeNode, origin: Location) -> None:
+        """Refuse a port of version 3 whose meaning is not that of a port of version 4.
+
+        Raises:
+            TreeRefusal: the node has such a port.
+        """
+        if node.plugin is not None and node.plugin.value == "Parallel" and node.element.get("threshold"):
+            reason = "`threshold` is the name of the port before version 3.5; write `success_threshold`"
+            raise TreeRefusal(origin, reason)
 
     def enter(self, node: TreeNode, name: str, type_: str, frame: TreeFrame, origin: Location) -> TreeFrame:
         if type_ in frame.trees:
@@ -143,11 +162,12 @@ class _Unfolder(Record):
         defaults = [p for p in model.ports if p.default is not None and p.name not in given] if model else []
         for port in defaults:
             self.initial[identifier(prefix + port.name)] = port.default or ""
+        is_old = self.forest.is_version_3
         for setting in ports_of(node):
-            key, bound = setting.attribute.name, entry_of(setting)
+            key, bound = setting.attribute.name, old_entry_of(node, setting) if is_old else entry_of(setting)
             if bound is None:
                 self.initial[identifier(prefix + key)] = setting.value.value
                 remapped[key] = identifier(prefix + key)
             else:
                 remapped[key] = frame.entry(bound)
-        return TreeFrame(prefix, remapped, is_autoremapped(node), frame, frame.trees | {type_})
+        return TreeFrame(prefix, remapped, is_autoremapped(node, version_3=is_old), frame, frame.trees | {type_})

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from graphlib import CycleError, TopologicalSorter
 from typing import TypeAlias
 
@@ -617,21 +617,21 @@ def stray_remaps(files: tuple[TreeFileOutline, ...], path: str | None = None) ->
     """
     trees = _by_id(files)
     declared = {pair for file in files for pair in file.declared}
-    words = _Words(trees)
+    words, variables = _Words(trees, _words), _Words(trees, _variables)
     for file in files:
         for tree in file.trees if path in (None, file.path) else ():
             for node in _walk(tree.root):
                 if node.is_subtree and node.plugin in trees:
-                    yield from _strays(tree, node, words, declared)
+                    yield from _strays(tree, node, words, variables, declared)
 
 
 def _strays(
-    tree: TreeOutline, node: NodeOutline, words: _Words, declared: set[tuple[str, str]]
+    tree: TreeOutline, node: NodeOutline, words: _Words, variables: _Words, declared: set[tuple[str, str]]
 ) -> Iterator[StrayRemap]:
     given = {key: text for key, text in node.attributes if key not in _NO_REMAPS and not key.startswith("_")}
     for key, text in given.items():
         if not words.has(node.plugin, key) and (node.plugin, key) not in declared and ":" not in key:
-            free = tuple(name for name in words.of(node.plugin) if name not in given)
+            free = tuple(name for name in variables.of(node.plugin) if name not in given)
             source = NodeSource(tree.path, tree.id, node.position)
             yield StrayRemap(source, key, text, close_names(key, free), free)
 
@@ -643,8 +643,8 @@ class _Words:
     are nested deeply, because each tree contains the names of all subtrees inside.
     """
 
-    def __init__(self, trees: Mapping[str, TreeOutline]) -> None:
-        own = {id_: _words(tree) for id_, tree in trees.items()}
+    def __init__(self, trees: Mapping[str, TreeOutline], words: Callable[[TreeOutline], frozenset[str]]) -> None:
+        own = {id_: words(tree) for id_, tree in trees.items()}
         self._names = sorted({name for names in own.values() for name in names})
         self._bits = {name: 1 << number for number, name in enumerate(self._names)}
         self._sets = {id_: sum(self._bits[name] for name in names) for id_, names in own.items()}
@@ -699,5 +699,23 @@ def _words(tree: TreeOutline) -> frozenset[str]:
     return frozenset(words)
 
 
+def _variables(tree: TreeOutline) -> frozenset[str]:
+    """The names of the variables in the values of the attributes of a tree, without the words in constants."""
+    names: set[str] = set()
+    for node in _walk(tree.root):
+        scripts = dict(_scripts(node))
+        for key, text in node.attributes:
+            if key in scripts:
+                names.update(_WORD.findall(_STRING.sub("", text)))
+            elif text.strip() == "{=}":
+                names.add(key)
+            elif key not in _OWN_ATTRIBUTES:
+                names.update(word for part in _REFERENCE.findall(text) for word in _WORD.findall(part))
+    return frozenset(names - _SCRIPT_WORDS)
+
+
 _NO_REMAPS = _OWN_ATTRIBUTES | {"xmlns"}
 _WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+_REFERENCE = re.compile(r"\{([^{}]*)\}")
+_STRING = re.compile(r"'[^']*'")
+_SCRIPT_WORDS = {"true", "false"}

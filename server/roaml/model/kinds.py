@@ -36,6 +36,8 @@ GRAMMARS: Mapping[FileKind, Grammar] = {
 
 MACHINE_EXTENSIONS = (".ascxml", ".scxml")
 INTERFACE_EXTENSIONS = (".msg", ".srv", ".action")
+MOCKS_EXTENSION = ".mocks"
+"""The extension of the file with the mocks of a tree."""
 PROJECT_EXTENSION = ".btproj"
 """The extension of Groot2 projects, which list files of trees. A project is read if a tree in its directory is read. It
 is never changed."""

@@ -29,6 +29,7 @@ from roaml.model.machine import (
     Send,
     SetOutput,
     Statement,
+    statements,
 )
 from roaml.model.syntax import Expression, Name, PortRead
 from roaml.model.value_types import TypedMachine, ValueUse, find_handle
@@ -127,6 +128,7 @@ class PluginOutline(Record, frozen=True):
         any_child: whether it ticks or halts children by a variable index.
         ticked_children: the literal indices of the children that it ticks; `None` if it may tick any child.
         halts_children: whether it halts children and waits for their answer.
+        acts_on_first_halt: whether a halt before its first tick does more than confirm the halt.
     """
 
     ticked: bool
@@ -137,6 +139,7 @@ class PluginOutline(Record, frozen=True):
     any_child: bool
     ticked_children: frozenset[int] | None
     halts_children: bool
+    acts_on_first_halt: bool = False
 
 
 class MachineOutline(Record, frozen=True, dict=True):
@@ -383,7 +386,20 @@ def _plugin(machine: Machine) -> PluginOutline:
         len(literal) < len(indexes),
         None if None in ticked else frozenset(index for index in ticked if index is not None),
         any(call.halts for call in calls if call.child) and ProtocolPart.CHILD_HALTED in triggers,
+        _acts_on_first_halt(machine.chart),
     )
+
+
+def _acts_on_first_halt(chart: Chart) -> bool:
+    """Whether a halt in the initial state of a machine does more than confirm the halt."""
+    name = chart.initial.value if chart.initial else ""
+    handlers = (h for state in chart.states if state.id and state.id.value == name for h in state.handlers)
+    for handler in handlers:
+        if handler.trigger is ProtocolPart.BT_HALT:
+            moves = any(target.state is None or target.state.value != name for target in handler.targets)
+            bodies = (statement for target in handler.targets for statement in statements(target.body))
+            return moves or any(not isinstance(statement, ReturnHalted) for statement in bodies)
+    return False
 
 
 def _index(child: Name | None) -> int | None:

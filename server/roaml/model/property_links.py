@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 
 from roaml.comparison import read_comparison
+from roaml.durations import NANOSECONDS
 from roaml.expr.infer import (
     BadComparison,
     BadOperand,
@@ -26,7 +27,6 @@ from roaml.expr.types import BOOL, UNKNOWN, ScalarKind, Type, is_kind
 from roaml.model.exact_number import exact_number
 from roaml.model.globals import GlobalVariable
 from roaml.model.initial import check_initial
-from roaml.model.parameters import NANOSECONDS
 from roaml.model.property_file import (
     PortVariableKind,
     PropertyFile,
@@ -134,6 +134,7 @@ class _Linker:
         self.linked_ports = tuple(self.ports.link(port) for port in file.ports)
         self.problems = self.ports.problems
         self.step = clock_step(system)
+        self.max_time = system.parameters.max_time
         self.taken = taken
         self.by_id: dict[str, tuple[LinkedPort, LinkedVariable]] = {}
         self.used: set[str] = set()
@@ -146,8 +147,9 @@ class _Linker:
         close: Iterable[str] = (),
         remedy: Remedy | None = None,
         element: Element | None = None,
+        harmless: bool = False,
     ) -> None:
-        self.problems.append(Problem(kind, span, message, tuple(close), remedy, element))
+        self.problems.append(Problem(kind, span, message, tuple(close), remedy, element, harmless))
 
     def linked(self) -> LinkedFile:
         self._check_variables()
@@ -451,13 +453,32 @@ class _Linker:
             )
             self.report(ProblemKind.TIME, place, message)
             return None
+        self._compare_with_the_clock(interval, unit, step)
         return Window(lower, upper)
+
+    def _compare_with_the_clock(self, interval: TimeInterval, unit: int, step: int) -> None:
+        """Report ends of an interval that no trace reaches, or that are shorter than a step of the clock."""
+        for written in (interval.after, interval.time or interval.within):
+            number = _number(written)
+            if written is None or number is None:
+                continue
+            if self.max_time is not None and number * unit > self.max_time:
+                message = (
+                    f"the traces end at {_duration(self.max_time)} (`max_time`), before this time; shorten the "
+                    "interval or let the system run longer"
+                )
+                self.report(ProblemKind.BEYOND_END, written.span, message)
+                return
+            if 0 < number * unit < step:
+                message = f"this is shorter than a step of the clock, {_duration(step)}, so it means the same time only"
+                self.report(ProblemKind.SHORT, written.span, message)
+                return
 
 
 MAX_STEPS = 1_000_000
 """The maximum number of steps of the clock in the bounds of a time interval."""
 
-_HINTS = (ProblemKind.NEVER_TOGETHER, ProblemKind.FALSE_AT_START)
+_HINTS = (ProblemKind.NEVER_TOGETHER, ProblemKind.FALSE_AT_START, ProblemKind.BEYOND_END, ProblemKind.SHORT)
 
 
 def _text(name: WrittenName | None) -> str:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from roaml.exhaustive import assert_never
-from roaml.expr.types import BASE_TYPES, BOOL, UNKNOWN, Struct, Type
+from roaml.expr.types import BASE_TYPES, BOOL, INTEGER_RANGES, UNKNOWN, Struct, Type, is_number
 from roaml.interfaces.registry import NotFound
 from roaml.interfaces.types import Kind
 from roaml.model.globals import GlobalVariable
@@ -115,8 +115,10 @@ class PortLinker:
         self.variables = variables
         self.problems: list[Problem] = []
 
-    def report(self, kind: ProblemKind, span: Span, message: str, close: Iterable[str] = ()) -> None:
-        self.problems.append(Problem(kind, span, message, tuple(close)))
+    def report(
+        self, kind: ProblemKind, span: Span, message: str, close: Iterable[str] = (), *, harmless: bool = False
+    ) -> None:
+        self.problems.append(Problem(kind, span, message, tuple(close), harmless=harmless))
 
     def link(self, port: Port) -> LinkedPort:
         if port.name is not None and port.kind is PortKind.PLAIN:
@@ -392,7 +394,10 @@ class PortLinker:
             return _declared(variable), parameter
         if variable.type is not None and type_ != UNKNOWN and variable.type.text != str(type_):
             message = f"the type of `{variable.field.value}` is `{type_}`, not `{variable.type.text}`"
-            self.report(ProblemKind.PORT_VARIABLE, variable.type.span, message, (str(type_),))
+            harmless = _contains(_declared(variable), type_)
+            if harmless:
+                message += f"; the variable has the values of `{type_}`"
+            self.report(ProblemKind.PORT_VARIABLE, variable.type.span, message, (str(type_),), harmless=harmless)
         return type_, parameter
 
 
@@ -417,6 +422,18 @@ def _declared(variable: PortVariable) -> Type:
     """The type in the attribute `type` if it is a base type; otherwise `UNKNOWN`."""
     name = variable.type.name if variable.type else None
     return BASE_TYPES.get(name.base, UNKNOWN) if name and not name.dimensions else UNKNOWN
+
+
+def _contains(declared: Type, of_field: Type) -> bool:
+    """Whether a variable that is declared with another type than its field behaves as declared: numbers of the field
+    are numbers of the declared type, or the variable is declared as an integer and the field is a real number, whose
+    fraction the variable keeps."""
+    if not (is_number(declared) and is_number(of_field)):
+        return False
+    outer, inner = INTEGER_RANGES.get(str(declared)), INTEGER_RANGES.get(str(of_field))
+    if outer is not None and inner is not None:
+        return bool(outer[0] <= inner[0] and inner[1] <= outer[1])
+    return outer is not None or inner is not None or str(declared) == "float64"
 
 
 def _same_kind(left: Type, right: Type) -> bool:

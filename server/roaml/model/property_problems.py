@@ -22,6 +22,8 @@ class ProblemKind(enum.Enum):
     CONDITION = "property-condition"
     FORM = "property-form"
     TIME = "property-time"
+    BEYOND_END = "beyond-max-time"
+    SHORT = "short-time"
     NEVER_TOGETHER = "events-never-together"
     FALSE_AT_START = "event-false-at-start"
     UNUSED = "unused-port-variable"
@@ -41,6 +43,7 @@ class Problem(Record, frozen=True):
     Attributes:
         close: similar names that may be intended at `span`.
         remedy: the change of `element` that removes the problem; `None` if it is not evident.
+        harmless: whether the property means the same without the problem, so that it is a warning.
     """
 
     kind: ProblemKind
@@ -49,3 +52,4 @@ class Problem(Record, frozen=True):
     close: tuple[str, ...] = ()
     remedy: Remedy | None = None
     element: Element | None = None
+    harmless: bool = False

@@ -29,7 +29,7 @@ from roaml.model.outline import (
     PluginOutline,
     PortOutline,
 )
-from roaml.model.parameters import Parameters
+from roaml.model.parameters import Parameters, TreeSemantics
 from roaml.model.tree import EXPLICIT, SUBTREES
 from roaml.record import Record, field
 from roaml.roles import Direction, NodeKind, SymbolKind
@@ -190,13 +190,29 @@ class System(Record, frozen=True, eq=False, dict=True):
     observed: frozenset[str] = frozenset()
     entries: Mapping[str, EntryOutline] = field(default_factory=dict)
 
+    @property
+    def is_as2fm(self) -> bool:
+        """Whether the system has the semantics of AS2FM (docs/spec/nodes.md#semantics)."""
+        return self.parameters.semantics is TreeSemantics.AS2FM
+
     @cached_property
     def is_library_tree(self) -> bool:
-        """Whether the tree is executed exactly as BehaviorTree.CPP executes it, because one of its nodes, conditions or
-        scripts requires this (docs/spec/nodes.md#library)."""
+        """Whether the tree is executed as the libraries execute it: always with the semantics of the library; with
+        those of AS2FM, if one of its nodes, conditions or scripts has no other meaning
+        (docs/spec/nodes.md#semantics)."""
+        if not self.is_as2fm:
+            return bool(self.instances)
         if any(use.scripts for use in self.tree_uses):
             return True
         return any(i.scripts or self._needs_library(i.plugin) for i in self.instances)
+
+    def is_program(self, automaton: SystemAutomaton) -> bool:
+        """Whether a node of the tree is executed as the libraries execute it; false for machines, and for nodes that
+        deviate with the semantics of AS2FM."""
+        return not automaton.path and self.is_library_tree and not self._deviates(automaton.outline.name)
+
+    def _deviates(self, name: str) -> bool:
+        return self.is_as2fm and name in builtin_plugins() and name not in _WITHOUT_CHILDREN
 
     def _needs_library(self, plugin: str) -> bool:
         element = BEHAVIOR_TREE.elements.get(plugin)
@@ -358,7 +374,8 @@ class System(Record, frozen=True, eq=False, dict=True):
         """The path and outline of the plugin named `name`; "" and `None` if there is none. The nodes of the libraries
         have the path "". Those that the schema of trees defines take precedence over plugins with the same name
         (docs/spec/trees.md#nodes); over the others, plugins take precedence."""
-        builtin = (library_plugins() if self.is_library_tree else builtin_plugins()).get(name)
+        is_program = self.is_library_tree and not self._deviates(name)
+        builtin = (library_plugins() if is_program else builtin_plugins()).get(name)
         if builtin is not None and (name in BEHAVIOR_TREE.elements or name not in self._plugins):
             return "", builtin
         return self._plugins.get(name, ("", None))
@@ -487,18 +504,6 @@ class System(Record, frozen=True, eq=False, dict=True):
         types = (bound.port.type for bound in self.blackboard.get(variable, ()))
         return next((type_ for type_ in types if type_ in BASE_TYPES), "string")
 
-    def any_type(self, automaton: SystemAutomaton) -> str:
-        """The name of the type of the ports that accept any type, such as those of `Switch`
-        (docs/spec/nodes.md#control).
-
-        It is the type of the first blackboard variable to which one of these ports is bound; `string` if none is bound.
-        """
-        for port in automaton.outline.ports:
-            value = automaton.port(port.key)
-            if port.type == ANY_TYPE and isinstance(value, Reference):
-                return self.variable_type(value.variable)
-        return "string"
-
 
 # ------------------------------------------------------------ unreadable parts
 
@@ -564,10 +569,13 @@ def may_give_variable(act: Act, name: str | None, variable: str) -> bool:
 # ---------------------------------------------------- nodes of BehaviorTree.CPP
 
 
+_WITHOUT_CHILDREN = ("AlwaysSuccess", "AlwaysFailure", "SetBlackboard")
+"""The nodes of AS2FM that do not deviate from those of BehaviorTree.CPP."""
+
+
 @functools.cache
 def builtin_plugins() -> Mapping[str, MachineOutline]:
-    """The outlines of the nodes of BehaviorTree.CPP that can be translated as machines, by name. The schema describes
-    them."""
+    """The outlines of the nodes of BehaviorTree.CPP that AS2FM has, by name. The schema describes them."""
     return {
         element.name: _builtin(element)
         for element in BEHAVIOR_TREE.elements.values()

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from roaml.disk import UnreadableReason
+from roaml.durations import NANOSECONDS, integer, reaction_time
 from roaml.exhaustive import Vocabulary
 from roaml.language import SYSTEM
 from roaml.model.kinds import FileKind
@@ -12,11 +13,10 @@ from roaml.model.parameters import (
     DEFAULT_RANDOM_VALUES,
     DEFAULT_TICK_RATE,
     MAX_RANDOM_VALUES,
-    NANOSECONDS,
     NO_OVERRIDES,
+    SEMANTICS,
     Overrides,
     Parameters,
-    integer,
 )
 from roaml.model.spelling import meant
 from roaml.model.syntax import Name, name_of
@@ -146,6 +146,9 @@ def build_system_file(document: Document, overrides: Overrides = NO_OVERRIDES) -
     return SystemFile(root, older, overrides.applied(_parameters(root)), tuple(inputs), _unread(root))
 
 
+SEMANTICS_ATTRIBUTE = "tree-semantics"
+"""The attribute of `<behavior_tree>` that states whose meaning the nodes have. The reference translator ignores it."""
+
 _INPUT = ("type", "src")
 
 
@@ -193,7 +196,7 @@ def _parameters(root: Element) -> Parameters:
     section = _parameter_section(root)
     max_time = None
     size, rate, keep_ticking = DEFAULT_MAX_ARRAY_SIZE, DEFAULT_TICK_RATE, False
-    random_values = DEFAULT_RANDOM_VALUES
+    random_values, reaction = DEFAULT_RANDOM_VALUES, None
     for element in section.elements if section else ():
         value = name_of(element.get("value"))
         text = value.value if value else ""
@@ -202,6 +205,8 @@ def _parameters(root: Element) -> Parameters:
             number = integer(text)
             if number is not None and unit and unit.value in NANOSECONDS:
                 max_time = number * NANOSECONDS[unit.value]
+            given = name_of(element.get("reaction_time"))
+            reaction = reaction_time(given.value) if given else None
         elif element.name == "max_array_size":
             size = integer(text) or size
         elif element.name == "bt_tick_rate":
@@ -212,7 +217,10 @@ def _parameters(root: Element) -> Parameters:
             number = integer(text)
             if number is not None and 1 <= number <= MAX_RANDOM_VALUES:
                 random_values = number
-    return Parameters(max_time, size, rate, keep_ticking, random_values)
+    tree = root.find(SystemSection.BEHAVIOR_TREE.value)
+    stated = tree.get(SEMANTICS_ATTRIBUTE) if tree is not None else None
+    semantics = SEMANTICS.get(stated.value.strip()) if stated is not None else None
+    return Parameters(max_time, size, rate, keep_ticking, random_values, reaction, semantics)
 
 
 def _positive(text: str) -> float | None:

@@ -13,12 +13,15 @@ from __future__ import annotations
 import functools
 import itertools
 import logging
+import os
 from collections.abc import Callable, Iterable, Iterator
 
 from roaml.diagnostics import Diagnostic, Finding, Related, RelatedPlace, Severity, Symbol, Tag
 from roaml.disk import UnreadableReason
 from roaml.interfaces.parse import parse as parse_interface
-from roaml.interfaces.types import Kind
+from roaml.interfaces.registry import NotFound
+from roaml.interfaces.report import CODE as INTERFACE_SYNTAX
+from roaml.interfaces.types import Definition, Kind
 from roaml.language import HL_SCXML, PLAIN_SCXML, Grammar
 from roaml.model.dialect import dialect_of
 from roaml.model.expand import TreeFileOutline
@@ -28,14 +31,17 @@ from roaml.model.kinds import GRAMMARS, PROJECT_EXTENSION, FileKind
 from roaml.model.machine import Dialect, Machine
 from roaml.model.size import Limits
 from roaml.model.system import System
+from roaml.model.tree import Include
 from roaml.project.analysis import NO_STRUCTS, Analysis
 from roaml.project.configuration import missing_folders
 from roaml.project.edits import laid_out
 from roaml.project.files import MAX_CHARACTERS
 from roaml.project.locate import locate
+from roaml.project.paths import slashed
 from roaml.project.settings import Settings
 from roaml.project.suppress import Suppression, covering, suppressions
 from roaml.project.translation import size_of_translation
+from roaml.project.values import arriving_at, local_values, values_in
 from roaml.rules import BY_CODE, RULES
 from roaml.rules.files import file_too_large, unused_suppression
 from roaml.rules.files import internal_error as internal_error_rule
@@ -48,6 +54,7 @@ from roaml.rules.rule import (
     StructsContext,
     SystemContext,
     TreeContext,
+    replacements,
 )
 from roaml.rules.support.end_tags import without_misnamed_ends
 from roaml.text import Location, SourceFile, Span
@@ -160,11 +167,10 @@ class RuleRunner:
 
     def _diagnostic(self, path: str, finding: Finding, severity: Severity) -> Diagnostic:
         related = tuple(place for other in finding.related if (place := self._related(path, other)) is not None)
-        source = self.analysis.source(path) if finding.fixes else None
+        source = self.analysis.source(path)
         fixes = tuple(laid_out(source, fix) for fix in finding.fixes) if source else ()
-        return Diagnostic(
-            path, finding.code, severity, finding.span, finding.message, fixes, related, finding.tags, finding.facts
-        )
+        span, message, tags, facts = finding.span, finding.message, finding.tags, finding.facts
+        return Diagnostic(path, finding.code, severity, span, message, fixes, related, tags, facts, source)
 
     def _related(self, path: str, related: Related) -> RelatedPlace | None:
         if isinstance(related.place, Symbol):
@@ -232,7 +238,7 @@ class _Run:
 
     def key(self) -> object:
         """All values on which the findings depend, as a key for the cache."""
-        parts: tuple[object, ...] = (self.source.digest, self.source.ignored_encoding, self.kind, self.system)
+        parts: tuple[object, ...] = (self.source.text, self.source.ignored_encoding, self.kind, self.system)
         match self.kind:
             case FileKind.MACHINE if self.analysis.machine(self.path) is not None:
                 machine = self.analysis.machine(self.path)
@@ -240,13 +246,15 @@ class _Run:
                 typed = self.analysis.typed_in(self.path, self.system_path)
                 lookups = tuple(self.analysis.interfaces_of(machine))
                 repeated = self.analysis.repeated_types(machine)
-                return (*parts, typed, lookups, repeated, self.analysis.structs(self.system_path).complete)
+                arriving = arriving_at(self.analysis, self.path, self.system_path)
+                return (*parts, typed, lookups, repeated, self.analysis.structs(self.system_path).complete, arriving)
             case FileKind.SYSTEM:
                 listed = tuple((f.path, f.problem, f.kind) for f in self.analysis.listed(self.path))
                 return (*parts, listed, self.analysis.system(self.path), size_of_translation(self.analysis, self.path))
             case FileKind.TREE:
                 forest = None if self.system_path else self.analysis.forest(self.path)
-                return (*parts, self._tree_outlines(), tuple(self._missing_includes().items()), forest)
+                includes = (tuple(self._missing_includes().items()), tuple(self._found_includes().items()))
+                return (*parts, self._tree_outlines(), includes, forest)
             case FileKind.PROPERTIES if self.system_path:
                 return (*parts, tuple(self.analysis.names_before(self.path, self.system_path)))
             case FileKind.XML_PROPERTIES if self.system_path:
@@ -256,6 +264,8 @@ class _Run:
                 return (*parts, structs.outlines, structs.complete)
             case FileKind.CONFIGURATION:
                 return (*parts, self._configuration_findings())
+            case FileKind.INTERFACE:
+                return (*parts, self._interface_findings())
         return parts
 
     def findings(self) -> tuple[Finding, ...]:
@@ -341,7 +351,21 @@ class _Run:
         name, _, extension = self.path.replace("\\", "/").rpartition("/")[2].rpartition(".")
         kind: Kind = "msg" if extension == "msg" else "srv" if extension == "srv" else "action"
         package = self.path.replace("\\", "/").split("/")[-3:-2]
-        return parse_interface(self.source.text, package[0] if package else "package", name, kind)[1]
+        definition, findings = parse_interface(self.source.text, package[0] if package else "package", name, kind)
+        return (*findings, *self._misspelled_fields(definition, findings))
+
+    def _misspelled_fields(self, definition: Definition, findings: tuple[Finding, ...]) -> Iterator[Finding]:
+        """The types of fields that do not exist, but resemble existing ones. Other unknown packages may be in folders
+        that are not searched; the machines that use their types report them."""
+        known = {finding.span for finding in findings}
+        for section in definition.sections:
+            for field in section.fields:
+                if field.type.is_primitive or field.type_span in known:
+                    continue
+                problem = self.analysis.registry.resolve("msg", field.type.name)
+                if isinstance(problem, NotFound) and problem.close:
+                    fixes = replacements(field.type_span, problem.close)
+                    yield Finding(INTERFACE_SYNTAX, field.type_span, problem.message, None, tuple(fixes))
 
     def _configuration_findings(self) -> tuple[Finding, ...]:
         configuration = self.analysis.configuration(self.path)
@@ -392,6 +416,8 @@ class _Run:
             events.get,
             self._machine_gaps(machine),
             self.analysis.repeated_types(machine),
+            local_values(self.analysis, self.path, self.system_path),
+            values_in(self.analysis, self.path, self.system_path),
         )
         plain = dialect in (Dialect.PLAIN, Dialect.FOREIGN)
         return [(r, functools.partial(r.machine, context)) for r in RULES if r.machine and (r.plain or not plain)]
@@ -419,6 +445,7 @@ class _Run:
             *(self.source, document, file, self.system, outlines, missing, interface, self._gaps(), older, forest),
             self._unknown_packages(),
             self._refusals(),
+            self._found_includes(),
         )
 
     def _refusals(self) -> tuple[tuple[Span, str], ...]:
@@ -459,8 +486,11 @@ class _Run:
                     )
                 continue
             source = self.analysis.files.read(target)
-            if isinstance(source, UnreadableReason):
-                problems[include.path.value] = source.value
+            named = self.analysis.named_path(self.path, include)
+            if self.system_path and named is not None and target != named:
+                problems[include.path.value] = UnreadableReason.MISSING.value
+            elif isinstance(source, UnreadableReason):
+                problems[include.path.value] = self._missing(source, include)
             elif self.analysis.tree(target) is None:
                 problems[include.path.value] = "it is not a file of behavior trees"
             elif self.path in self.analysis.trees_from(target) and not self.path.endswith(PROJECT_EXTENSION):
@@ -468,6 +498,27 @@ class _Run:
                     "it includes this file itself" if target != self.path else "it is this file"
                 )
         return problems
+
+    def _missing(self, reason: UnreadableReason, include: Include) -> str:
+        """Why a file cannot be included, with the other places where it was looked for."""
+        places = self.analysis.include_places(self.path, include)
+        if reason is not UnreadableReason.MISSING or not places or self.system_path:
+            return reason.value
+        folder = os.path.dirname(self.path)
+        shown = ", ".join(f"`{slashed(os.path.relpath(place, folder))}`" for place in places)
+        return f"{reason.value}, nor {shown} relative to this file"
+
+    def _found_includes(self) -> dict[str, str]:
+        """Path in an `<include>` that names no file -> the path, relative to this file, of the file that is read
+        instead."""
+        file = self.analysis.tree(self.path)
+        found: dict[str, str] = {}
+        for include in file.includes if file and not self.system_path else ():
+            target = self.analysis.include_path(self.path, include)
+            is_named = target is None or target == self.analysis.named_path(self.path, include)
+            if include.path is not None and target is not None and not is_named:
+                found[include.path.value] = slashed(os.path.relpath(target, os.path.dirname(self.path)))
+        return found
 
     def _system_context(self) -> SystemContext | None:
         file, document = self.analysis.system_file(self.path), self.analysis.document(self.path)

@@ -6,9 +6,8 @@ from __future__ import annotations
 import os
 
 from roaml.mocks.mock import Mock, MockError, read_mocks
+from roaml.model.kinds import MOCKS_EXTENSION
 from roaml.project.analysis import Analysis
-
-MOCKS_EXTENSION = ".mocks"
 
 
 def mocks_path(tree: str) -> str:

@@ -14,11 +14,12 @@ from typing import Any
 
 from roaml.comparison import Comparison, read_comparison
 from roaml.diagnostics import Severity
+from roaml.durations import ANY_TIME, REACTION_TIME, ReactionTime, reaction_time
 from roaml.forest.settings import NEWEST, TreeSettings
 from roaml.libraries import LIBRARIES
 from roaml.libraries.version import Version, read_version
 from roaml.model.config_files import CONFIG_FILE
-from roaml.model.parameters import NO_OVERRIDES, Overrides
+from roaml.model.parameters import NO_OVERRIDES, SEMANTICS, Overrides, TreeSemantics
 from roaml.model.size import DEFAULT_LIMITS, Limits
 from roaml.project import exclude
 from roaml.project.exclude import NOTHING, Exclude
@@ -46,9 +47,10 @@ class Settings(Record, frozen=True):
         only_uniform: whether `verify` assumes uniform choices even if a property requests the minimum or maximum over
             all schedulers.
         expectations: name of a property -> the result that `verify` expects.
+        reaction_time: the reaction time of systems that state none.
         limits: the maximum size of a system that is translated.
         overrides: parameters that replace those in system files; they are not read from a configuration.
-        trees: the settings for trees that are not in a system.
+        trees: the settings for trees.
         origin: the path of the configuration file; "" if there is none.
     """
 
@@ -62,6 +64,7 @@ class Settings(Record, frozen=True):
     warnings_as_errors: bool = False
     only_uniform: bool = False
     expectations: Mapping[str, Comparison] = field(default_factory=dict)
+    reaction_time: ReactionTime = ANY_TIME
     limits: Limits = DEFAULT_LIMITS
     overrides: Overrides = NO_OVERRIDES
     trees: TreeSettings = NEWEST
@@ -286,8 +289,28 @@ def _version(path: Path, value: Any, problems: list[SettingProblem]) -> Version 
     return version
 
 
+def _reaction_time(path: Path, value: Any, problems: list[SettingProblem]) -> ReactionTime | None:
+    time = reaction_time(value) if isinstance(value, str) else None
+    if time is None:
+        problems.append(SettingProblem(path, REACTION_TIME))
+    return time
+
+
+def _semantics(path: Path, value: Any, problems: list[SettingProblem]) -> TreeSemantics | None:
+    semantics = SEMANTICS.get(value) if isinstance(value, str) else None
+    if semantics is None:
+        names = " or ".join(f'`"{name}"`' for name in SEMANTICS)
+        problems.append(SettingProblem(path, f"`{path[0]}` must be {names}"))
+    return semantics
+
+
 _SETS = ("select", "ignore")
-_TREES = {"tree-models": "models", "tree-libraries": "libraries", "behaviortree-cpp": "version"}
+_TREES = {
+    "tree-models": "models",
+    "tree-libraries": "libraries",
+    "behaviortree-cpp": "version",
+    "tree-semantics": "semantics",
+}
 _LIMITS = {"max-cells": "cells", "max-parts": "parts"}
 _FOLDERS = ("roots", "ros-path")
 _FIELDS = {"ros-path": "ros_paths", "severity": "severities"}
@@ -300,11 +323,13 @@ _KEYS: dict[str, _Reader] = {
     "severity": _severities,
     "warnings-as-errors": _boolean,
     "verify": _verify,
+    "reaction-time": _reaction_time,
     "max-cells": _count,
     "max-parts": _count,
     "tree-models": _strings,
     "tree-libraries": _libraries,
     "behaviortree-cpp": _version,
+    "tree-semantics": _semantics,
 }
 
 

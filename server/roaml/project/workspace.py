@@ -24,6 +24,7 @@ from roaml.project.files import DiskFiles, Files
 from roaml.project.memo import Memo, go_on
 from roaml.project.paths import folder_of, full, is_below
 from roaml.project.settings import Settings
+from roaml.record import replace
 from roaml.text import SourceFile, decode
 
 _NOT_BY_THEMSELVES = (FileKind.UNKNOWN, FileKind.JSON_STRUCTS, FileKind.JANI_MODEL)
@@ -160,7 +161,12 @@ class Workspace:
         systems = (*self._named, *self._index.systems(dict.fromkeys((*self._listed, *new)), files))
         registry = self._registry.reading(files.text)
         listed, settings = (*self._listed, *new), self.settings
-        analysis = Analysis(files, registry, memo, systems, settings.overrides, settings.trees, listed)
+        overrides = replace(
+            settings.overrides,
+            default_reaction_time=settings.reaction_time,
+            default_semantics=settings.trees.semantics,
+        )
+        analysis = Analysis(files, registry, memo, systems, overrides, settings.trees, listed)
         return Snapshot(analysis, RuleRunner(analysis, self.settings), self.roots, self._listed, new, again)
 
     def _new_disk(self) -> DiskFiles:

@@ -32,6 +32,7 @@ from roaml.model.system import System, SystemAutomaton
 from roaml.model.system_file import ListedFile, SystemFile, SystemSection
 from roaml.model.tree import TreeFile
 from roaml.model.value_types import TypedMachine
+from roaml.model.values.analyse import NO_VALUES, MachineValues
 from roaml.record import Record, field
 from roaml.suggest import close_names as close_names  # noqa: PLC0414 - the rules import it from here
 from roaml.suggest import did_you_mean as did_you_mean  # noqa: PLC0414
@@ -73,6 +74,10 @@ class MachineContext(Record, frozen=True):
         event_data: returns the type of the data of an event by its name; `None` if the type is unknown.
         gaps: the facts that unreadable parts of the machine may contain, with their places.
         repeated_types: the ROS types that the machine uses and that two files define differently.
+        local_values: the values that variables, fields and conditions have if everything may arrive that the types
+            allow. Only these justify a warning about a condition, because machines that represent the environment
+            often answer in one way only.
+        values: the values that they have with what the machines of the system send.
     """
 
     source: SourceFile
@@ -90,6 +95,8 @@ class MachineContext(Record, frozen=True):
     event_data: Callable[[str], Struct | None]
     gaps: tuple[PlacedGap, ...]
     repeated_types: tuple[RepeatedType, ...] = ()
+    local_values: MachineValues = NO_VALUES
+    values: MachineValues = NO_VALUES
 
     @property
     def older(self) -> bool:
@@ -108,6 +115,8 @@ class TreeContext(Record, frozen=True):
         unknown_packages: the ROS packages of includes that no folder around the file contains.
         refusals: the places and reasons why nodes cannot be translated, for a tree that is executed as by
             BehaviorTree.CPP.
+        found_includes: the paths in `<include>` that name no file -> the paths of the files that are read instead,
+            relative to this file.
     """
 
     source: SourceFile
@@ -122,6 +131,7 @@ class TreeContext(Record, frozen=True):
     forest: Forest | None = None
     unknown_packages: frozenset[str] = frozenset()
     refusals: tuple[tuple[Span, str], ...] = ()
+    found_includes: Mapping[str, str] = field(default_factory=dict)
 
 
 class SystemContext(Record, frozen=True):

@@ -17,6 +17,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TypeAlias
 
+from roaml.durations import ANY_TIME, ReactionTime
 from roaml.expr.tree import Expr
 from roaml.expr.types import Type
 from roaml.record import Record
@@ -125,11 +126,15 @@ class Network(Record, frozen=True):
     Attributes:
         max_array_size: the maximum number of elements of an array without a bound, and of every array that is sent.
         random_values: the number of values of `Math.random()`.
+        clock_step: the length of a step of the clock, in ns; 0 if there is no clock.
+        reaction_time: how long automata may wait before they take a possible step.
     """
 
     automata: tuple[Automaton, ...]
     max_array_size: int
     random_values: int
+    clock_step: int = 0
+    reaction_time: ReactionTime = ANY_TIME
 
 
 def statements(body: Body) -> Iterator[Statement]:

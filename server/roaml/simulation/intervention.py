@@ -37,8 +37,28 @@ class Intervention(Record, frozen=True):
         Raises:
             KeyError, TypeError, ValueError: `row` was not written by `to_json`.
         """
-        values = tuple((RecordedVariable(int(i), str(name)), _plain(value)) for i, name, value in row["values"])
+        values = tuple((RecordedVariable(_instance(i), str(name)), _plain(value)) for i, name, value in row["values"])
         return Intervention(str(row["event"]), values)
+
+
+class WrongNumberError(ValueError):
+    """A value from JSON is not the expected number; the message states which are possible."""
+
+
+def whole_number(value: Any, most: int = (1 << 31) - 1) -> int:
+    """A number from JSON that is an integer from 0 to `most`.
+
+    Raises:
+        WrongNumberError: the value is another number, or something else.
+    """
+    if not isinstance(value, int) or isinstance(value, bool) or not 0 <= value <= most:
+        raise WrongNumberError(f"{str(value)[:40]} is not an integer from 0 to {most}")
+    return value
+
+
+def _instance(value: Any) -> int:
+    """The number of an instance; -1 is the model."""
+    return -1 if value == -1 and isinstance(value, int) else whole_number(value)
 
 
 def _plain(value: Any) -> Plain:

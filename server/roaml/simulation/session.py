@@ -13,7 +13,7 @@ from roaml.record import Record, replace
 from roaml.scxml.names import TREE_ROOT_PREFIX, received_by, sent_by
 from roaml.simulation.choices import Choice, Outcome, choices
 from roaml.simulation.follow import Follower
-from roaml.simulation.intervention import Intervention
+from roaml.simulation.intervention import Intervention, WrongNumberError, whole_number
 from roaml.simulation.run import SNAPSHOT_INTERVAL, ByHand, Decision, Run
 from roaml.simulation.state import SystemState
 from roaml.simulation.words import resting
@@ -86,25 +86,33 @@ class SavedSession(Record, frozen=True):
                 )
             decisions: list[ByHand | None] = []
             for row in value["decisions"]:
-                if isinstance(row, int) and 0 < row <= MAX_STEPS - len(decisions):
-                    decisions += [None] * row
+                if isinstance(row, (int, float)):
+                    count = whole_number(row, MAX_STEPS - len(decisions))
+                    decisions += [None] * count
                 elif "event" in row:
                     decisions.append(Intervention.from_json(row))
                 else:
-                    picks, ways = tuple(map(int, row["picks"])), tuple(map(int, row["ways"]))
-                    decisions.append(Decision(int(row["vector"]), picks, ways))
-            position = int(value["position"])
-            if not 0 <= position <= len(decisions):
-                raise ValueError(f"the position must be from 0 to {len(decisions)}, not {position}")
+                    picks, ways = (tuple(map(whole_number, row[name])) for name in ("picks", "ways"))
+                    decisions.append(Decision(whole_number(row["vector"]), picks, ways))
+            if not isinstance(value["property"], str):
+                raise TypeError("the name of the property is not a string")
             return SavedSession(
-                str(value["property"]), int(value["seed"]), int(value["trace"]), position, tuple(decisions)
+                value["property"],
+                whole_number(value["seed"], MAX_SEED),
+                whole_number(value["trace"], MAX_SEED),
+                whole_number(value["position"], len(decisions)),
+                tuple(decisions),
             )
-        except (KeyError, TypeError, AttributeError, json.JSONDecodeError) as error:
+        except (KeyError, TypeError, AttributeError, RecursionError, json.JSONDecodeError) as error:
             raise ValueError(f"this is not a saved session: {error}") from None
+        except WrongNumberError as error:
+            raise ValueError(f"this saved session is damaged: {error}") from None
 
 
 RECENT_INTERVAL = 16
 """The number of steps between two snapshots that are kept for going back step by step."""
+MAX_SEED = (1 << 63) - 1
+"""The maximum of a seed and of the number of a trace."""
 MAX_STEPS = 10_000_000
 """The maximum number of steps of a run."""
 

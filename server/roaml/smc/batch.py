@@ -4,8 +4,6 @@ numbers of the traces, so any executor can compute it."""
 
 from __future__ import annotations
 
-import hashlib
-import pickle
 import signal
 import threading
 import time
@@ -138,6 +136,9 @@ class BatchOutcome(Record, frozen=True, eq=False):
 
 def pack(compiled: Compiled) -> Payload:
     """A compiled model in the form that is sent to workers."""
+    import hashlib  # noqa: PLC0415 - only workers and saved runs need it
+    import pickle  # noqa: PLC0415
+
     digest = hashlib.sha256()
     for part in (compiled.program, compiled.goal):
         for name in part.__struct_fields__:
@@ -178,6 +179,8 @@ def simulator_of(payload: Payload) -> Simulator:
     """The simulator of a payload for this thread. The last simulator is kept for the next call."""
     simulator = _simulators.simulator
     if simulator is None or payload.digest != _simulators.digest:
+        import pickle  # noqa: PLC0415 - only workers need it
+
         _simulators.simulator = simulator = Simulator(pickle.loads(payload.data))
         _simulators.digest = payload.digest
     return simulator

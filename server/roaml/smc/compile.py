@@ -296,12 +296,12 @@ class Compilation:
         watch_start, watch_instance, watch_table, watched_start, watched_group, watched_index = self._watch_tables(
             indexes
         )
-        watch_of = {
-            storage.base: storage.watch for storage in self.watched if storage.kind != REAL and not storage.shape
-        }
-        watch_register = [-1] * len(self.watched)
-        for dimension in indexes.dimensions:
-            watch_register[watch_of[dimension.register]] = dimension.register
+        cell_watch = self._cell_watch()
+        indexed: list[list[int]] = [[] for _ in self.watched]
+        for register in sorted({dimension.register for dimension in indexes.dimensions}):
+            if cell_watch[register] >= 0:  # a cell of a constant array is not watched
+                indexed[cell_watch[register]].append(register)
+        indexed_start, indexed_register = _ranges(indexed)
         initial = [
             self.network.location_of[number][instance.automaton.initial_locations[0]]
             for number, instance in enumerate(self.layout.instances)
@@ -338,6 +338,7 @@ class Compilation:
             gate_vector=_ints(gate_vector),
             gate_missing=_ints(gate_missing),
             vector_missing=_ints(vector_missing),
+            first_held=self.network.first_held,
             active_start=active_start,
             active_slot=active_slot,
             all_start=all_start,
@@ -352,13 +353,13 @@ class Compilation:
             watch_table=watch_table,
             watched_start=watched_start,
             watched_group=watched_group,
-            cell_watch=self._cell_watch(),
+            cell_watch=cell_watch,
             watched_index=watched_index,
-            watch_register=_ints(watch_register),
+            indexed_start=indexed_start,
+            indexed_register=indexed_register,
             group_index=_ints(group_index),
             dimension_start=_ints(indexes.dimension_start),
             dimension_register=_ints([dimension.register for dimension in indexes.dimensions]),
-            dimension_watch=_ints([watch_of[dimension.register] for dimension in indexes.dimensions]),
             dimension_low=array("q", [dimension.low for dimension in indexes.dimensions]),
             dimension_size=_ints([dimension.size for dimension in indexes.dimensions]),
             first_list=_ints(indexes.first_list),
@@ -373,7 +374,6 @@ class Compilation:
             zero_slots=_ints([0] * len(self.network.slots)),
             zero_vectors=_ints([0] * len(self.network.vectors)),
             zero_variables=_ints([0] * len(self.watched)),
-            zero_values=array("q", [0] * len(self.watched)),
             zero_instances=_ints([0] * len(self.layout.instances)),
         )
 

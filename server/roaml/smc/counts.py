@@ -7,6 +7,7 @@ states take less time than a loop of Python over their results. The worker that 
 
 from __future__ import annotations
 
+import math
 from array import array
 from typing import TYPE_CHECKING
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from roaml.smc.program import Ints, Reals
 
 FALSE, TRUE, UNKNOWN, REJECTED = 0, 1, 2, 4
-TIME = 1
+DECIDED, TIME = 0, 1
 CLOSED, IDLE = 0, 1
 """As in `tally.REJECTED`, `end.End` and `goal.Activity`."""
 CELLS, CELLS_PER_VERDICT = 48, 16
@@ -57,6 +58,7 @@ def count(
     order = []
     total = rejected = closed = idle = successes = 0
     mean = squares = 0.0
+    least, greatest = math.inf, -math.inf
     for i in range(size):
         verdict = verdict_of[i]
         length = steps_of[i]
@@ -75,7 +77,9 @@ def count(
             room[verdict] -= 1
             examples[verdict].append(StoredTrace(first + i, length))
         activity = activity_of[i]
-        if activity == CLOSED:
+        if end_of[i] == DECIDED:  # the trace shows what the property asks for
+            pass
+        elif activity == CLOSED:
             closed += 1
         elif activity == IDLE:
             idle += 1
@@ -85,8 +89,10 @@ def count(
             step = reward_of[i] - mean
             mean += step / successes
             squares += step * (reward_of[i] - mean)
+            least = min(least, reward_of[i])
+            greatest = max(greatest, reward_of[i])
     tally = Tally(traces=size - rejected, steps=total, rejected=rejected, closed=closed, idle=idle)
-    tally.mean = Mean(successes, mean, squares)
+    tally.mean = Mean(successes, mean, squares, least, greatest)
     tally.examples = {FALSE: examples[FALSE], TRUE: examples[TRUE], UNKNOWN: examples[UNKNOWN]}
     for cell in order:
         verdict = cell // CELLS_PER_VERDICT

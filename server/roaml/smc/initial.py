@@ -8,6 +8,7 @@ states is a product of small tables and is never listed as a whole.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TypeAlias
 
@@ -19,6 +20,7 @@ from roaml.jani.semantics import EvaluationError, Value, evaluate
 from roaml.record import Record
 from roaml.smc.fault import FaultError
 from roaml.smc.names import Storage, variables_in
+from roaml.smc.opcodes import MESSAGES, FaultCode
 from roaml.smc.registers import BOOL, INT, REAL, Number
 
 MAX_ROWS = 1_000_000
@@ -27,6 +29,7 @@ MAX_TRIED = 300_000
 """The maximum number of evaluations of conditions on initial states; this many take some seconds."""
 MAX_INITIAL_STATES = 1 << 62
 """The maximum number of initial states, which are numbered."""
+OVERFLOW = MESSAGES[FaultCode.OVERFLOW]
 NO_INITIAL_STATE = "there is no initial state: the initial values do not satisfy this condition"
 
 Cells: TypeAlias = tuple[Number, ...]
@@ -253,12 +256,16 @@ class _Initial:
             raise FaultError(error.message, error.origin or conjunct.origin) from None
         if not isinstance(value, (bool, int, float)):
             return ()
+        if isinstance(value, int) and abs(value) >= 1 << 63:
+            raise FaultError(OVERFLOW, expression.origin or conjunct.origin)
         if storage.kind == REAL:
             value = float(value)
-        elif value != int(value):
+        elif not math.isfinite(value) or value != int(value):
             return ()
         else:
             value = int(value)
+            if abs(value) >= 1 << 63:
+                raise FaultError(OVERFLOW, expression.origin or conjunct.origin)
         low, high = storage.bounds
         return () if (low is not None and value < low) or (high is not None and value > high) else (value,)
 
@@ -280,6 +287,12 @@ class _Initial:
             raise FaultError(
                 f"the variable `{storage.name}` has no initial value, its type has no bounds, and no equation in "
                 "`restrict-initial` states its value",
+                self.open[id(storage)].origin,
+            )
+        if size < 1:
+            raise FaultError(
+                f"the variable `{storage.name}` has no initial value, because its type has no values: the lower bound "
+                "is greater than the upper bound",
                 self.open[id(storage)].origin,
             )
         self.limit([storage], size)

@@ -37,8 +37,9 @@ cdef class Kernel:
     cdef int[::1] slot_instance, slot_vector, gate_start, gate_vector
     cdef int[::1] active_start, active_slot, all_start, all_slot, entangled
     cdef int[::1] phase_start, phase_index, phase_read, phase_write
-    cdef int[::1] watch_start, watch_instance, watch_table, watched_start, watched_group, watched_index, watch_register
-    cdef int[::1] group_index, dimension_start, dimension_register, dimension_watch, dimension_size
+    cdef int[::1] watch_start, watch_instance, watch_table, watched_start, watched_group, watched_index
+    cdef int[::1] indexed_start, indexed_register
+    cdef int[::1] group_index, dimension_start, dimension_register, dimension_size
     cdef int[::1] first_list, list_start, list_item, visited, visits, location_code, location_mark
     cdef int[::1] seen_start, seen_leaf, left, right, formula, formula_start, leaf_start, activity
     cdef int[::1] verdict, holds_left, holds_right, stale, stack, asked, known, known_end, known_activity
@@ -51,6 +52,7 @@ cdef class Kernel:
     cdef u64 tried
     cdef int[::1] ready, ready_0, slot_group, slot_group_0, gate_missing, gate_missing_0, vector_missing, vector_missing_0
     cdef int[::1] enabled, enabled_0
+    cdef int first_held
     cdef int enabled_count, enabled_count_0, plural, plural_0, fault_0
     cdef int[::1] noted, notes, part_slot, part_way
     cdef public int parts, vector
@@ -91,7 +93,7 @@ cdef class Kernel:
     cdef void _remove_from_gate(self, i64 number) noexcept
     @cython.locals(at=i64)
     cdef void _enable(self, i64 vector) noexcept
-    @cython.locals(at=i64, following=i64, moved=i64)
+    @cython.locals(at=i64, following=i64, moved=i64, held=i64)
     cdef void _disable(self, i64 vector) noexcept
     @cython.locals(group=i64)
     cdef void _arrive(self, i64 location) noexcept
@@ -188,7 +190,7 @@ cdef class Kernel:
     cdef int _returns(self, i64 most) noexcept
     @cython.locals(i=i64)
     cdef int _is_marked(self) noexcept
-    @cython.locals(reason=i64, i=i64, mark=i64)
+    @cython.locals(reason=i64, i=i64, mark=i64, vector=i64)
     cdef int _reason(self, i64 repeats) noexcept
     @cython.locals(status=i64, is_open=i64, i=i64)
     cdef int _combined(self) noexcept

@@ -119,17 +119,17 @@ class Kernel:
         self.watched_start = program.watched_start
         self.watched_group = program.watched_group
         self.watched_index = program.watched_index
-        self.watch_register = program.watch_register
+        self.indexed_start = program.indexed_start
+        self.indexed_register = program.indexed_register
         self.group_index = program.group_index
         self.dimension_start = program.dimension_start
         self.dimension_register = program.dimension_register
-        self.dimension_watch = program.dimension_watch
         self.dimension_low = program.dimension_low
         self.dimension_size = program.dimension_size
         self.first_list = program.first_list
         self.list_start = program.list_start
         self.list_item = program.list_item
-        self.value_before = program.zero_values[:]
+        self.value_before = program.ints[: program.int_count]
         self.visited = program.first_list[:]
         self.visits = program.first_list[:]
         for i in range(len(self.visited)):
@@ -181,6 +181,7 @@ class Kernel:
         self.slot_group_0 = program.zero_slots[:]
         self.gate_missing = program.gate_missing[:]
         self.gate_missing_0 = program.gate_missing[:]
+        self.first_held = program.first_held
         self.vector_missing = program.vector_missing[:]
         self.vector_missing_0 = program.vector_missing[:]
         self.enabled = program.zero_vectors[:]
@@ -632,8 +633,13 @@ class Kernel:
                     self._disable(vector)
 
     def _enable(self, vector: int) -> None:
-        """Insert a vector into `enabled`."""
+        """Insert a vector into `enabled`, unless it is held."""
         at = self.enabled_count
+        if at > 0 and (self.enabled[at - 1] >= self.first_held) != (vector >= self.first_held):
+            if vector >= self.first_held:
+                return
+            at = 0
+            self.enabled_count = 0
         while at > 0 and self.enabled[at - 1] > vector:
             self.enabled[at] = self.enabled[at - 1]
             at -= 1
@@ -641,7 +647,9 @@ class Kernel:
         self.enabled_count += 1
 
     def _disable(self, vector: int) -> None:
-        """Remove a vector from `enabled`."""
+        """Remove a vector from `enabled`. If it was the last one, the clock is no longer held."""
+        if vector >= self.first_held and (self.enabled_count == 0 or self.enabled[0] < self.first_held):
+            return
         self.enabled_count -= 1
         at = self.enabled_count
         following = self.enabled[at]
@@ -650,6 +658,11 @@ class Kernel:
             moved = self.enabled[at]
             self.enabled[at] = following
             following = moved
+        if self.enabled_count == 0 and vector < self.first_held:
+            for held in range(self.first_held, len(self.vector_missing)):
+                if self.vector_missing[held] == 0:
+                    self.enabled[self.enabled_count] = held
+                    self.enabled_count += 1
 
     def _arrive(self, location: int) -> None:
         """Compute what the edges of a location enable."""
@@ -705,17 +718,16 @@ class Kernel:
         """The list of an index for the values before this step."""
         at = 0
         for i in range(self.dimension_start[index], self.dimension_start[index + 1]):
-            value = self.value_before[self.dimension_watch[i]] - self.dimension_low[i]
+            value = self.value_before[self.dimension_register[i]] - self.dimension_low[i]
             if value < 0 or value >= self.dimension_size[i]:
                 return self.first_list[index + 1] - 1
             at = at * self.dimension_size[i] + value
         return self.first_list[index] + at
 
     def _keep_values(self) -> None:
-        """Store the values of the variables in indexes, which `_list_before` reads."""
-        for variable in range(len(self.watch_register)):
-            if self.watch_register[variable] >= 0:
-                self.value_before[variable] = self.ints[self.watch_register[variable]]
+        """Store the values of the registers in indexes, which `_list_before` reads."""
+        for i in range(len(self.indexed_register)):
+            self.value_before[self.indexed_register[i]] = self.ints[self.indexed_register[i]]
 
     def _total(self) -> int:
         """The number of choices if it is at most MAX_DRAWN_COMBINATIONS, else any greater number."""
@@ -1190,8 +1202,8 @@ class Kernel:
                     self._set_ready(self.group_slot[group], self._count(group))
         for i in range(self.note_count):
             variable = self.notes[i]
-            if self.watch_register[variable] >= 0:
-                self.value_before[variable] = self.ints[self.watch_register[variable]]
+            for k in range(self.indexed_start[variable], self.indexed_start[variable + 1]):
+                self.value_before[self.indexed_register[k]] = self.ints[self.indexed_register[k]]
         self.note_count = 0
         for i in range(self.visit_count):
             self.visited[self.visits[i]] = 0
@@ -1474,7 +1486,11 @@ class Kernel:
         return self._combined()
 
     def _reason(self, repeats: int) -> int:
-        """Why the state does not change any more: the smallest mark of the current locations."""
+        """Why the state does not change any more: the smallest mark of the current locations; ROUND if steps that
+        change nothing hold the clock."""
+        for vector in range(self.first_held, len(self.vector_missing)):
+            if repeats != 0 and self.vector_missing[vector] == 0 and self.enabled[0] < self.first_held:
+                return ROUND
         reason = 0
         for i in range(self.instances):
             mark = self.location_mark[self.place[i]]

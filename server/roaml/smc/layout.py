@@ -13,7 +13,7 @@ from roaml.jani.types import ArrayType, BoundedType, Type
 from roaml.record import Record
 from roaml.smc import shapes
 from roaml.smc.fault import FaultError
-from roaml.smc.initial import InitialChoice, InitialCondition, OpenVariable, initial_choices
+from roaml.smc.initial import OVERFLOW, InitialChoice, InitialCondition, OpenVariable, initial_choices
 from roaml.smc.names import Meaning, Storage, StorageNames
 from roaml.smc.registers import INT, REAL, Number, Operand, Tape, product
 from roaml.smc.shapes import kind_of, larger, shape_of
@@ -142,9 +142,16 @@ def _evaluated(expression: Expression, known: Mapping[str, Value], functions: Ma
         value = evaluate(expression, known, functions)
     except EvaluationError as error:
         raise FaultError(error.message, error.origin or expression.origin) from None
-    if isinstance(value, int) and abs(value) >= 1 << 63:
-        raise FaultError("integer overflow: the result does not fit into 64 bits", expression.origin)
+    if not _fits(value):
+        raise FaultError(OVERFLOW, expression.origin)
     return value
+
+
+def _fits(value: Value) -> bool:
+    """Whether all integers in a value fit into 64 bits. An element of an array of reals may be an integer."""
+    if isinstance(value, tuple):
+        return all(map(_fits, value))
+    return not isinstance(value, int) or abs(value) < 1 << 63
 
 
 def _storages(

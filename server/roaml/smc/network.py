@@ -83,7 +83,9 @@ class CompiledNetwork:
         locations: the number of the instance and the name of each location.
         first_location: the number of the first location of each instance.
         location_of: for each instance, name of a location -> its number.
-        vectors: the numbers of the slots of each synchronisation vector, and its action.
+        vectors: the numbers of the slots of each synchronisation vector, and its action. Those that the model holds
+            (`Model.holds_clock`) are last.
+        first_held: the number of the first vector that is held.
     """
 
     def __init__(self, model: Model, layout: MemoryLayout) -> None:
@@ -199,11 +201,22 @@ class CompiledNetwork:
             syncs = [([(0, action)], action) for action in actions]
         vectors = [([self._slot_of.get((i, action, 0), -1) for i, action in parts], result) for parts, result in syncs]
         silent = [([number], None) for number, slot in enumerate(self.slots) if slot.action is None]
-        for slots, result in (*vectors, *silent):
-            if slots and -1 not in slots:
-                for slot in slots:
-                    self.slots[slot].vectors.append(len(self.vectors))
-                self.vectors.append((slots, result))
+        held = self._begins_time()
+        steps = [(slots, result) for slots, result in (*vectors, *silent) if slots and -1 not in slots]
+        steps.sort(key=lambda step: not held.isdisjoint(step[0]))
+        self.first_held = sum(held.isdisjoint(slots) for slots, _ in steps)
+        for slots, result in steps:
+            for slot in slots:
+                self.slots[slot].vectors.append(len(self.vectors))
+            self.vectors.append((slots, result))
+
+    def _begins_time(self) -> set[int]:
+        """The slots with which the clock begins its steps, if the model holds them."""
+        clock = self.model.metadata.clock if self.model.metadata is not None else None
+        if clock is None or not self.model.holds_clock:
+            return set()
+        elements = [number for number, e in enumerate(self.model.system.elements) if e.automaton == clock.automaton]
+        return {self._slot_of.get((i, action, 0), -1) for i in elements for action in clock.actions} - {-1}
 
 
 def _accepting(instance: AutomatonInstance, actions: tuple[str, ...]) -> list[Edge]:

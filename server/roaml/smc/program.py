@@ -63,6 +63,8 @@ class Program(Record, frozen=True, eq=False):
             the slot (`roaml.smc.kernel` defines gates). gate_vector: the vectors of a gate.
         gate_missing, vector_missing: the number of slots of each gate; for each vector, the number of its slots that
             are in no other vector, plus the number of its gates.
+        first_held: the first of the vectors that are enabled only if no vector before it is: the steps of the clock in
+            a model that holds them. The number of vectors if there are none.
         active_slot: the slots of a vector that have an effect; all_slot: all slots.
         entangled: whether assignments of several parts of a vector depend on one another.
         phase_index: for ways that take part in entangled vectors, the indices of their assignments, in ascending order.
@@ -72,16 +74,16 @@ class Program(Record, frozen=True, eq=False):
         watched_group: for each location of these instances, the groups whose guards read the variable, without those
             that are in an index.
         watched_index: for each location of these instances, the index of the other groups, -1 if there is none.
-        watch_register: the register of each watched variable that is a dimension of an index, otherwise -1.
+        indexed_register: the registers of each watched variable that are dimensions of an index: the variable, or cells
+            of an array.
         group_index: the index of the edges of each group, -1 if there is none.
         dimension_start, first_list, list_start, list_item: the indexes and their lists, see `index.Indexes`.
-        dimension_register, dimension_watch, dimension_low, dimension_size: the dimensions of the indexes; the variable
-            in the register has the number `dimension_watch` among the watched variables.
+        dimension_register, dimension_low, dimension_size: the dimensions of the indexes.
         cell_watch: for each variable register, integers first, the number of its variable among the watched variables,
             or -1.
         settle: code that resets transient variables; location_code: code that sets their values in a location.
         location_mark: why a trace that stays in a location ends (`end.End`); 0 if unknown.
-        zero_*: a zero for each slot, vector, watched variable (twice) and instance, which the kernel copies.
+        zero_*: a zero for each slot, vector, watched variable and instance, which the kernel copies.
     """
 
     code: Ints
@@ -120,6 +122,7 @@ class Program(Record, frozen=True, eq=False):
     gate_vector: Ints
     gate_missing: Ints
     vector_missing: Ints
+    first_held: int
     active_start: Ints
     active_slot: Ints
     all_start: Ints
@@ -136,11 +139,11 @@ class Program(Record, frozen=True, eq=False):
     watched_group: Ints
     cell_watch: Ints
     watched_index: Ints
-    watch_register: Ints
+    indexed_start: Ints
+    indexed_register: Ints
     group_index: Ints
     dimension_start: Ints
     dimension_register: Ints
-    dimension_watch: Ints
     dimension_low: Ints
     dimension_size: Ints
     first_list: Ints
@@ -152,7 +155,6 @@ class Program(Record, frozen=True, eq=False):
     zero_slots: Ints
     zero_vectors: Ints
     zero_variables: Ints
-    zero_values: Ints
     zero_instances: Ints
 
 

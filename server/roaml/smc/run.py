@@ -41,13 +41,24 @@ BATCH_GROWTH = 0.1
 BATCH_OF_REST = 0.1
 """The maximum size of a batch as a fraction of the remaining traces, so that all workers end at about the same time; at
 least `FIRST_BATCH_TRACES`."""
-STOPPING_ERROR_SHARE = 0.75
-"""Stopping as soon as the interval is narrow enough increases the error; so the interval is computed for this fraction
-of the allowed error. A test computes that the total error does not exceed the allowed error."""
+
+
+def stopping_error_share(confidence: float) -> float:
+    """Stopping as soon as the interval is narrow enough increases the error; so the interval is computed for this
+    fraction of the allowed error. A test computes that the total error does not exceed the allowed error. The smaller
+    the allowed error, the greater is the share that stopping adds."""
+    return 0.75 if confidence <= 0.95 else 0.55
+
+
 MIN_EPSILON = 1e-9
 """The minimum half-width of an interval. A narrower interval needs more traces than can be simulated."""
 MAX_REWARD_TRACES = 10_000_000
 """The number of traces after which the adaptive method ends even if the interval is wider than requested."""
+MIN_REWARD_TRACES = 10_000
+"""The number of traces before which the adaptive method does not end for a reward: the range of the rewards is not
+known, so a rare reward may change the mean. One with a probability of 0.001 occurs in these traces almost surely."""
+MAX_EQUAL_TRACES = 100_000
+"""The number of traces after which the adaptive method ends if all rewards were equal. There is no interval then."""
 MAX_REJECTED = 100_000
 """The number of traces after which the work ends if the assumptions have rejected all of them."""
 
@@ -107,9 +118,10 @@ class Answer(Record, frozen=True):
 
     @property
     def interval(self) -> str:
-        """The name of the interval in statistics. The intervals for rewards are valid only for many traces."""
+        """The name of the interval in statistics. The intervals for rewards are valid if no reward is outside of the
+        range of those that were seen."""
         if self.question.is_reward:
-            return "asymptotic confidence sequence" if self.is_anytime else "Student's t"
+            return "asymptotic confidence sequence" if self.is_anytime else "empirical Bernstein"
         return "confidence sequence" if self.is_anytime else "Clopper-Pearson"
 
     @property
@@ -299,12 +311,12 @@ def bounds_of(tally: Tally, question: Question, options: Options, is_anytime: bo
     """
     error = 1 - options.confidence
     confidence = (
-        1 - error * STOPPING_ERROR_SHARE
+        1 - error * stopping_error_share(options.confidence)
         if options.method is EstimationMethod.ADAPTIVE and not is_anytime
         else options.confidence
     )
     if question.is_reward:
-        lower, upper = tally.mean.anytime_bounds(confidence) if is_anytime else tally.mean.bounds(confidence)
+        lower, upper = tally.mean.anytime_bounds(confidence) if is_anytime else tally.mean.bernstein_bounds(confidence)
         if tally.traces - tally.successes:
             upper = math.inf
             lower = math.inf if tally.traces - tally.successes - tally.undecided else lower
@@ -399,6 +411,10 @@ def _is_enough(tally: Tally, question: Question, options: Options) -> bool:
     if question.is_reward and tally.traces - tally.successes - tally.undecided:
         return True
     if tally.simulated >= MAX_REWARD_TRACES:
+        return True
+    if question.is_reward and tally.traces < MIN_REWARD_TRACES:
+        return _is_hopeless(tally, options)
+    if question.is_reward and tally.mean.is_constant and tally.traces >= MAX_EQUAL_TRACES:
         return True
     return _is_narrow(tally, question, options) or _is_hopeless(tally, options)
 

@@ -145,19 +145,27 @@ def okamoto(confidence: float, epsilon: float) -> int:
 
 
 class Mean(NamedTuple):
-    """The number and the mean of the rewards so far, and the sum of the squares of their distances from the mean
-    (`squares`)."""
+    """The number and the mean of the rewards so far, the sum of the squares of their distances from the mean
+    (`squares`), and the least and the greatest of them."""
 
     number: int = 0
     mean: float = 0.0
     squares: float = 0.0
+    least: float = math.inf
+    greatest: float = -math.inf
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether there are values and all are equal."""
+        return self.least == self.greatest
 
     def add(self, value: float) -> Mean:
         """A copy to which one more value is added (Welford 1962)."""
         number = self.number + 1
         step = value - self.mean
         mean = self.mean + step / number
-        return Mean(number, mean, self.squares + step * (value - mean))
+        squares = self.squares + step * (value - mean)
+        return Mean(number, mean, squares, min(self.least, value), max(self.greatest, value))
 
     def joined(self, other: Mean) -> Mean:
         """The mean of the rewards of both (Chan, Golub and LeVeque 1983)."""
@@ -166,36 +174,53 @@ class Mean(NamedTuple):
         number = self.number + other.number
         step = other.mean - self.mean
         share = other.number / number
-        return Mean(number, self.mean + step * share, self.squares + other.squares + step * step * self.number * share)
+        squares = self.squares + other.squares + step * step * self.number * share
+        least, greatest = min(self.least, other.least), max(self.greatest, other.greatest)
+        return Mean(number, self.mean + step * share, squares, least, greatest)
 
     def bounds(self, confidence: float) -> Bounds:
-        """The interval for the expected value, by Student's t."""
-        if self.number < 2:
+        """The interval for the expected value, by Student's t. Equal values have no variance to infer an interval
+        from, so it is the whole line: a rare other value may not have been seen."""
+        if self.number < 2 or self.is_constant:
             return Bounds(-math.inf, math.inf)
         deviation = math.sqrt(self.squares / (self.number - 1) / self.number)
-        if deviation == 0:
-            return Bounds(self.mean, self.mean)
         half = student_quantile((1 + confidence) / 2, self.number - 1) * deviation
+        return Bounds(self.mean - half, self.mean + half)
+
+    def bernstein_bounds(self, confidence: float) -> Bounds:
+        """The interval for the expected value by the empirical Bernstein bound (Maurer and Pontil 2009, "Empirical
+        Bernstein bounds and sample variance penalization", theorem 4), for values between the least and the greatest
+        one so far.
+
+        The bound holds for each number of values if all possible values are in this range. If a value outside of it is
+        possible, the interval has no guarantee, but the second term keeps it wide while single values determine the
+        mean, where that by Student's t is too narrow.
+        """
+        if self.number < 2 or self.is_constant:
+            return Bounds(-math.inf, math.inf)
+        log = math.log(4 / (1 - confidence))
+        variance = self.squares / (self.number - 1)
+        half = math.sqrt(2 * variance * log / self.number)
+        half += 7 * (self.greatest - self.least) * log / (3 * (self.number - 1))
         return Bounds(self.mean - half, self.mean + half)
 
     def anytime_bounds(self, confidence: float) -> Bounds:
         """The interval for the expected value that may be inspected after each trace; it is valid for many traces, like
-        the interval by Student's t.
+        the interval by Student's t, and not narrower than `bernstein_bounds`.
 
         The asymptotic confidence sequence by a mixture of normal distributions (Waudby-Smith, Arbour, Sinha, Kennedy
         and Ramdas 2024, "Time-uniform central limit theory and asymptotic confidence sequences"), narrowest after
         about `_NARROWEST_AT_TRACES` traces.
         """
-        if self.number < 2:
+        if self.number < 2 or self.is_constant:
             return Bounds(-math.inf, math.inf)
         deviation = math.sqrt(self.squares / self.number)
-        if deviation == 0:
-            return Bounds(self.mean, self.mean)
         error = -2 * math.log1p(-confidence)
         rho = (error + math.log1p(error)) / _NARROWEST_AT_TRACES
         spread = self.number * rho + 1
         half = deviation * math.sqrt(spread / (self.number**2 * rho) * (math.log(spread) + error))
-        return Bounds(self.mean - half, self.mean + half)
+        once = self.bernstein_bounds(confidence)
+        return Bounds(min(self.mean - half, once.lower), max(self.mean + half, once.upper))
 
 
 class Ratio(NamedTuple):

@@ -10,6 +10,7 @@ from typing import Any
 from roaml.smc.goal import Question
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
 from roaml.smc.run import EstimationMethod, Options
+from roaml.smc.statistics import Mean
 from roaml.smc.tally import MAX_KEPT_TRACES, StoredTrace, Tally
 
 _MAX_COUNT = 1 << 62
@@ -33,7 +34,7 @@ def tally_from_json(value: Any, question: Question, options: Options) -> Tally:
         _expect(isinstance(shape.get(key), bool), key)
     _expect(shape.get("accepted") in (None, True, False), "accepted")
     mean = shape.get("mean")
-    if not isinstance(mean, list) or len(mean) != 3 or not all(isinstance(term, str) for term in mean[1:]):
+    if not isinstance(mean, list) or len(mean) != 5 or not all(isinstance(term, str) for term in mean[1:]):
         raise ValueError("`mean` is invalid")
     _whole(mean[0], "mean")
     for row in _row(shape.get("ends"), "ends").values():
@@ -69,7 +70,8 @@ def _check_sums(tally: Tally, question: Question, options: Options) -> None:
     mean = tally.mean
     _expect(mean.number == (tally.successes if question.is_reward else 0), "mean")
     _expect(math.isfinite(mean.mean) and math.isfinite(mean.squares) and mean.squares >= 0, "mean")
-    _expect(mean.number > 0 or (mean.mean, mean.squares) == (0, 0), "mean")
+    _expect(mean.number > 0 or mean == Mean(), "mean")
+    _expect(mean.number == 0 or mean.least <= mean.greatest, "mean")
     _expect(tally.accepted is None or options.method is EstimationMethod.SPRT or tally.is_finished, "accepted")
     counts = {TRUE: tally.successes, FALSE: failures, UNKNOWN: tally.undecided}
     numbers: set[int] = set()

@@ -115,7 +115,7 @@ class Tally(Record):
             "closed": self.closed,
             "idle": self.idle,
             "late": self.late,
-            "mean": [self.mean.number, self.mean.mean.hex(), self.mean.squares.hex()],
+            "mean": [self.mean.number, *(number.hex() for number in self.mean[1:])],
             "accepted": self.accepted,
             "finished": self.is_finished,
             "revised": self.is_revised,
@@ -131,7 +131,8 @@ class Tally(Record):
         Raises:
             KeyError, TypeError, ValueError, AttributeError: the value was not written by `to_json`.
         """
-        count, mean, squares = value["mean"]
+        count, *moments = value["mean"]
+        mean, squares, least, greatest = map(float.fromhex, moments)
         return Tally(
             traces=int(value["traces"]),
             successes=int(value["successes"]),
@@ -141,7 +142,7 @@ class Tally(Record):
             closed=int(value["closed"]),
             idle=int(value["idle"]),
             late=int(value["late"]),
-            mean=Mean(int(count), float.fromhex(mean), float.fromhex(squares)),
+            mean=Mean(int(count), mean, squares, least, greatest),
             accepted=value["accepted"],
             is_finished=bool(value["finished"]),
             is_revised=bool(value["revised"]),

@@ -30,4 +30,13 @@ def with_end_of_time(model: Model) -> Model:
     clock = replace(clock, edges=tuple(renamed(edge) for edge in clock.edges))
     automata = (*model.automata[:index], clock, *model.automata[index + 1 :])
     actions = (*model.actions, Action(TIME_OVER_ACTION))
-    return replace(model, automata=automata, system=replace(model.system, syncs=tuple(syncs)), actions=actions)
+    metadata = model.metadata
+    if metadata is not None and metadata.clock is not None:
+        metadata = replace(metadata, clock=replace(metadata.clock, actions=(CLOCK_ACTION, TIME_OVER_ACTION)))
+    return replace(
+        model,
+        automata=automata,
+        system=replace(model.system, syncs=tuple(syncs)),
+        actions=actions,
+        metadata=metadata,
+    )

@@ -5,12 +5,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from roaml.jani.model import Action, Automaton, Metadata, Model, ModelType, Variable
+from roaml.jani.model import Action, Automaton, Clock, Metadata, Model, ModelType, Variable
 from roaml.jani.properties import Property
+from roaml.jani.reaction import reacting
 from roaml.jani.types import BOOL
 from roaml.scxml.events import EventRole, Role
 from roaml.scxml.model import Data, Network
-from roaml.scxml.names import flag_of
+from roaml.scxml.names import CLOCK, CLOCK_ACTION, TRANSLATION_MARK, flag_of
 from roaml.scxml.observed import ObservedProperty
 from roaml.text import Location
 from roaml.to_jani.composition import compose, event_automaton, has_automaton
@@ -23,7 +24,6 @@ from roaml.to_jani.shapes import ArrayShape, constructed_zero, jani_type, shape_
 from roaml.to_jani.values import JaniScope, elements_as, lengths_as
 
 FEATURES = ("arrays", "trigonometric-functions")
-DESCRIPTION = "Translated from HL-SCXML by roaml"
 
 
 def translate(
@@ -58,7 +58,10 @@ def translate(
         tuple(automata),
         compose(automata, buffers, table),
         features=FEATURES,
-        metadata=Metadata(description=DESCRIPTION),
+        metadata=Metadata(
+            description=TRANSLATION_MARK,
+            clock=Clock(CLOCK, (CLOCK_ACTION,), network.clock_step) if has_clock else None,
+        ),
         variables=tuple(
             Variable(name, jani_type(shape), constructed_zero(shape), origin=origin)
             for name, (shape, origin) in globals_.items()
@@ -67,7 +70,8 @@ def translate(
         properties=tuple(expanded(property_, shapes) for property_ in properties),
     )
     owners = {automaton.name: automaton.thread_of for automaton in network.automata if automaton.thread_of}
-    return observed(model, observed_properties, shapes, network.max_array_size, owners, has_activity=has_activity)
+    model = observed(model, observed_properties, shapes, network.max_array_size, owners, has_activity=has_activity)
+    return reacting(model, network.reaction_time)
 
 
 def _automaton(behavior: AutomatonMoves, table: Mapping[str, EventUsage], network: Network) -> Automaton:

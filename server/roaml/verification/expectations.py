@@ -18,6 +18,7 @@ from roaml.jani.operators import BinaryOperator
 from roaml.record import Record
 from roaml.smc.goal import Question, Threshold
 from roaml.smc.run import Answer
+from roaml.smc.statistics import Bounds
 
 _RELATIONS = {
     ">=": BinaryOperator.GREATER_EQUAL,
@@ -144,6 +145,8 @@ def check_expectation(expectation: Expectation, answer: Answer) -> Verdict:
     if tally.accepted is not None and answer.question.threshold == threshold:
         return Verdict(expectation, tally.accepted, True)
     lower, upper = answer.bounds
+    if answer.question.is_reward and _is_open(threshold, answer.bounds):
+        return Verdict(expectation, False, False)
     if threshold.relation is BinaryOperator.EQUAL:
         width = answer.options.epsilon + 1e-12
         near = abs(answer.value - threshold.number) <= width
@@ -161,6 +164,14 @@ def check_expectation(expectation: Expectation, answer: Answer) -> Verdict:
     if met and not answer.question.is_reward and value == threshold.number and value in (0, 1):
         unanimous = tally.traces, lower if threshold.is_lower else upper
     return Verdict(expectation, met, threshold.met(lower) is threshold.met(upper), unanimous=unanimous)
+
+
+def _is_open(threshold: Threshold, bounds: Bounds) -> bool:
+    """Whether the interval of a reward has no bound where the threshold needs one, for example since all rewards were
+    equal. Then the estimate says nothing about rare rewards."""
+    needs_lower = threshold.relation is BinaryOperator.EQUAL or threshold.is_lower
+    needs_upper = threshold.relation is BinaryOperator.EQUAL or not threshold.is_lower
+    return (needs_lower and bounds.lower == -math.inf) or (needs_upper and bounds.upper == math.inf)
 
 
 def _rounded(bound: float) -> float:

@@ -29,6 +29,13 @@ class Explorations:
 
     def __init__(self) -> None:
         self._known: dict[Hashable, Exact | UndecidedError | FaultError | None] = {}
+        self._checker: ModelChecker | None = None
+
+    def checker(self, compile_: Callable[[], ModelChecker]) -> ModelChecker:
+        """The model checker for the same properties under another assumption, compiled once."""
+        if self._checker is None:
+            self._checker = compile_()
+        return self._checker
 
     def exact(
         self, checker: ModelChecker, property_: CompiledProperty, limits: Hashable, compute: Callable[[], Exact | None]

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The result of one property."""
+"""The result of one property: a closed union of its kinds, with what all of them have in common."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 from enum import Enum
+from typing import TypeAlias
 
+from roaml.exhaustive import assert_never
 from roaml.explicit.path import Path, PathRecorder
 from roaml.record import PartlyCompared, Record
 from roaml.smc.choices import Choices
@@ -22,7 +24,7 @@ from roaml.verification.expectations import Verdict
 from roaml.verification.growth import GrowingVariable
 from roaml.verification.refusal import Refusal
 from roaml.verification.schedulers import is_minimised
-from roaml.verification.stuck import Stuck
+from roaml.verification.stuck import Stuck, shortest
 from roaml.verification.target import VerificationTarget
 
 
@@ -192,91 +194,238 @@ class Traces(Record, frozen=True):
         return build_story(self.recorder(), trace, self.target.clock)
 
 
-class Result(PartlyCompared, frozen=True):
-    """The result of one property.
+class Refused(PartlyCompared, frozen=True):
+    """The property cannot be answered.
 
     Attributes:
-        answer: the answer of traces with uniform choices; `None` if only other schedulers or exact values were
-            requested. If the result also has exact values, the traces of the answer are examples, unless the value
-            under uniform choices is not one of them.
-        verdicts: one for each expectation.
-        seconds: the duration of the verification, in s.
-        is_interrupted: whether the work was ended before the answer was complete.
-        sampled: the results of traces with sampled schedulers.
-        tried: the number of sampled schedulers from which those of `sampled` were selected.
-        stuck: the traces that got stuck; `None` if there are none.
-        exact: the values from all states; `None` if they were not computed.
-        choices: what is known about schedulers other than the uniform one; `None` if only uniform choices are
-            considered.
-        refusal: the reason why there is no answer; `None` if there is one.
-        undecided: the reason why the exploration of all states could not decide the property; "" if it could.
-        growing: the variables because of which the exploration has reached a limit or was interrupted.
-        explored: the number of states after which the exploration was interrupted; 0 if it was not.
-        fault: the error that is the cause of `refusal`.
-        traces: the traces of `answer`, which can be simulated again.
-        comment: a description of what the property requires; "" if the model contains none.
+        reason: why not, for users.
+        fault: the error that is the cause.
     """
 
-    UNCOMPARED = frozenset({"fault", "traces"})
+    UNCOMPARED = frozenset({"fault"})
 
-    name: str
-    answer: Answer | None
-    verdicts: tuple[Verdict, ...]
-    seconds: float
-    is_interrupted: bool = False
-    sampled: tuple[SampledResult, ...] = ()
-    tried: int = 0
-    stuck: Stuck | None = None
-    exact: Exact | None = None
-    choices: Choices | None = None
-    refusal: Refusal | None = None
-    undecided: str = ""
+    reason: Refusal
+    fault: FaultError
+
+
+class Undecided(Record, frozen=True):
+    """The exploration of all states could not decide the property.
+
+    Attributes:
+        reason: a phrase for users.
+        growing: the variables because of which a limit was reached.
+    """
+
+    reason: str
     growing: tuple[GrowingVariable, ...] = ()
-    explored: int = 0
-    fault: FaultError | None = None
-    traces: Traces | None = None
-    comment: str = ""
 
-    @property
-    def includes_stuck(self) -> bool:
-        """Whether the result is about the property `stuck`, which asks whether traces get stuck."""
-        traces = () if self.exact is None else self.exact.traces
-        questions = [answer.question for answer in self._answers()] + [t.compiled_property.question for t in traces]
-        return any(question.is_stuck for question in questions)
+
+class CutShort(Record, frozen=True):
+    """The work was interrupted before there was a value.
+
+    Attributes:
+        states: the number of states that were explored.
+        growing: the variables because of which there were so many states.
+    """
+
+    states: int = 0
+    growing: tuple[GrowingVariable, ...] = ()
+
+
+class Estimated(PartlyCompared, frozen=True):
+    """An estimate from traces with uniform choices.
+
+    Attributes:
+        answer: the estimate.
+        choices: what is known about schedulers other than the uniform one; `None` if only uniform choices are
+            considered.
+        stuck: the traces that got stuck; `None` if there are none.
+        traces: the traces of `answer`, which can be simulated again; `None` for an intermediate result.
+        is_interrupted: whether the work was ended before the answer was complete.
+    """
+
+    UNCOMPARED = frozenset({"traces"})
+
+    answer: Answer
+    choices: Choices | None = None
+    stuck: Stuck | None = None
+    traces: Traces | None = None
+    is_interrupted: bool = False
+
+
+class Computed(Record, frozen=True):
+    """Exact values from all states.
+
+    Attributes:
+        question: what the property asks for.
+        exact: the values.
+        sample: traces with uniform choices. They are examples or, if the value under uniform choices was not computed,
+            its estimate. `None` if no traces were generated.
+    """
+
+    question: Question
+    exact: Exact
+    sample: Estimated | None = None
 
     @property
     def is_uniform(self) -> bool:
-        """Whether the result is only about uniform choices."""
-        return self.answer is not None and self.choices is None and not self.includes_stuck
-
-    def asked_value(self) -> tuple[Bounds, float] | None:
-        """The exact value that the property asks for, with its bounds (`Exact.asked_value`); `None` if there are no
-        exact values beside the answer of traces."""
-        if self.exact is None or self.answer is None:
-            return None
-        return self.exact.asked_value(self.answer.question, only_uniform=self.is_uniform)
+        """Whether only the value under uniform choices is asked for."""
+        return self.sample is not None and self.sample.choices is None and not self.question.is_stuck
 
     @property
     def has_uniform_estimate(self) -> bool:
         """Whether the value under uniform choices is an estimate from traces, while the minimum and the maximum are
         exact."""
-        return self.exact is not None and self.exact.uniform is None and self.answer is not None
+        return self.exact.uniform is None and self.sample is not None
+
+    def asked_value(self) -> tuple[Bounds, float]:
+        """The bounds and the value that the property asks for (`Exact.asked_value`)."""
+        return self.exact.asked_value(self.question, only_uniform=self.is_uniform)
+
+
+class Sampled(Record, frozen=True):
+    """The results of traces with sampled schedulers.
+
+    Attributes:
+        extremes: the minimum and the maximum that were found.
+        tried: the number of schedulers from which they were selected.
+        is_interrupted: whether the search was ended early.
+    """
+
+    extremes: tuple[SampledResult, ...]
+    tried: int
+    is_interrupted: bool = False
+
+
+Outcome: TypeAlias = Refused | Undecided | CutShort | Estimated | Computed | Sampled
+"""All kinds of results. Code that treats them differently matches them exhaustively (`roaml.exhaustive`)."""
+
+
+class UnderAssumption(Record, frozen=True):
+    """The result of the same property under an assumption.
+
+    Attributes:
+        assumption: a clause for users, such as `if machines react at once`.
+        outcome: the result under this assumption.
+        remark: what the assumption excludes, as a clause for users; "" if that is unknown.
+    """
+
+    assumption: str
+    outcome: Computed | Estimated | Undecided
+    remark: str = ""
+
+
+class Result(Record, frozen=True):
+    """The result of one property.
+
+    Attributes:
+        outcome: the value, or the reason why there is none.
+        verdicts: one for each expectation.
+        seconds: the duration of the verification, in s.
+        comment: a description of what the property requires; "" if the model contains none.
+        conditional: the results under assumptions that the property does not make.
+    """
+
+    name: str
+    outcome: Outcome
+    verdicts: tuple[Verdict, ...] = ()
+    seconds: float = 0.0
+    comment: str = ""
+    conditional: tuple[UnderAssumption, ...] = ()
+
+    @property
+    def estimated(self) -> Estimated | None:
+        """The traces with uniform choices, also those beside exact values; `None` if there are none."""
+        match self.outcome:
+            case Estimated() as estimated:
+                return estimated
+            case Computed(sample=sample):
+                return sample
+            case _:
+                return None
+
+    @property
+    def answer(self) -> Answer | None:
+        """The answer of `estimated`."""
+        return None if self.estimated is None else self.estimated.answer
+
+    @property
+    def choices(self) -> Choices | None:
+        """What is known about schedulers other than the uniform one; `None` if only uniform choices are considered."""
+        return None if self.estimated is None else self.estimated.choices
+
+    @property
+    def traces(self) -> Traces | None:
+        """The traces of `estimated`, which can be simulated again."""
+        return None if self.estimated is None else self.estimated.traces
+
+    @property
+    def exact(self) -> Exact | None:
+        """The values from all states; `None` if they were not computed."""
+        return self.outcome.exact if isinstance(self.outcome, Computed) else None
+
+    @property
+    def stuck(self) -> Stuck | None:
+        """The traces that got stuck; `None` if there are none."""
+        if isinstance(self.outcome, Sampled):
+            return shortest(sampled.stuck for sampled in self.outcome.extremes)
+        return None if self.estimated is None else self.estimated.stuck
+
+    @property
+    def is_interrupted(self) -> bool:
+        """Whether the work was ended before the result was complete."""
+        match self.outcome:
+            case CutShort():
+                return True
+            case Estimated(is_interrupted=is_interrupted) | Sampled(is_interrupted=is_interrupted):
+                return is_interrupted
+            case Refused() | Undecided() | Computed():
+                return False
+        return assert_never(self.outcome)
+
+    @property
+    def question(self) -> Question | None:
+        """What the property asks for; `None` if there is no value."""
+        match self.outcome:
+            case Computed(question=question):
+                return question
+            case Estimated(answer=answer):
+                return answer.question
+            case Sampled(extremes=extremes):
+                return extremes[0].answer.question if extremes else None
+            case Refused() | Undecided() | CutShort():
+                return None
+        return assert_never(self.outcome)
+
+    @property
+    def includes_stuck(self) -> bool:
+        """Whether the result is about the property `stuck`, which asks whether traces get stuck."""
+        return self.question is not None and self.question.is_stuck
+
+    def asked_value(self) -> tuple[Bounds, float] | None:
+        """The exact value that the property asks for, with its bounds; `None` if there is none."""
+        return self.outcome.asked_value() if isinstance(self.outcome, Computed) else None
 
     @property
     def epsilon(self) -> float:
         """The difference that an expectation with `==` allows; 0 if the result is not an estimate from traces."""
-        return next((answer.options.epsilon for answer in self._answers()), 0.0)
+        match self.outcome:
+            case Sampled(extremes=extremes) if extremes:
+                return extremes[0].answer.options.epsilon
+            case _:
+                return 0.0 if self.answer is None else self.answer.options.epsilon
+
+    @property
+    def has_answer(self) -> bool:
+        """Whether there is a value, or could be one if the work had not been interrupted."""
+        return not isinstance(self.outcome, (Refused, Undecided))
 
     @property
     def has_no_expectation(self) -> bool:
         """Whether there is an answer, but no expectation."""
-        return self.refusal is None and not self.undecided and not self.verdicts
+        return self.has_answer and not self.verdicts
 
     @property
     def is_met(self) -> bool:
         """Whether there is an answer, and every expectation holds."""
-        return self.refusal is None and not self.undecided and all(verdict.is_met for verdict in self.verdicts)
-
-    def _answers(self) -> Iterator[Answer]:
-        answers = [self.answer, *(sampled.answer for sampled in self.sampled)]
-        return (answer for answer in answers if answer is not None)
+        return self.has_answer and all(verdict.is_met for verdict in self.verdicts)

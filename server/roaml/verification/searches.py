@@ -8,7 +8,6 @@ need more memory than one of them may have, the last one is stopped, and begins 
 
 from __future__ import annotations
 
-import pickle
 import time
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, NamedTuple
@@ -49,6 +48,8 @@ class _OwnProcess:
         self._began = time.monotonic()
         context = process_context()
         self.receiving, sending = context.Pipe(duplex=False)
+        import pickle  # noqa: PLC0415 - only workers need it
+
         payload = pickle.dumps((*self._own, limits))
         # It is daemonic so that it ends with this process.
         self._process: BaseProcess = context.Process(target=_explore, args=(sending, payload), daemon=True)  # type: ignore[attr-defined]
@@ -191,6 +192,8 @@ class Searches:
 def _explore(sending: Connection, payload: bytes) -> None:
     """Explore the states for a property in a process of its own, and send its progress and its result."""
     follow_main_process()
+    import pickle  # noqa: PLC0415 - only workers need it
+
     checker, property_, limits = pickle.loads(payload)
     reported = time.monotonic()
 

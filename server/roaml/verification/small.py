@@ -1,19 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Exact values of properties of models with few states, computed without a request of the user. All limits are numbers
-of states, bytes and operations, and not times, so the speed of the machine does not determine whether a property is
-answered exactly. If there are more than a few states, they are explored without the choices that change neither the
-minimum nor the maximum; if that shows that all states exceed the limits, these are not explored
-(docs/spec/reductions.md#when).
+"""Exact values of properties that are computed without a request of the user, within limits. All limits are numbers of
+states, transitions, bytes and operations, and not times, so the speed of the machine does not determine whether a
+property is answered exactly. First all states are explored; if there are too many, they are explored without the
+choices that change neither the minimum nor the maximum (docs/spec/reductions.md#when).
 """
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 from roaml.explicit.independence import can_be_reduced
-from roaml.explicit.space import LimitError, StateLimits, explore, search_tables
-from roaml.explicit.tables import Tables
-from roaml.record import replace
+from roaml.explicit.space import ExplorationWatch, LimitError, StateLimits, explore, search_tables
+from roaml.record import Record, replace
 from roaml.smc.choices import Choices, Extreme, ExtremeMethod
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty, InitialFold
@@ -22,72 +21,116 @@ from roaml.verification.exhaustive import UndecidedError, alone, values_from
 from roaml.verification.results import Exact
 
 MAX_SMALL_STATES = 20_000
-MAX_STATES_AT_FIRST = 2_000
-"""The maximum number of states that are explored before choices are left out."""
 LIMITS = StateLimits(states=MAX_SMALL_STATES, bytes=4 << 30, combinations=4_096, transitions=200_000, work=100_000_000)
-MAX_REDUCED_TRANSITIONS = 100_000
-"""The maximum number of transitions of the search that leaves choices out. Each of them takes longer."""
+"""The limits if random traces are requested, and the least that each of several properties gets."""
+SHARED_LIMITS = StateLimits(
+    states=2_000_000, bytes=1 << 30, combinations=4_096, transitions=6_000_000, work=100_000_000
+)
+"""The limits of all properties of one verification together. A search that reaches them takes 5 to 10 s."""
+REDUCED_SHARE = 2
+"""A search that leaves out choices may have this fraction of the transitions, each of which takes about three times as
+long."""
+_COST_OF_ALL, _COST_OF_REDUCED, _COST_OF_BOTH = 3, 10, 8
+"""The duration of a transition in both kinds of search. If both reach their limits, their cost is the limit."""
 EXAMPLE_TRACES = 200
 """The number of traces that are generated as examples if the value is exact."""
+MAX_EXAMPLE_STEPS = 50_000
+"""The maximum number of steps of these traces. The steps of slowly converging models would take longer than the
+value."""
 
 
-def values_if_small(checker: ModelChecker, property_: CompiledProperty, *, leaves_out: bool = True) -> Exact | None:
-    """The exact values of a property; `None` if the model is too large, if an undefined operation is executed, or if
-    only traces can answer the property.
+class Attempt(Record, frozen=True):
+    """The result of a search within limits.
+
+    Attributes:
+        exact: the values; `None` if there are none.
+        transitions: the part of the limit on transitions that was used.
+        reason: why there are no values, for users; "" if only traces can answer the property.
+    """
+
+    exact: Exact | None
+    transitions: int = 0
+    reason: str = ""
+
+
+def attempt(
+    checker: ModelChecker,
+    property_: CompiledProperty,
+    limits: StateLimits,
+    watch: ExplorationWatch | None = None,
+    *,
+    leaves_out: bool = True,
+) -> Attempt:
+    """The exact values of a property, if the model is not too large, no undefined operation is executed, and not only
+    traces can answer the property.
 
     Args:
+        watch: see `roaml.explicit.space.explore`.
         leaves_out: whether choices may be left out if there are too many states.
     """
     if property_.question.is_conditional:
-        return None
+        return Attempt(None)
     checker, property_ = alone(checker, property_)
-    tables = search_tables(checker, property_, LIMITS)
-    try:
-        if leaves_out and can_be_reduced(checker.program, property_.goal):
-            exact = _partly(checker, property_, tables)
-        else:
-            exact = values_from(explore(checker, property_, LIMITS, tables=tables), LIMITS)
-    except (FaultError, UndecidedError, LimitError):
-        return None
-    return exact if exact.is_precise else None
-
-
-def _partly(checker: ModelChecker, property_: CompiledProperty, tables: Tables) -> Exact:
-    """The values from all states if there are few, otherwise from those that are left after reductions. If these show
-    that there are not few states, the search through all states is omitted.
-
-    Raises:
-        UndecidedError, FaultError, LimitError: see `values_from` and `explore`.
-    """
-
-    def wholly(states: int) -> Exact:
-        return values_from(explore(checker, property_, replace(LIMITS, states=states), tables=tables), LIMITS)
-
-    try:
-        return wholly(min(MAX_STATES_AT_FIRST, LIMITS.states))
-    except LimitError:
-        pass
-    most = min(LIMITS.transitions or MAX_REDUCED_TRANSITIONS, MAX_REDUCED_TRANSITIONS)
-    limits = replace(LIMITS, transitions=most)
-    try:
-        space = explore(checker, property_, limits, is_reduced=True, tables=tables)
-    except LimitError as error:
-        if error.states >= LIMITS.states or _has_many_states(error.search):
-            raise
-        return wholly(LIMITS.states)
-    if not _has_many_states(space.search):
+    tables = search_tables(checker, property_, limits)
+    passes = (False, True) if leaves_out and can_be_reduced(checker.program, property_.goal) else (False,)
+    cost, reason = 0, ""
+    for upper, is_reduced in itertools.product(_steps_to(limits), passes):
+        search: Any = None
+        exact = None
+        transitions = upper.transitions
+        if is_reduced and transitions is not None:
+            transitions //= REDUCED_SHARE
+        most = replace(upper, transitions=transitions)
         try:
-            return wholly(LIMITS.states)
-        except LimitError:
-            pass
-    return values_from(space, limits)
+            space = explore(checker, property_, most, watch, is_reduced=is_reduced, tables=tables)
+            search = space.search
+            exact, reason = values_from(space, most), ""
+        except LimitError as error:
+            search, reason = error.search, str(error)
+        except UndecidedError as error:
+            reason = str(error)
+        except FaultError:
+            return Attempt(None, cost)
+        if search is not None:
+            weight = _COST_OF_REDUCED if is_reduced else _COST_OF_ALL
+            cost += weight * (search.transitions + search.passed) // _COST_OF_BOTH
+        if exact is not None:
+            return Attempt(exact if exact.is_precise else None, cost)
+    return Attempt(None, cost, reason)
 
 
-def _has_many_states(search: Any) -> bool:
-    """Whether a search with reductions shows that a model is not small. Its states and those that it passes are reached
-    without reductions, too. Twice as many are required, because a state that is not remembered is passed repeatedly.
-    States of cycles are not counted."""
-    return bool(search.count + search.passed - search.circled > 2 * LIMITS.states)
+def _steps_to(limits: StateLimits) -> tuple[StateLimits, ...]:
+    """The limits of the searches that follow each other: if `limits` are much wider than `LIMITS`, these come first,
+    because the search without choices may be small where the one through all states is large."""
+    if limits.transitions is None or LIMITS.transitions is None or limits.transitions <= LIMITS.transitions:
+        return (limits,)
+    states = min(LIMITS.states, limits.states)
+    return replace(limits, states=states, transitions=LIMITS.transitions), limits
+
+
+def values_if_small(checker: ModelChecker, property_: CompiledProperty, *, leaves_out: bool = True) -> Exact | None:
+    """The exact values of a property within `LIMITS`; `None` if there are none."""
+    return attempt(checker, property_, LIMITS, leaves_out=leaves_out).exact
+
+
+class Budget:
+    """What is left of limits that several properties share. Each gets an equal share of what those before it have left,
+    but at least `LIMITS`."""
+
+    def __init__(self, limits: StateLimits = SHARED_LIMITS) -> None:
+        self._limits = limits
+        self._left = limits.transitions or 0
+        self._asked = 0
+
+    def share(self, properties: int) -> StateLimits:
+        """The limits of the next property of this number."""
+        others = max(1, properties - self._asked)
+        self._asked += 1
+        transitions = max(self._left // others, min(LIMITS.transitions or 0, self._limits.transitions or 0))
+        return replace(self._limits, transitions=transitions)
+
+    def spend(self, transitions: int) -> None:
+        self._left = max(0, self._left - transitions)
 
 
 def choices_of(exact: Exact, agreement: str = "") -> Choices:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 
-from roaml.explicit.space import ExplorationWatch, StateLimits
+from roaml.explicit.space import ExplorationProgress, ExplorationWatch, StateLimits
 from roaml.jani.properties import Property
 from roaml.jani.selection import PropertyError, select
 from roaml.record import Record, field, replace
@@ -23,15 +23,37 @@ from roaml.verification import stuck
 from roaml.verification.exhaustive import UndecidedError, check_exactly, exact_values
 from roaml.verification.expectations import Expectation, Verdict, check_expectation, check_range, is_possible
 from roaml.verification.explorations import Explorations, subject_of
+from roaml.verification.reactions import at_once
 from roaml.verification.refusal import refusal
-from roaml.verification.results import Exact, Result, SampledResult, Traces
+from roaml.verification.results import (
+    Computed,
+    Estimated,
+    Exact,
+    Refused,
+    Result,
+    Sampled,
+    SampledResult,
+    Traces,
+    Undecided,
+)
 from roaml.verification.schedulers import is_minimised, under_all_schedulers
 from roaml.verification.searches import Searches
-from roaml.verification.small import choices_of, values_if_small
+from roaml.verification.small import (
+    LIMITS,
+    MAX_EXAMPLE_STEPS,
+    SHARED_LIMITS,
+    Budget,
+    attempt,
+    choices_of,
+    values_if_small,
+)
 from roaml.verification.stuck import StuckLevel, StuckResult
 from roaml.verification.target import VerificationTarget
 from roaml.views.actors import actors
 from roaml.views.ends import marks, observer_outputs
+
+PULSE_INTERVAL_S = 0.1
+"""The interval between two calls of a pulse during an exploration, in s."""
 
 
 class NoThresholdError(ValueError):
@@ -83,6 +105,7 @@ def verifier_of(
     only_uniform: bool = False,
     exact_if_small: bool = False,
     example_traces: int | None = None,
+    limits: StateLimits | None = None,
 ) -> Verifier:
     """A target prepared for verification.
 
@@ -90,6 +113,7 @@ def verifier_of(
         properties: the names of the properties to verify; `None` for all. Properties with expectations are added.
         only_uniform: whether only uniform choices are considered, not the minimum or maximum over all schedulers.
         exact_if_small, example_traces: see `Verifier`.
+        limits: those of all searches for exact values together; `None` for `small.SHARED_LIMITS`.
 
     Raises:
         PropertyError: a property, or the property of an expectation, does not exist.
@@ -111,7 +135,16 @@ def verifier_of(
         for expectation in (*expectations, *target.expectations):
             if expectation.name == property_.question.name:
                 check_range(expectation, property_.question)
-    return Verifier(target, checker, options or Options(), expectations, only_uniform, exact_if_small, example_traces)
+    return Verifier(
+        target,
+        checker,
+        options or Options(),
+        expectations,
+        only_uniform,
+        exact_if_small,
+        example_traces,
+        budget=Budget(limits or SHARED_LIMITS),
+    )
 
 
 def expectations_of(property_: CompiledProperty, given: Iterable[Expectation]) -> tuple[Expectation, ...]:
@@ -130,20 +163,20 @@ def with_expectations(result: Result, given: Iterable[Expectation]) -> Result:
     Args:
         given: the expectations, also of other properties. Impossible ones (see `check_range`) are ignored.
     """
-    traces, answer = result.traces, result.answer
-    if traces is None or answer is None:
+    estimated = result.estimated
+    if estimated is None or estimated.traces is None:
         return result
-    expectations = [e for e in expectations_of(traces.compiled_property, given) if is_possible(e, answer.question)]
-    return replace(result, verdicts=_verdicts(expectations, answer, result.choices, result.exact))
+    question = estimated.answer.question
+    expectations = [e for e in expectations_of(estimated.traces.compiled_property, given) if is_possible(e, question)]
+    return replace(result, verdicts=_verdicts(expectations, estimated, result.exact))
 
 
 def _comment(property_: CompiledProperty) -> str:
     return property_.property.comment or ""
 
 
-def _verdicts(
-    expectations: Iterable[Expectation], answer: Answer, choices: Choices | None, exact: Exact | None
-) -> tuple[Verdict, ...]:
+def _verdicts(expectations: Iterable[Expectation], estimated: Estimated, exact: Exact | None) -> tuple[Verdict, ...]:
+    answer, choices = estimated.answer, estimated.choices
     if exact is not None:
         only_uniform, width = choices is None and not answer.question.is_stuck, answer.options.epsilon
         return tuple(
@@ -164,6 +197,7 @@ class Verifier(Record, frozen=True):
         example_traces: the number of traces that are generated for a result with exact values; `None` for the number
             that an estimate needs.
         explorations: the exact values that several properties share.
+        budget: the limits of all searches for exact values that are not requested.
     """
 
     target: VerificationTarget
@@ -174,6 +208,7 @@ class Verifier(Record, frozen=True):
     exact_if_small: bool = False
     example_traces: int | None = None
     explorations: Explorations = field(default_factory=Explorations)
+    budget: Budget = field(default_factory=Budget)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -256,7 +291,7 @@ class Verifier(Record, frozen=True):
         """
         self.check_method(property_)
         began = time.monotonic()
-        small = self._small(property_)
+        small = self._small(property_, pulse)
         options = self._trace_options(self._shown(small))
         answer = self.checker.answer(property_, options, pool, tally, watch, pulse)
         return self._finished(property_, answer, small, pool, pulse, began)
@@ -292,7 +327,7 @@ class Verifier(Record, frozen=True):
             seconds[property_.question.name] = time.monotonic() - began
             watch(property_, tally)
 
-        small = [self._small(property_) for property_ in properties]
+        small = [self._small(property_, pulse) for property_ in properties]
         groups: dict[Options, list[int]] = {}
         for i, exact in enumerate(small):
             groups.setdefault(self._trace_options(self._shown(exact)), []).append(i)
@@ -316,23 +351,38 @@ class Verifier(Record, frozen=True):
                 results.append(self.refused(name, fault))
         return results
 
-    def _small(self, property_: CompiledProperty) -> Exact | None:
+    def _small(self, property_: CompiledProperty, pulse: Pulse | None) -> Exact | None:
         """The exact values of a property, for its result or to compare schedulers; `None` if neither needs them, or if
         the model is too large."""
-        if self.exact_if_small or (self._considers_choices(property_) and not self.checker.is_deterministic):
-            leaves_out = self.exact_if_small
+        if self.exact_if_small:
             return self.explorations.exact(
-                self.checker,
-                property_,
-                leaves_out,
-                lambda: values_if_small(self.checker, property_, leaves_out=leaves_out),
+                self.checker, property_, "shared limits", lambda: self._within_budget(property_, pulse)
+            )
+        if self._considers_choices(property_) and not self.checker.is_deterministic:
+            return self.explorations.exact(
+                self.checker, property_, LIMITS, lambda: values_if_small(self.checker, property_, leaves_out=False)
             )
         return None
 
+    def _within_budget(self, property_: CompiledProperty, pulse: Pulse | None) -> Exact | None:
+        """The exact values of a property; `None` if the budget does not suffice."""
+        pulsed = time.monotonic()
+
+        def watch(_: ExplorationProgress) -> None:
+            nonlocal pulsed
+            if pulse is not None and time.monotonic() - pulsed > PULSE_INTERVAL_S:
+                pulsed = time.monotonic()
+                pulse(0, 0)
+
+        limits = self.budget.share(len(self.checker.compiled_properties))
+        attempted = attempt(self.checker, property_, limits, watch)
+        self.budget.spend(attempted.transitions)
+        return attempted.exact
+
     def _shown(self, small: Exact | None) -> Exact | None:
-        """The exact values that the result contains. If traces can get stuck, the result contains none, because the
-        value is doubtful and traces are needed as examples. If only the value under uniform choices is of interest, the
-        result contains no exact values without it."""
+        """The exact values that the result contains. If traces can get stuck, the result contains them only as the
+        values of other schedulers, because the value is doubtful and traces are needed as examples. If only the value
+        under uniform choices is of interest, the result contains no exact values without it."""
         if not self.exact_if_small or small is None or small.can_get_stuck:
             return None
         return None if self.only_uniform and small.uniform is None else small
@@ -340,7 +390,8 @@ class Verifier(Record, frozen=True):
     def _trace_options(self, exact: Exact | None) -> Options:
         if exact is None or exact.uniform is None or self.example_traces is None:
             return self.options
-        return replace(self.options, method=EstimationMethod.FIXED, max_traces=self.example_traces)
+        steps = min(self.options.max_steps, MAX_EXAMPLE_STEPS)
+        return replace(self.options, method=EstimationMethod.FIXED, max_traces=self.example_traces, max_steps=steps)
 
     def _finished(
         self,
@@ -363,7 +414,8 @@ class Verifier(Record, frozen=True):
                 choices = self.checker.choices(property_, answer, pool, pulse)
             else:
                 choices = choices_of(small, NO_NONDETERMINISM if self.checker.is_deterministic else "")
-        return self._with_verdicts(property_, answer, choices, time.monotonic() - began, self._shown(small))
+        result = self._with_verdicts(property_, answer, choices, time.monotonic() - began, self._shown(small))
+        return self._with_reactions(property_, result, began)
 
     def _considers_choices(self, property_: CompiledProperty) -> bool:
         """Whether the question is about all schedulers, not only about uniform choices."""
@@ -388,16 +440,21 @@ class Verifier(Record, frozen=True):
                 "set one (--expect), or use another method"
             )
 
-    def interrupted(self, property_: CompiledProperty, tally: Tally, seconds: float) -> Result:
-        """The result of a property so far, after an interruption."""
+    def interrupted(
+        self, property_: CompiledProperty, tally: Tally, seconds: float, *, is_partial: bool = True
+    ) -> Result:
+        """The result of a property so far, after an interruption.
+
+        Args:
+            is_partial: whether there are fewer traces than requested; other schedulers were not examined in any case.
+        """
         answer = summary(property_.question, self.options, tally)
         choices = None if self.only_uniform else Choices()
-        return replace(self._with_verdicts(property_, answer, choices, seconds), is_interrupted=True)
+        return self._with_verdicts(property_, answer, choices, seconds, is_interrupted=is_partial)
 
     def refused(self, name: str, fault: FaultError) -> Result:
         """The result of a property that cannot be answered."""
-        why = refusal(fault, self.target, self.options.seed)
-        return Result(name, None, (), 0.0, refusal=why, fault=fault)
+        return Result(name, Refused(refusal(fault, self.target, self.options.seed), fault))
 
     def sampled(
         self, property_: CompiledProperty, search: Search, seconds: float, *, is_interrupted: bool = False
@@ -420,17 +477,8 @@ class Verifier(Record, frozen=True):
         ]
         if own is not None:
             verdicts = [v if v.is_met else replace(v, under=f"under {own.words}") for v in verdicts]
-        return Result(
-            property_.question.name,
-            None,
-            tuple(verdicts),
-            seconds,
-            is_interrupted,
-            tuple(sampled),
-            search.tried,
-            stuck.shortest(result.stuck for result in sampled),
-            comment=_comment(property_),
-        )
+        outcome = Sampled(tuple(sampled), search.tried, is_interrupted)
+        return Result(property_.question.name, outcome, tuple(verdicts), seconds, _comment(property_))
 
     def searches(self, limits: StateLimits, jobs: int = 1) -> Searches:
         """The searches for all properties, at most `jobs` of them at the same time."""
@@ -447,7 +495,7 @@ class Verifier(Record, frozen=True):
         watch: ExplorationWatch | None = None,
         searches: Searches | None = None,
     ) -> Result:
-        """The exact values of a property, from all states; `Result.undecided` if there are none (see `exact_values`).
+        """The exact values of a property, from all states; undecided if there are none (see `exact_values`).
 
         Args:
             watch: called several times during the search.
@@ -474,17 +522,26 @@ class Verifier(Record, frozen=True):
             assert exact is not None
         except UndecidedError as error:
             open_ = tuple(Verdict(expectation, False, False, under="so far") for expectation in expectations)
-            return Result(
-                property_.question.name,
-                None,
-                open_,
-                seconds(),
-                undecided=str(error),
-                growing=error.growing,
-                comment=_comment(property_),
-            )
+            undecided = Undecided(str(error), error.growing)
+            return Result(property_.question.name, undecided, open_, seconds(), _comment(property_))
         verdicts = tuple(check_exactly(expectation, exact, property_.question) for expectation in expectations)
-        return Result(property_.question.name, None, verdicts, seconds(), exact=exact, comment=_comment(property_))
+        outcome = Computed(property_.question, exact)
+        result = Result(property_.question.name, outcome, verdicts, seconds(), _comment(property_))
+        return self._with_reactions(property_, result, time.monotonic() - seconds())
+
+    def _with_reactions(self, property_: CompiledProperty, result: Result, began: float) -> Result:
+        """The result, with the values if machines react at once if schedulers disagree."""
+        if not self._considers_choices(property_):
+            return result
+        under = at_once(
+            self.target,
+            property_,
+            result.outcome,
+            lambda target: self.explorations.checker(lambda: checker_of(target, self.names)),
+        )
+        if under is None:
+            return result
+        return replace(result, conditional=(*result.conditional, under), seconds=time.monotonic() - began)
 
     def check_stuck(self, level: StuckLevel = StuckLevel.WARNING, pulse: Pulse | None = None) -> StuckResult:
         """Generate traces to check whether the system gets stuck. `stuck.can_be_stuck` must be true for the model."""
@@ -497,15 +554,12 @@ class Verifier(Record, frozen=True):
         choices: Choices | None,
         seconds: float,
         exact: Exact | None = None,
+        *,
+        is_interrupted: bool = False,
     ) -> Result:
-        return Result(
-            property_.question.name,
-            answer,
-            _verdicts(self.expected(property_), answer, choices, exact),
-            seconds,
-            stuck=stuck.stuck_in(self.target, self.checker, property_, answer),
-            exact=exact,
-            choices=choices,
-            traces=Traces(self.target, self.checker, property_, self.options),
-            comment=_comment(property_),
-        )
+        got_stuck = stuck.stuck_in(self.target, self.checker, property_, answer)
+        traces = Traces(self.target, self.checker, property_, self.options)
+        estimated = Estimated(answer, choices, got_stuck, traces, is_interrupted)
+        verdicts = _verdicts(self.expected(property_), estimated, exact)
+        outcome = estimated if exact is None else Computed(property_.question, exact, estimated)
+        return Result(property_.question.name, outcome, verdicts, seconds, _comment(property_))

@@ -79,10 +79,13 @@ def _mermaid_flow(graph: Graph) -> Iterator[str]:
 
 
 def _mermaid_title(graph: Graph) -> Iterator[str]:
-    yield from ("---", f"title: {json.dumps(graph.title, ensure_ascii=False)}", "---")
+    title = json.dumps(graph.title, ensure_ascii=False).translate({ord(c): f"\\u{ord(c):04x}" for c in "<>&"})
+    yield from ("---", f"title: {title}", "---")
 
 
-_MERMAID_ENTITIES = {ord(c): f"#{ord(c)};" for c in '"#;:<>{}[]|&'}
+_CONTROL = dict.fromkeys(range(32), " ")
+"""Names may contain line ends, which would begin another line of the diagram."""
+_MERMAID_ENTITIES = {ord(c): f"#{ord(c)};" for c in '"#;:<>{}[]|&%'} | _CONTROL
 
 
 def _mermaid_text(lines: Iterable[str]) -> str:
@@ -97,7 +100,7 @@ def _plantuml(graph: Graph) -> Iterator[str]:
     names = _names(graph)
     element = "state" if graph.kind is Kind.STATES else "rectangle"
     yield "@startuml"
-    yield f"title {graph.title}"
+    yield f"title {_plantuml_escaped(graph.title)}"
     if graph.kind is not Kind.TREE:
         yield "left to right direction"
     for node in graph.nodes:
@@ -106,13 +109,19 @@ def _plantuml(graph: Graph) -> Iterator[str]:
         yield f"[*] --> {names[graph.initial]}"
     for link in graph.links:
         if link.source in names and link.target in names:
-            label = " : " + "\\n".join(link.lines) if link.lines else ""
+            label = " : " + "\\n".join(map(_plantuml_escaped, link.lines)) if link.lines else ""
             yield f"{names[link.source]} --> {names[link.target]}{label}"
     yield "@enduml"
 
 
 def _plantuml_text(node: GraphNode) -> str:
-    return '"' + "\\n".join(line.replace('"', "<U+0022>") for line in node.lines) + '"'
+    return '"' + "\\n".join(map(_plantuml_escaped, node.lines)) + '"'
+
+
+def _plantuml_escaped(line: str) -> str:
+    """A text without quotes, which end a string, and without tags, which PlantUML interprets: `<img:…>` reads
+    a file."""
+    return line.translate({ord(c): f"<U+{ord(c):04X}>" for c in '"<'} | _CONTROL)
 
 
 def _names(graph: Graph) -> dict[str, str]:

@@ -182,7 +182,7 @@ def _mermaid(story: Story, place_of: PlaceOf, first: int) -> Iterator[str]:
         place = "" if wait.origin is None else f" ({place_of(wait.origin)})"
         body.append(f"Note over {names.setdefault(wait.who, f'A{len(names)}')}: {_escaped(wait.what + place)}")
     yield "sequenceDiagram"
-    yield f"    %% {heading(story)}"
+    yield f"    %% {heading(story).translate(_COMMENT_CODES)}"
     for name, short in names.items():
         yield f"    participant {short} as {_escaped(name)}"
     yield from (f"    {line}" for line in body)
@@ -306,9 +306,10 @@ def _short(text: str) -> str:
 
 
 def _escaped(text: str) -> str:
-    """A text in which `;` and `#` are escaped: Mermaid ends a line at `;` and reads `#` as the start of a character's
-    number."""
+    """A text without characters that have a meaning in Mermaid or HTML: Mermaid ends a line at `;`, reads `#` as the
+    start of a character's number, and interprets tags."""
     return text.translate(_CODES)
 
 
-_CODES = {ord(character): f"#{ord(character)};" for character in "#;:%"}
+_CODES = {ord(character): f"#{ord(character)};" for character in "#;:%<>&"} | dict.fromkeys(range(32), " ")
+_COMMENT_CODES = {ord(character): f"#{ord(character)};" for character in "<>&"} | dict.fromkeys(range(32), " ")

@@ -24,7 +24,18 @@ from roaml.project.exclude import NOTHING
 from roaml.record import replace
 
 NAMES = ("as2fm.toml", "pyproject.toml", "package.xml", "msg/Level.msg")
-_KEYS = ("roots", "ros-path", "exclude", "select", "ignore", "severity", "warnings-as-errors", "max-cells", "max-parts")
+_KEYS = (
+    "roots",
+    "ros-path",
+    "exclude",
+    "select",
+    "ignore",
+    "severity",
+    "warnings-as-errors",
+    "max-cells",
+    "max-parts",
+    "reaction-time",
+)
 _SIMPLE = ("true", "1", "-1", "0", "1e400", "inf", "'.'", "'../..'", "['.']", "['/']", "[]", "{}", "1979-01-01")
 _VALUES = (
     *_SIMPLE,

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 from collections.abc import Callable, Sequence
 from functools import cached_property
@@ -77,6 +76,8 @@ class Entry(Record, frozen=True, dict=True):
         around = self.source.text[
             max(self.line.start, at - _CONTEXT_CHARACTERS) : min(self.line.end, at + _CONTEXT_CHARACTERS)
         ]
+        import hashlib  # noqa: PLC0415 - only formats with fingerprints need it
+
         parts = (slashed(file), self.code, self.message, around.strip())
         return hashlib.sha256("\0".join(parts).encode("utf-8", "surrogatepass")).hexdigest()[:32]
 

@@ -31,6 +31,7 @@ from roaml.expr.types import (
 )
 from roaml.expr.zero import zero_text
 from roaml.ide.completion import property_files
+from roaml.ide.completion.compared_values import compared_values
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
 from roaml.ide.completion.request import CompletionSubject, Request
 from roaml.ide.names.occurrence import variable
@@ -134,6 +135,8 @@ def in_expression(
     items = [_variable(request, name, type_, required_type) for name, type_ in variables.items()]
     if property_files.is_property_file(request):
         items += property_files.compared_values(request, start)
+    elif request.machine is not None:
+        items += compared_values(request, start, scope)
     items += [
         CompletionItem(
             name,

@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
+from roaml.durations import NANOSECONDS
 from roaml.ide.describe.language import number
 from roaml.ide.describe.machine import duration, rate
 from roaml.ide.describe.markdown import name
-from roaml.model.parameters import NANOSECONDS
 from roaml.xml_syntax import Attribute, Element
 
 

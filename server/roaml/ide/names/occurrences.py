@@ -34,7 +34,7 @@ def uses(analysis: Analysis, path: str, system: str | None) -> Uses:
     source = analysis.source(path)
     if source is None:
         return _index(())
-    key: tuple[object, ...] = (source.digest, analysis.structs(system))
+    key: tuple[object, ...] = (source.text, analysis.structs(system))
     if analysis.kind_in(path, system) is FileKind.MACHINE and analysis.machine(path) is not None:
         key = (*key, analysis.typed_in(path, system))  # contains everything of the system on which the uses depend
     else:

@@ -10,7 +10,7 @@ from roaml.expr.types import Struct, StructKind, Type, unwrap
 from roaml.ide.names.lookup import SymbolGroup, SymbolUse, occurrences_at, symbol_group, symbol_group_at
 from roaml.ide.names.occurrence import DEFINED_BY_ROS, HANDLES, Access
 from roaml.ide.navigation.interface_files import locate_ros, locate_type, type_of_field
-from roaml.lower.nodes import node_file
+from roaml.lower.programs.assembly import program_place
 from roaml.model.expand import tree_called
 from roaml.model.system import System
 from roaml.model.tree import nodes
@@ -103,11 +103,11 @@ def _ros(analysis: Analysis, symbols: Iterable[Symbol]) -> tuple[Location, ...]:
 
 
 def _builtin(symbols: Iterable[Symbol]) -> Iterator[Location]:
-    """The machines for nodes of BehaviorTree.CPP, which define the behavior of the nodes in the translation."""
+    """The programs of the nodes of BehaviorTree.CPP, which define the behavior of the nodes in the translation."""
     for symbol in symbols:
-        file = node_file(symbol.name) if symbol.kind is SymbolKind.PLUGIN and not symbol.path else None
-        if file is not None:
-            yield Location(file, Span(0, 0))
+        place = program_place(symbol.name) if symbol.kind is SymbolKind.PLUGIN and not symbol.path else None
+        if place is not None:
+            yield place
 
 
 def _in_subtree(analysis: Analysis, path: str, offset: int, group: SymbolGroup) -> tuple[Location, ...]:

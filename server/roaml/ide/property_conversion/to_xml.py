@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from xml.sax.saxutils import escape, quoteattr
 
+from roaml.durations import NANOSECONDS
 from roaml.expr.format import format_expr
 from roaml.expr.operators import Operator, UnaryOperator
 from roaml.expr.tree import Binary, Boolean, Expr, Name, Number, Unary
@@ -19,7 +20,6 @@ from roaml.jani.expressions import Expression
 from roaml.jani.operators import BinaryOperator
 from roaml.jani.operators import UnaryOperator as JaniUnary
 from roaml.model.globals import GlobalVariable
-from roaml.model.parameters import NANOSECONDS
 from roaml.model.property_file import PortKind, PortVariableKind, build_property_file
 from roaml.model.property_ports import FindInterface, LinkedPort, PortLinker, part_of
 from roaml.model.ros import InterfaceType

@@ -1,59 +1,40 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes of BehaviorTree.CPP as HL-SCXML machines (docs/spec/nodes.md).
+"""The nodes of BehaviorTree.CPP that AS2FM executes in another way, as HL-SCXML machines, for systems with the
+semantics of AS2FM (docs/spec/nodes.md#as2fm).
 
-Each node is a document in the directory of this module, except `Switch2` to `Switch6`, which are generated on demand.
-The machines have some ports that are not in the schema; this module sets them.
+Each node is a document in the directory of this module. The machines have a port that is not in the schema, the number
+of children; this module sets it.
 """
 
 from __future__ import annotations
 
 import functools
 import importlib.resources
-from fractions import Fraction
 
 from roaml.language import BEHAVIOR_TREE
 from roaml.libraries import BEHAVIORTREE_CPP, library
-from roaml.lower.nodes.switch import switch
-from roaml.lower.program import TranslatableSystem
 from roaml.model.build_machine import build_machine
 from roaml.model.machine import Machine
 from roaml.model.system import CHILDREN_COUNT, SystemAutomaton
 from roaml.xml_syntax import parse
 
-_SWITCHES = {f"Switch{cases}": cases for cases in range(2, 7)}
-_MILLISECONDS_PER_SECOND = 1000
 
-
-def builtin_machine(automaton: SystemAutomaton, program: TranslatableSystem) -> Machine:
+def builtin_machine(automaton: SystemAutomaton) -> Machine:
     """The machine for a node of BehaviorTree.CPP."""
-    name = automaton.outline.name
-    if name in _SWITCHES:
-        return _parsed(switch(name, _SWITCHES[name], program.system.any_type(automaton)))
     slots = _children(automaton) + 1
     none_ended = f"[{', '.join(['false'] * slots)}]"
-    text = _resource(_current(name))
+    text = _resource(_current(automaton.outline.name))
     return _parsed(text.replace("SLOTS", str(slots)).replace("NONE_ENDED", none_ended))
 
 
-def builtin_ports(automaton: SystemAutomaton, program: TranslatableSystem) -> dict[str, str]:
-    """The values of the ports of a node that the tree does not set: the defaults of the schema, the number of children,
-    and the rate of the tree."""
-    rate = Fraction(str(program.parameters.tick_rate))
-    ports = {
-        CHILDREN_COUNT: str(_children(automaton)),
-        "TICKS": str(rate.numerator),
-        "TICKS_MSEC": str(rate.denominator * _MILLISECONDS_PER_SECOND),
-    }
+def builtin_ports(automaton: SystemAutomaton) -> dict[str, str]:
+    """The values of the ports of a node that the tree does not set: the defaults of the schema, and the number of
+    children."""
+    ports = {CHILDREN_COUNT: str(_children(automaton))}
     for attribute in BEHAVIOR_TREE.elements[automaton.outline.name].ports:
         if attribute.port and attribute.port.default:
             ports[attribute.name] = attribute.port.default
     return ports
-
-
-def node_file(name: str) -> str | None:
-    """The path of the document for a node of BehaviorTree.CPP; `None` if there is none, or if it is generated."""
-    file = importlib.resources.files(__name__) / f"{_current(name)}.ascxml"
-    return str(file) if name in BEHAVIOR_TREE.elements and file.is_file() else None
 
 
 def _current(name: str) -> str:

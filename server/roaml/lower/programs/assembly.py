@@ -10,11 +10,14 @@ from __future__ import annotations
 import ast
 import functools
 import importlib.resources
+import re
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple, TypeAlias
 
+from roaml.libraries import BEHAVIORTREE_CPP, library
 from roaml.libraries.version import NEWEST_VERSION, Version
 from roaml.record import Record, field
+from roaml.text import Location, Span
 
 FILES = ("behaviortree_cpp.txt", "nav2.txt", "leaves.txt")
 
@@ -201,19 +204,65 @@ class NodeProgram(Record, frozen=True, dict=True):
         return any(isinstance(probability, ast.Name) and probability.id == "event" for probability in choices)
 
 
+class Programs(Mapping[str, NodeProgram]):
+    """The programs of a version of BehaviorTree.CPP by the names of the nodes. A program is compiled when it is used
+    for the first time."""
+
+    def __init__(self, version: Version) -> None:
+        self._texts: list[str] = []
+        self._places: dict[str, list[int]] = {}
+        self._compiled: dict[int, NodeProgram] = {}
+        for file in FILES:
+            text = (importlib.resources.files(__package__) / "definitions" / file).read_text(encoding="utf-8")
+            for match in _CLASS.finditer(text):
+                if match["before"] is None or version < _version(match["before"]):
+                    self._places.setdefault(match["name"], []).append(len(self._texts))
+                    self._texts.append(match["text"])
+
+    def __getitem__(self, name: str) -> NodeProgram:
+        return self._at(self._places[name][-1])
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._places
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._places)
+
+    def __len__(self) -> int:
+        return len(self._places)
+
+    def _at(self, place: int) -> NodeProgram:
+        """The program whose text has the index `place`. Its base class is the last one before it with that name."""
+        if place not in self._compiled:
+            (definition,) = ast.parse(self._texts[place]).body
+            assert isinstance(definition, ast.ClassDef)
+            bases = [base.id for base in definition.bases if isinstance(base, ast.Name)]
+            before = [known for name in bases for known in self._places[name] if known < place]
+            self._compiled[place] = _program(definition, self._at(before[-1]) if before else None)
+        return self._compiled[place]
+
+
+_CLASS = re.compile(
+    r'^(?:@before\("(?P<before>[0-9.]+)"\)\n)?(?P<text>class (?P<name>\w+).*\n(?:(?:[ ].*)?\n)*)', re.MULTILINE
+)
+"""The definition of a program in a file. The decorator `before` restricts it to older versions."""
+
+
 @functools.cache
-def programs(version: Version = NEWEST_VERSION) -> Mapping[str, NodeProgram]:
+def programs(version: Version = NEWEST_VERSION) -> Programs:
     """Name of a node -> its program in a version of BehaviorTree.CPP."""
-    result: dict[str, NodeProgram] = {}
+    return Programs(version)
+
+
+def program_place(name: str) -> Location | None:
+    """The place of the program of a node of a library; `None` if there is none."""
+    renamed = library(BEHAVIORTREE_CPP).renamed.get(name)
     for file in FILES:
-        text = (importlib.resources.files(__package__) / "definitions" / file).read_text(encoding="utf-8")
-        for statement in ast.parse(text).body:
-            assert isinstance(statement, ast.ClassDef)
-            if not _is_in(version, statement):
-                continue
-            program = _program(statement, result)
-            result[program.name] = program
-    return result
+        source = importlib.resources.files(__package__) / "definitions" / file
+        match = re.search(rf"^class ({re.escape(renamed.now if renamed else name)})\b", source.read_text("utf-8"), re.M)
+        if match is not None:
+            return Location(str(source), Span(*match.span(1)))
+    return None
 
 
 @functools.cache
@@ -234,22 +283,15 @@ def halted(given: frozenset[str]) -> tuple[Instruction, ...]:
     return _Assembler(given).function(ast.parse('script("_onHalted")').body)
 
 
-def _is_in(version: Version, definition: ast.ClassDef) -> bool:
-    """Whether a version of BehaviorTree.CPP has the program `definition`. The decorator `before` restricts a program to
-    older versions."""
-    match definition.decorator_list:
-        case [ast.Call(func=ast.Name(id="before"), args=[ast.Constant(value=str(first))])]:
-            major, _, minor = first.partition(".")
-            return version < Version(int(major), int(minor), 0)
-        case []:
-            return True
-    raise AssertionError(ast.dump(definition))
+def _version(text: str) -> Version:
+    """The first patch of a version such as `4.7`."""
+    major, _, minor = text.partition(".")
+    return Version(int(major), int(minor), 0)
 
 
-def _program(definition: ast.ClassDef, known: Mapping[str, NodeProgram]) -> NodeProgram:
+def _program(definition: ast.ClassDef, base: NodeProgram | None) -> NodeProgram:
     """The program that a class defines. A class with a base class has the statements of the base, and may set other
     initial values."""
-    base = known[definition.bases[0].id] if definition.bases and isinstance(definition.bases[0], ast.Name) else None
     fixed = dict(base.fixed) if base else {}
     variables = dict(base.variables) if base else {}
     flags = list(base.flags) if base else []

@@ -82,7 +82,7 @@ def node_automaton(code: NodeCode) -> NodeAutomaton:
     automaton = explorer.automaton()
     conditions = {name for name in code.scripts if name.startswith("_")}
     stateless = code.program.is_stateless and not conditions and not code.is_halted_always
-    return NodeAutomaton(automaton, Child(code.address, frozenset(explorer.answers), stateless))
+    return NodeAutomaton(automaton, Child(code.address, frozenset(explorer.answers), stateless, code.origin))
 
 
 Fixed: TypeAlias = "tuple[tuple[str, Known], ...]"
@@ -453,7 +453,7 @@ class _Explorer(Record, eq=False, dict=True):
 
     def tick(self, number: int, target: str, following: Place, execution: _Execution) -> str:
         child = self.code.children[number]
-        execution.body.append(Send(tree_event(child.address, TreeEventKind.TICK), (), self.code.origin))
+        execution.body.append(Send(tree_event(child.address, TreeEventKind.TICK), (), child.origin))
         return self.state("ticking", _Ticking(following, _frozen(execution.fixed), number, target))
 
     def reset(self, number: int, following: Place, execution: _Execution) -> str | None:
@@ -462,7 +462,7 @@ class _Explorer(Record, eq=False, dict=True):
         execution.fixed[_TOUCHED] = touched & ~(1 << number)
         if child.is_stateless or not touched & (1 << number):
             return None
-        execution.body.append(Send(tree_event(child.address, TreeEventKind.HALT), (), self.code.origin))
+        execution.body.append(Send(tree_event(child.address, TreeEventKind.HALT), (), child.origin))
         return self.state("halting", _Halting(following, _frozen(execution.fixed), number))
 
     # -------------------------------------------------------------- blackboard

@@ -44,11 +44,13 @@ class Child(Record, frozen=True, eq=False):
         address: the address of the child in names of events: its number, or another word.
         answers: the codes with which it may answer.
         is_stateless: whether resetting the child has no effect.
+        origin: the place of the child, which is that of its ticks and halts.
     """
 
     address: str
     answers: frozenset[int]
     is_stateless: bool
+    origin: Location
 
 
 class NodeCode(Record, frozen=True, eq=False):

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 
 from roaml.forest.cpp_types import mismatch
 from roaml.forest.forest import CPP, port_type
-from roaml.libraries import Port, node_in_libraries
+from roaml.libraries import LIBRARIES, Port, library, node_in_libraries
 from roaml.libraries.node import EVENT_ATTRIBUTE
 from roaml.libraries.scripts import script_ports
 from roaml.libraries.version import NEWEST_VERSION, Version
@@ -194,7 +194,9 @@ class _Reader(Record, eq=False):
                 if entry in board.entries:
                     bound[port.name] = board.entries[entry]
                 elif port.name in program.needed_ports:
-                    raise TreeRefusal(Location(node.origin.path, span), board.unset(entry))
+                    # In systems, the rule blackboard-never-written reports it.
+                    is_reported = board.in_system and not any(entry in library(name).entries for name in LIBRARIES)
+                    raise TreeRefusal(Location(node.origin.path, span), board.unset(entry), is_reported=is_reported)
                 continue
             if text is None:
                 continue

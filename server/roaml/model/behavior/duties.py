@@ -10,19 +10,22 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import TypeAlias
 
+from roaml.expr.tree import Name
 from roaml.model.behavior.explore import UNKNOWN_STATE, Behavior, BehaviorStep, ChartConfiguration
-from roaml.model.behavior.phases import Duty, DutyKind, Phase
+from roaml.model.behavior.phases import Duty, DutyKind, GoalStatus, Phase, ProtocolEvent
+from roaml.model.machine import RosSend
 from roaml.roles import ProtocolPart
 
 Possible: TypeAlias = Callable[[BehaviorStep], bool]
 
-_TAKING = {
+TAKING = {
     DutyKind.TICK: ProtocolPart.BT_TICK,
     DutyKind.HALT: ProtocolPart.BT_HALT,
     DutyKind.REQUEST: ProtocolPart.REQUEST,
     DutyKind.GOAL: ProtocolPart.GOAL,
     DutyKind.RESULT: ProtocolPart.THREAD_START,
 }
+"""The kind of a duty -> the event that creates it; a goal creates the duty to send a result when it is accepted."""
 
 
 _FOLLOWING = (
@@ -44,8 +47,34 @@ def unfinished(behavior: Behavior, duty: Duty, possible: Possible = always) -> f
     answer."""
     owing = frozenset(n for n, c in enumerate(behavior.configurations) if _is_due(c, duty))
     steps = [step for step in behavior.steps if step.source in owing and possible(step)]
-    answered = _back({step.source for step in steps if step.target not in owing}, steps)
+    answered = backward({step.source for step in steps if _is_answered(behavior, step, duty, owing)}, steps)
     return owing - answered
+
+
+def _is_answered(behavior: Behavior, step: BehaviorStep, duty: Duty, owing: frozenset[int]) -> bool:
+    """Whether the answer to `duty` that the source of a step owes is sent in the step, or can still be sent after it
+    although the machine owes several answers then."""
+    target = behavior.configurations[step.target]
+    if target.answering(duty) is Phase.SEVERAL:
+        return keeps_goals(behavior, target, duty.handle)
+    if duty.kind is DutyKind.RESULT and ProtocolEvent(ProtocolPart.RESULT, duty.handle) in step.sent:
+        return True  # the goal is ended, and possibly the next one accepted
+    return step.target not in owing
+
+
+def keeps_goals(behavior: Behavior, configuration: ChartConfiguration, handle: str) -> bool:
+    """Whether a server that executes several goals may hold the ids of all of them: in two variables, or where the
+    graph does not follow them, such as in an array."""
+    ended_by = [
+        statement.goal_id.tree
+        for statement in behavior.chart.statements
+        if isinstance(statement, RosSend) and statement.goal_id is not None and statement.part is ProtocolPart.RESULT
+    ]
+    if not all(isinstance(tree, Name) for tree in ended_by):
+        return True
+    held = [held for _, held in configuration.ids]
+    running = sum(id_.status is GoalStatus.ACCEPTED and id_.of == handle for id_ in held)
+    return running > 1 or any(id_.status is GoalStatus.ANY for id_ in held)
 
 
 def _is_due(configuration: ChartConfiguration, duty: Duty) -> bool:
@@ -68,66 +97,31 @@ def untaken(behavior: Behavior, duty: Duty, possible: Possible = always) -> froz
         for n, c in enumerate(behavior.configurations)
         if c.state != UNKNOWN_STATE and not c.owes(duty) and c.tree not in (Phase.TICKED, Phase.HALTING)
     )
-    taking = {step.source for step in behavior.steps if step.event and step.event.part is _TAKING[duty.kind]}
+    taking = {step.source for step in behavior.steps if step.event and step.event.part is TAKING[duty.kind]}
     known = {n for n, c in enumerate(behavior.configurations) if c.state == UNKNOWN_STATE}
     between = [
         step
         for step in behavior.steps
         if possible(step) and not (step.event and step.event.part in (ProtocolPart.BT_TICK, ProtocolPart.BT_HALT))
     ]
-    lost = waiting - _back((taking & waiting) | known, between)
+    lost = waiting - backward((taking & waiting) | known, between)
     # Leave out configurations that the machine leaves on an event that follows without a further tick or request.
     left = {
         step.source
         for step in between
-        if step.source in lost and step.target in lost and _follows(step) and _moves(behavior, step)
+        if step.source in lost and step.target in lost and follows(step) and moves(behavior, step)
     }
     return (lost - left) or lost
 
 
-def _follows(step: BehaviorStep) -> bool:
+def follows(step: BehaviorStep) -> bool:
+    """Whether a step is eventless or receives an answer that the machine waits for."""
     return step.event is None or step.event.part in _FOLLOWING
 
 
-def _moves(behavior: Behavior, step: BehaviorStep) -> bool:
+def moves(behavior: Behavior, step: BehaviorStep) -> bool:
     """Whether a step leads to another state."""
     return behavior.configurations[step.source].state != behavior.configurations[step.target].state
-
-
-def dead_ends(behavior: Behavior, duty: Duty) -> Iterator[BehaviorStep]:
-    """The steps to report because the answer to `duty` is not sent after them.
-
-    After the step that makes the answer impossible, the machine may still wait for events that it has caused, such as
-    the response to a request. Then the step that handles the last of these events is returned, because the answer is
-    missing there. But if the machine waits in a state that handles the next event of `duty`, such as the next tick, the
-    step that leads into this state is returned.
-    """
-    lost = unfinished(behavior, duty)
-    inside = [step for step in behavior.steps if step.source in lost and step.target in lost]
-    following = [step for step in inside if _follows(step)]
-    going_on = _back({step.source for step in following if step.source != step.target}, inside)
-    if going_on >= lost:
-        going_on, following = set(), []  # the steps form endless cycles: report the steps that lead into them
-    takers = (s for s in behavior.chart.states if any(h.trigger is _TAKING[duty.kind] for h in s.handlers))
-    ready = {state.id.value for state in takers if state.id}
-    early: set[int] = set()
-    for step in entering(behavior, lost):
-        if step.target not in going_on:
-            yield step
-        elif behavior.configurations[step.target].state in ready and _moves(behavior, step):
-            early.add(step.target)
-            yield step
-    reported = _forward(early, inside)
-    for step in following:
-        if step.target not in going_on and step.source not in reported and (step.source in going_on or step.ignored):
-            yield step
-
-
-def waiting_behind(behavior: Behavior, duty: Duty, step: BehaviorStep) -> set[int]:
-    """The configurations that owe an answer to `duty` that is never sent, and that are the target of `step` or can be
-    reached from it."""
-    lost = unfinished(behavior, duty)
-    return _forward({step.target} & lost, (s for s in behavior.steps if s.source in lost and s.target in lost))
 
 
 def is_suspicious(behavior: Behavior) -> bool:
@@ -138,7 +132,7 @@ def is_suspicious(behavior: Behavior) -> bool:
     if behavior not in known:
         events = {step.event for step in behavior.steps if step.event is not None}
         duties = {
-            Duty(kind, e.name) for e in events for kind, part in _TAKING.items() if e.part in (part, ProtocolPart.GOAL)
+            Duty(kind, e.name) for e in events for kind, part in TAKING.items() if e.part in (part, ProtocolPart.GOAL)
         }
         tree_duties = [duty for duty in duties if duty.kind.is_of_tree]
         known[behavior] = (
@@ -172,12 +166,12 @@ def distances(behavior: Behavior, configurations: frozenset[int]) -> dict[int, i
     return distance
 
 
-def _back(goals: set[int], steps: Iterable[BehaviorStep]) -> set[int]:
+def backward(goals: set[int], steps: Iterable[BehaviorStep]) -> set[int]:
     """`goals`, and the configurations from which a path of `steps` leads to one of them."""
     return _reached(goals, ((step.target, step.source) for step in steps))
 
 
-def _forward(first: set[int], steps: Iterable[BehaviorStep]) -> set[int]:
+def forward(first: set[int], steps: Iterable[BehaviorStep]) -> set[int]:
     """`first`, and the configurations to which a path of `steps` leads from one of them."""
     return _reached(first, ((step.source, step.target) for step in steps))
 

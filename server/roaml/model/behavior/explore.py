@@ -24,6 +24,7 @@ from roaml.expr.tree import ErrorExpr, Expr, Name, access_path, walk
 from roaml.model.behavior.knowledge import NOTHING, ConditionFacts, Domain, Knowledge, is_literal, variables_in
 from roaml.model.behavior.phases import (
     ANY_ID,
+    AWAITED_ANSWER,
     HALT,
     OWED,
     TICK,
@@ -323,12 +324,6 @@ _ANSWERABLE = (
 """Events that must be answered, or that are answers: an automaton waits forever if one is discarded because no
 condition holds."""
 _CODES = (4, 5, 6)
-_ANSWERED = {
-    ProtocolPart.RESPONSE: Subject.RESPONSE,
-    ProtocolPart.RESULT: Subject.OUTCOME,
-    ProtocolPart.GOAL_RESPONSE: Subject.DECISION,
-}
-"""The event that a client receives -> the answer that it brings."""
 _ARRIVED = {
     ProtocolPart.GOAL: GoalStatus.ASKED,
     ProtocolPart.THREAD_START: GoalStatus.ACCEPTED,
@@ -631,7 +626,7 @@ class _Explorer(Record, eq=False, dict=True):
                 is_followed = self.thread or event.name not in self.threaded
                 return not is_followed or configuration.phase(Subject.RESULT, event.name) is not None
             case ProtocolPart.RESPONSE | ProtocolPart.RESULT | ProtocolPart.GOAL_RESPONSE:
-                return configuration.phase(_ANSWERED[event.part], event.name) is not None
+                return configuration.phase(AWAITED_ANSWER[event.part], event.name) is not None
         return True
 
     def _react(self, configuration: ChartConfiguration, number: int, group: _Group) -> None:
@@ -742,7 +737,7 @@ class _Explorer(Record, eq=False, dict=True):
             case ProtocolPart.THREAD_START:
                 return path.at(Subject.RESULT, event.name, Phase.DUE)
             case ProtocolPart.RESPONSE | ProtocolPart.RESULT | ProtocolPart.GOAL_RESPONSE:
-                subject = _ANSWERED[event.part]
+                subject = AWAITED_ANSWER[event.part]
                 several = path.phase(subject, event.name) is Phase.SEVERAL
                 return path if several else path.at(subject, event.name, None)
         return path
@@ -939,8 +934,10 @@ class _Explorer(Record, eq=False, dict=True):
         goals = (GoalStatus.ACCEPTED, GoalStatus.EARLIER)
         path = self._checked_id(statement, path, duty, goals)
         variable = statement.goal_id.tree if statement.goal_id else None
+        was_earlier = False
         if isinstance(variable, Name):
             held = path.held(variable.name)
+            was_earlier = held == HeldId(GoalStatus.EARLIER, handle)
             if held is not None and held.of == handle and held.status in goals:
                 path = path.holding(variable.name, HeldId(GoalStatus.FINISHED, handle))
         if len(path.faults) > before:
@@ -948,6 +945,8 @@ class _Explorer(Record, eq=False, dict=True):
         if handle in self.threaded and not self.thread:
             return path
         match path.phase(Subject.RESULT, handle):
+            case Phase.SEVERAL if was_earlier and not path.variable_with(HeldId(GoalStatus.EARLIER, handle)):
+                return path.at(Subject.RESULT, handle, Phase.DUE)  # only the goal that has just arrived is left
             case Phase.DUE:
                 return path.at(Subject.RESULT, handle, None)
             case None:

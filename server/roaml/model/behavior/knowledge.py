@@ -87,7 +87,9 @@ class Domain(Record, frozen=True):
             return None
         if low == high:
             return Domain(frozenset((low,)))
-        excluded = frozenset(e for e in self.excluded if isinstance(e, str) or low <= e <= high)
+        excluded = self.excluded
+        if math.isfinite(low) or math.isfinite(high):
+            excluded = frozenset(e for e in excluded if isinstance(e, str) or low <= e <= high)
         return Domain(None, excluded, low, high, low_open, high_open)
 
 

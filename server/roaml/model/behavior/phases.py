@@ -79,6 +79,13 @@ class Phase(Vocabulary):
 OWED = {DutyKind.REQUEST: Subject.REQUEST, DutyKind.GOAL: Subject.GOAL, DutyKind.RESULT: Subject.RESULT}
 """Kind of duty -> the subject whose phase states whether the server owes the answer."""
 
+AWAITED_ANSWER = {
+    ProtocolPart.RESPONSE: Subject.RESPONSE,
+    ProtocolPart.RESULT: Subject.OUTCOME,
+    ProtocolPart.GOAL_RESPONSE: Subject.DECISION,
+}
+"""The event that a client receives -> the answer that it brings."""
+
 
 class GoalStatus(Vocabulary):
     """The status of a goal whose id a variable holds."""

@@ -11,7 +11,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import TypeAlias
 
 from roaml.model.behavior.explore import UNKNOWN_STATE, Behavior, BehaviorStep, explore
-from roaml.model.behavior.phases import Duty, DutyKind, Phase, ProtocolEvent, Subject
+from roaml.model.behavior.phases import AWAITED_ANSWER, Duty, DutyKind, Phase, ProtocolEvent, Subject
 from roaml.model.machine import Chart, Machine
 from roaml.record import Record, replace
 from roaml.roles import ProtocolPart
@@ -37,7 +37,12 @@ REPEATED = (
     ProtocolPart.FEEDBACK,
     ProtocolPart.THREAD_START,
     ProtocolPart.THREAD_FREE,
+    ProtocolPart.REQUEST,
+    ProtocolPart.GOAL,
 )
+_ASKS = {ProtocolPart.REQUEST: Subject.RESPONSE, ProtocolPart.GOAL: Subject.DECISION}
+"""An event that a client sends -> the answer that it then waits for."""
+_AWAITED = frozenset(AWAITED_ANSWER.values())
 _DUTIES = {
     ProtocolPart.REQUEST: (DutyKind.REQUEST,),
     ProtocolPart.GOAL: (DutyKind.GOAL, DutyKind.RESULT),
@@ -45,6 +50,10 @@ _DUTIES = {
 }
 """An event that a server receives -> the kinds of duties that it creates."""
 _ASKED_BY = {DutyKind.REQUEST: ProtocolPart.REQUEST, DutyKind.GOAL: ProtocolPart.GOAL}
+
+
+Awaited: TypeAlias = tuple[Subject, str]
+"""An answer that a client waits for: `RESPONSE`, `DECISION` or `OUTCOME`, and the handle of the client."""
 
 
 class Promise(Record, frozen=True):
@@ -78,11 +87,16 @@ class ChartOutline(Record, frozen=True):
             receives another event.
         repeats: for each event of a kind in `REPEATED` that the machine sends, the events that must occur before it is
             sent again.
+        overlaps: pairs of an answer that the machine waits for and a request or goal that it may send meanwhile;
+            `None` if there is no graph.
+        unhurried: the answers that a plugin may wait for while it owes no answer to a tick or halt.
     """
 
     promises: tuple[Promise, ...]
     reactions: frozenset[tuple[ProtocolEvent, ProtocolEvent]]
     repeats: tuple[tuple[ProtocolEvent, Needs], ...]
+    overlaps: frozenset[tuple[Awaited, ProtocolEvent]] | None = None
+    unhurried: frozenset[Awaited] = frozenset()
 
 
 UNKNOWN = ChartOutline((), frozenset(), ())
@@ -134,7 +148,29 @@ class _Summary:
         promises = dict.fromkeys(
             promise for duty in self._duties() for promise in self._promises(duty) if AT_ONCE not in promise.needs
         )
-        return ChartOutline(tuple(promises), self._reactions(), tuple(self._repeats()))
+        return ChartOutline(
+            tuple(promises), self._reactions(), tuple(self._repeats()), frozenset(self._overlaps()), self._unhurried()
+        )
+
+    def _overlaps(self) -> Iterator[tuple[Awaited, ProtocolEvent]]:
+        yield from _meanwhile(set(), self.behavior.at_start)
+        for step in self.behavior.steps:
+            if any(event.part in _ASKS for event in step.sent):
+                source = self.behavior.configurations[step.source]
+                awaited = {subject for subject, _ in source.phases if subject[0] in _AWAITED}
+                answer = AWAITED_ANSWER.get(step.event.part) if step.event else None
+                if step.event is not None and answer and source.phase(answer, step.event.name) is not Phase.SEVERAL:
+                    awaited.discard((answer, step.event.name))
+                yield from _meanwhile(awaited, step.sent)
+
+    def _unhurried(self) -> frozenset[Awaited]:
+        return frozenset(
+            subject
+            for configuration in self.behavior.configurations
+            if configuration.tree not in (Phase.TICKED, Phase.HALTING)
+            for subject, _ in configuration.phases
+            if subject[0] in _AWAITED
+        )
 
     def _duties(self) -> list[Duty]:
         """The duties of the machine as a server."""
@@ -206,6 +242,15 @@ class _Summary:
             causes = before[edge.source] if edge.taken is None else {edge.taken}
             pairs |= {(cause, event) for cause in causes for event in edge.sent}
         return frozenset(pairs)
+
+
+def _meanwhile(awaited: set[Awaited], sent: Iterable[ProtocolEvent]) -> Iterator[tuple[Awaited, ProtocolEvent]]:
+    """The overlaps of one step, which begins while some answers are awaited and sends events in an order."""
+    for event in sent:
+        answer = _ASKS.get(event.part)
+        if answer is not None:
+            yield from ((subject, event) for subject in awaited)
+            awaited.add((answer, event.name))
 
 
 def _incoming(edges: Iterable[_Edge]) -> dict[int, list[_Edge]]:

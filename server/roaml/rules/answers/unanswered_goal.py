@@ -6,11 +6,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
-from roaml.model.behavior.explore import Behavior, BehaviorStep
+from roaml.model.behavior.explore import Behavior
 from roaml.model.behavior.phases import Duty, DutyKind
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.answers import answered_in, behaviors, is_spelled, missed, place, target_of
+from roaml.rules.support.answers import OpenPath, answered_in, behaviors, is_spelled, missed
 from roaml.rules.support.interfaces import declared
 
 
@@ -43,29 +43,29 @@ def _awaited(context: MachineContext) -> set[str]:
 
 
 def _missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[Finding]:
-    for step, certain in missed(context, behavior, duty):
-        severity = None if certain else Severity.WARNING
-        message = _message(step, duty, certain)
-        yield RULE.at(place(step.handler), message, severity=severity, related=target_of(step))
+    for path in missed(context, behavior, duty):
+        yield RULE.at(path.span, _message(path), severity=path.severity, related=path.related)
 
 
-def _message(step: BehaviorStep, duty: Duty, certain: bool) -> str:
-    tag, ends = f"<{step.handler.element.name}>", duty.kind is DutyKind.RESULT
+def _message(path: OpenPath) -> str:
+    step, ends = path.step, path.loss.duty.kind is DutyKind.RESULT
+    tag, when = f"<{step.handler.element.name}>", f" {path.order}" if path.order else ""
+    if path.loss.overwritten is not None:
+        lost = (
+            f"this overwrites the id of a running goal{when}, so that goal is never ended and its client waits for ever"
+        )
+        return f"{lost}; store the ids of all running goals, or reject a goal while another one is running"
     never = "is never ended" if ends else "is neither accepted nor rejected"
     if step.ignored:
         reason = "events are dropped while this condition does not hold, so a goal"
         return f"{reason} {never} and its client waits for ever; add a `{tag}` without `cond` after it"
-    how = never if certain and not step.handler.is_probabilistic else f"{never} on some path"
+    how = never if path.certain and not path.choice else f"{never} on some path"
     results = "`<ros_action_succeed>`, `<ros_action_aborted>` or `<ros_action_canceled>`"
     end = f"end it with {results}" if ends else "accept or reject it"
     which = "a goal that is accepted here" if ends else "a goal that is handled here"
-    if (ends and not {e.part for e in step.sent} & {ProtocolPart.GOAL_ACCEPTED}) or not (ends or _handles_goal(step)):
+    if not path.receives:
         which = "the goal that is pending here"
-    return f"{which} {how}, so its client waits for ever; {end} on every path"
-
-
-def _handles_goal(step: BehaviorStep) -> bool:
-    return step.event is not None and step.event.part is ProtocolPart.GOAL
+    return f"{which} {how}{when}, so its client waits for ever; {end} on every path"
 
 
 RULE = Rule(

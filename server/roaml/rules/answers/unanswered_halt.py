@@ -8,20 +8,19 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import halts, last_in
 from roaml.language import HL_SCXML
-from roaml.model.behavior.explore import Behavior, BehaviorStep
+from roaml.model.behavior.explore import Behavior
 from roaml.model.behavior.phases import HALT, Phase
 from roaml.model.machine import State
 from roaml.model.system import SystemAutomaton
-from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support import misspelled
 from roaml.rules.support.answers import (
+    OpenPath,
+    answered,
     behaviors,
     is_spelled,
     missed,
-    place,
     plugins,
-    target_of,
     unhandled_states,
 )
 from roaml.xml_syntax import Element
@@ -58,22 +57,21 @@ def _halted(context: MachineContext) -> Iterator[tuple[SystemAutomaton, SystemAu
 
 
 def _missed(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
-    for step, certain in missed(context, behavior, HALT):
-        severity = None if certain else Severity.WARNING
-        message = _message(step, certain)
-        fixes = _answer(context, step)
-        yield RULE.at(place(step.handler), message, *fixes, severity=severity, related=target_of(step))
+    for path in missed(context, behavior, HALT):
+        lines, title = ("<bt_return_halted />",), "Add `<bt_return_halted />`"
+        fixes = answered(context, path, behavior.chart.states, title, lines, preferred=True)
+        yield RULE.at(path.span, _message(path), *fixes, severity=path.severity, related=path.related)
 
 
-def _message(step: BehaviorStep, certain: bool) -> str:
-    if step.ignored:
+def _message(path: OpenPath) -> str:
+    if path.step.ignored:
         reason = "events are dropped while this condition does not hold, so the halt is never confirmed,"
-        tag = f"<{step.handler.element.name}>"
+        tag = f"<{path.step.handler.element.name}>"
         return f"{reason} and the tree waits for ever; add a `{tag}` without `cond` after it"
-    halted = step.event is not None and step.event.part is ProtocolPart.BT_HALT
-    where = "a halt that is handled here" if halted else "the halt that is pending here"
-    how = "is not confirmed on every path" if step.handler.is_probabilistic or not certain else "is never confirmed"
-    return f"{where} {how}, so the tree waits for ever; send one `<bt_return_halted>` on every path"
+    where = "a halt that is handled here" if path.receives else "the halt that is pending here"
+    how = "is not confirmed on every path" if path.choice or not path.certain else "is never confirmed"
+    when = f" {path.order}" if path.order else ""
+    return f"{where} {how}{when}, so the tree waits for ever; send one `<bt_return_halted>` on every path"
 
 
 def _not_taken(context: MachineContext, behavior: Behavior, automata: list[SystemAutomaton]) -> Iterator[Finding]:
@@ -103,19 +101,6 @@ def _add_handler(context: MachineContext, state: State) -> Iterator[Fix]:
     if initial is not None and state.element.complete:
         lines = (f'<bt_halt target="{initial.value}">', "    <bt_return_halted />", "</bt_halt>")
         yield Fix("Add `<bt_halt>`", (last_in(context.document, state.element, *lines),))
-
-
-def _answer(context: MachineContext, step: BehaviorStep) -> Iterator[Fix]:
-    """A fix that adds a `<bt_return_halted />` to the handler."""
-    place = step.handler.targets[step.choice].element or step.handler.element
-    sent = {event.part for event in step.sent}
-    if (
-        place.complete
-        and step.certain
-        and not step.ignored
-        and not sent & {ProtocolPart.BT_HALTED, ProtocolPart.BT_STATUS}
-    ):
-        yield Fix("Add `<bt_return_halted />`", (last_in(context.document, place, "<bt_return_halted />"),))
 
 
 RULE = Rule("unanswered-halt", Severity.ERROR, "A halt is not handled or not confirmed on every path.", machine=check)

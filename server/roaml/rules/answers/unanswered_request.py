@@ -6,15 +6,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
-from roaml.edit.elements import last_in
-from roaml.model.behavior.explore import Behavior, BehaviorStep
+from roaml.model.behavior.explore import Behavior
 from roaml.model.behavior.phases import Duty, DutyKind
 from roaml.model.machine import Handler
 from roaml.model.ros import InterfaceType
 from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.answers import answered_in, behaviors, is_spelled, missed, place, target_of
+from roaml.rules.support.answers import OpenPath, answered, answered_in, behaviors, is_spelled, missed
 from roaml.rules.support.interfaces import response
 
 
@@ -34,40 +33,34 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _missed(context: MachineContext, behavior: Behavior, duty: Duty, handler: Handler) -> Iterator[Finding]:
-    for step, certain in missed(context, behavior, duty):
-        severity = None if certain else Severity.WARNING
-        message = _message(step, duty, certain)
-        fixes = _fixes(context, step, handler)
-        yield RULE.at(place(step.handler), message, *fixes, severity=severity, related=target_of(step))
+    for path in missed(context, behavior, duty):
+        fixes = _fixes(context, behavior, path, handler)
+        yield RULE.at(path.span, _message(path), *fixes, severity=path.severity, related=path.related)
 
 
-def _message(step: BehaviorStep, duty: Duty, certain: bool) -> str:
-    handles_request = step.event is not None and step.event.part is ProtocolPart.REQUEST
+def _message(path: OpenPath) -> str:
+    step, name = path.step, path.loss.duty.handle
     if step.ignored:
-        reason = f"a request for `{duty.handle}` that arrives while this condition does not hold is dropped and"
-        if not handles_request:
-            reason = f"events are dropped while this condition does not hold, so the request for `{duty.handle}` is"
+        reason = f"a request for `{name}` that arrives while this condition does not hold is dropped and"
+        if not path.receives:
+            reason = f"events are dropped while this condition does not hold, so the request for `{name}` is"
         tag = f"<{step.handler.element.name}>"
         return f"{reason} never answered, and the client waits for ever; add a `{tag}` without `cond` after it"
-    where = (
-        "a request that is handled here" if handles_request else f"the request for `{duty.handle}` that is pending here"
-    )
-    how = "is not answered on every path" if step.handler.is_probabilistic or not certain else "is never answered"
-    return f"{where} {how}, so the client waits for ever; send one `<ros_service_send_response>` on every path"
+    where = "a request that is handled here" if path.receives else f"the request for `{name}` that is pending here"
+    how = "is not answered on every path" if path.choice or not path.certain else "is never answered"
+    when = f" {path.order}" if path.order else ""
+    return f"{where} {how}{when}, so the client waits for ever; send one `<ros_service_send_response>` on every path"
 
 
-def _fixes(context: MachineContext, step: BehaviorStep, request_handler: Handler) -> Iterator[Fix]:
-    """A fix that sends a response with zero values in all fields at the end of the handler."""
-    place = step.handler.targets[step.choice].element or step.handler.element
+def _fixes(context: MachineContext, behavior: Behavior, path: OpenPath, request_handler: Handler) -> Iterator[Fix]:
+    """A fix that sends a response with zero values in all fields on the path."""
     declaration = find_handle(context.machine, request_handler)
-    if not step.certain or step.ignored or not place.complete or declaration is None or declaration.type is None:
+    if declaration is None or declaration.type is None:
         return
     interface = context.interface("srv", declaration.type.value)
     if isinstance(interface, InterfaceType):
-        lines = response(declaration, interface)
-        yield Fix(
-            "Answer with `<ros_service_send_response>`", (last_in(context.document, place, *lines),), preferred=False
-        )
+        lines, title = response(declaration, interface), "Answer with `<ros_service_send_response>`"
+        yield from answered(context, path, behavior.chart.states, title, lines, preferred=False)
 
 
 RULE = Rule("unanswered-request", Severity.ERROR, "A request is not answered on every path.", machine=check)

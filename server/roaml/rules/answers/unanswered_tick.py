@@ -8,19 +8,18 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import after, last_in
 from roaml.language import HL_SCXML
-from roaml.model.behavior.explore import Behavior, BehaviorStep
+from roaml.model.behavior.explore import Behavior
 from roaml.model.behavior.phases import TICK, Phase
 from roaml.model.system import SystemAutomaton
-from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support import misspelled
 from roaml.rules.support.answers import (
+    OpenPath,
+    answered,
     behaviors,
     is_spelled,
     missed,
-    place,
     plugins,
-    target_of,
     unhandled_states,
 )
 
@@ -47,31 +46,22 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _missed(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
-    for step, certain in missed(context, behavior, TICK):
-        yield RULE.at(
-            place(step.handler),
-            _message(step, certain),
-            *_fixes(context, step),
-            severity=None if certain else Severity.WARNING,
-            related=target_of(step),
-        )
+    for path in missed(context, behavior, TICK):
+        fixes = _fixes(context, behavior, path)
+        yield RULE.at(path.span, _message(path), *fixes, severity=path.severity, related=path.related)
 
 
-def _message(step: BehaviorStep, certain: bool) -> str:
-    ticked = step.event is not None and step.event.part is ProtocolPart.BT_TICK
-    if step.ignored:
-        tag = f"<{step.handler.element.name}>"
+def _message(path: OpenPath) -> str:
+    if path.step.ignored:
+        tag = f"<{path.step.handler.element.name}>"
         reason = "a tick that arrives while this condition does not hold is dropped and no status is returned,"
-        if not ticked:
+        if not path.receives:
             reason = "events are dropped while this condition does not hold, so no status is returned for the tick,"
         return f"{reason} and the tree waits for ever; add a `{tag}` without `cond` after it"
-    tick = "a tick that is handled here" if ticked else "the tick that is pending here"
-    how = (
-        "does not return a status on every path"
-        if step.handler.is_probabilistic or not certain
-        else "never returns a status"
-    )
-    return f"{tick} {how}, so the tree waits for ever; send one `<bt_return_status>` on every path"
+    tick = "a tick that is handled here" if path.receives else "the tick that is pending here"
+    how = "does not return a status on every path" if path.choice or not path.certain else "never returns a status"
+    when = f" {path.order}" if path.order else ""
+    return f"{tick} {how}{when}, so the tree waits for ever; send one `<bt_return_status>` on every path"
 
 
 def _not_taken(context: MachineContext, behavior: Behavior, automata: list[SystemAutomaton]) -> Iterator[Finding]:
@@ -105,25 +95,21 @@ def _take(context: MachineContext, state: object) -> Iterator[Fix]:
             yield Fix(f"Return `RUNNING` from ticks in the state `{candidate.id.value}`", (edit,), preferred=False)
 
 
-def _fixes(context: MachineContext, step: BehaviorStep) -> Iterator[Fix]:
-    """A fix that returns SUCCESS at the end of the handler. If the step ignores the tick, because the condition of the
-    handler does not hold, the fix adds a handler that returns RUNNING."""
-    document, element = context.document, step.handler.element
-    if not element.complete or step.event is None:
-        return
-    if step.ignored and step.event.part is ProtocolPart.BT_TICK:
+def _fixes(context: MachineContext, behavior: Behavior, path: OpenPath) -> Iterator[Fix]:
+    """A fix that returns SUCCESS on the path. If the step ignores the tick, because the condition of the handler does
+    not hold, the fix adds a handler that returns RUNNING."""
+    step, element = path.step, path.step.handler.element
+    if step.ignored and path.receives and element.complete:
         state = next((s for s in context.machine.chart.states if step.handler in s.handlers), None)
         if state is not None and state.id is not None:
             lines = (f'<bt_tick target="{state.id.value}">', '    <bt_return_status status="RUNNING" />', "</bt_tick>")
             yield Fix(
                 "Return `RUNNING` if no condition holds",
-                (after(document, element, *lines),),
+                (after(context.document, element, *lines),),
                 preferred=False,
             )
-    elif not step.ignored and ProtocolPart.BT_STATUS not in {e.part for e in step.sent} and step.certain:
-        place = step.handler.targets[step.choice].element or element
-        if place.complete:
-            yield Fix("Return `SUCCESS` from the tick", (last_in(document, place, ANSWER),), preferred=False)
+    title = "Return `SUCCESS` from the tick"
+    yield from answered(context, path, behavior.chart.states, title, (ANSWER,), preferred=False)
 
 
 def _add_handler(context: MachineContext) -> Iterator[Fix]:

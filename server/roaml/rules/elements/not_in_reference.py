@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
-from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.rule import MachineContext, Rule, SystemContext
 from roaml.xml_syntax import Element
 
 NEW_ELEMENTS = ("ros_action_cancel_goal", "ros_action_handle_cancel_goal")
@@ -30,4 +30,22 @@ def check(context: MachineContext) -> Iterator[Finding]:
         )
 
 
-RULE = Rule("not-in-reference", Severity.INFORMATION, "An element that AS2FM does not read yet is used.", machine=check)
+def check_system(context: SystemContext) -> Iterator[Finding]:
+    """Report the reaction time of a system."""
+    element = context.file.parameter("max_time")
+    attribute = element.get("reaction_time") if element is not None else None
+    if attribute is not None:
+        message = (
+            "AS2FM ignores `reaction_time` and assumes the reaction time `any`, so both tools may compute different "
+            "probabilities; only this tool reads the attribute"
+        )
+        yield RULE.at(attribute.name_span, message)
+
+
+RULE = Rule(
+    "not-in-reference",
+    Severity.INFORMATION,
+    "An element or attribute that AS2FM does not read is used.",
+    machine=check,
+    system=check_system,
+)

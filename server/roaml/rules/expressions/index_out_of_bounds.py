@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
@@ -13,6 +14,7 @@ from roaml.expr.types import Array, Type
 from roaml.model.machine import Handler
 from roaml.model.syntax import Expression
 from roaml.model.value_types import TypedValue, ValuePlace, ValueUse
+from roaml.model.values.domain import Origin, interval
 from roaml.rules.rule import MachineContext, Rule
 from roaml.text import TextEdit
 
@@ -29,6 +31,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     yield RULE.at(problem.span, message, *_more_room(value, problem))
         if isinstance(value.value, Expression) and not value.value.broken:
             yield from _unbounded(context, value.place, value.value.tree)
+            yield from _computed(context, value.place, value.value.tree)
             if value.use is ValueUse.LOCATION:
                 yield from _append(context, value, value.value.tree)
                 yield from _length(context, value, value.value.tree)
@@ -66,6 +69,40 @@ def _unbounded(context: MachineContext, place: ValuePlace, tree: Expr) -> Iterat
                 yield RULE.at(node.index.span, message)
 
 
+def _computed(context: MachineContext, place: ValuePlace, tree: Expr) -> Iterator[Finding]:
+    """Report indices that are not constant and can be outside of their array."""
+    chart = context.values.charts.get(place.chart.scope)
+    size = context.system.parameters.max_array_size if context.system else None
+    for node in walk(tree):
+        if not isinstance(node, Index) or constant(node.index) is not None or chart is None:
+            continue
+        values = chart.at(node.index)
+        array = _type_of(context, place, node.object)
+        room = (array.bound or size) if isinstance(array, Array) else None
+        if values is None or room is None or _is_length_of(context, node.index, node.object):
+            continue
+        bounds = interval(values)
+        text = context.source.text[slice(*node.index.span)]
+        for number, origin, is_outside in (
+            (bounds.high, bounds.high_from, bounds.high >= room),
+            (bounds.low, bounds.low_from, bounds.low < 0),
+        ):
+            if not is_outside or origin is Origin.ASSUMED:
+                continue
+            reason = "the last index is" if number >= 0 else "the first index is 0, and the last one is"
+            always = bounds.low >= room or bounds.high < 0
+            if origin is Origin.WIDENED and not always and ".length" in text:
+                continue  # a length is at most the size of its array
+            if origin is Origin.REACHED or always:
+                shown = number if math.isfinite(number) else bounds.low
+                message = f"`{text}` {'is' if always else 'can be'} {shown:g} here; {reason} {room - 1}"
+                yield RULE.at(node.index.span, message, severity=Severity.ERROR if always else Severity.WARNING)
+            else:
+                message = f"no condition limits `{text}` here; {reason} {room - 1}"
+                yield RULE.at(node.index.span, message, severity=Severity.INFORMATION)
+            break
+
+
 def _append(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[Finding]:
     """Report `v[v.length]`, which writes after the end of a full bounded array, unless a condition prevents it, or an
     earlier statement sets the array."""
@@ -73,6 +110,8 @@ def _append(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[
         return
     array = _type_of(context, value.place, tree.object)
     if not isinstance(array, Array) or array.bound is None:
+        return
+    if _fits(context, value.place, tree.index, array.bound):
         return
     if not (_has_room(context, value.place, tree.object, array.bound) or _set_before(context, value, tree.object)):
         name = _text(context, tree.object)
@@ -84,6 +123,13 @@ def _append(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[
             ),
             severity=Severity.WARNING,
         )
+
+
+def _fits(context: MachineContext, place: ValuePlace, index: Expr, bound: int) -> bool:
+    """Whether all values that an index can have are below `bound`."""
+    chart = context.values.charts.get(place.chart.scope)
+    values = chart.at(index) if chart is not None else None
+    return values is not None and interval(values).high < bound
 
 
 def _length(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[Finding]:

@@ -7,12 +7,20 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.expr.infer import constant
-from roaml.expr.tree import ArrayLiteral, Conditional, Expr, Number, ObjectLiteral, walk
+from roaml.expr.tree import ArrayLiteral, Conditional, Expr, Member, Name, Number, ObjectLiteral, walk
 from roaml.expr.types import INTEGER_RANGES, Array, Scalar, ScalarKind, Struct, Type, is_kind, unwrap
 from roaml.model.syntax import Expression
+from roaml.model.value_types import TypedValue
+from roaml.model.values.analyse import ChartValues, analyse
+from roaml.model.values.arriving import arriving_by_type
+from roaml.model.values.domain import Origin, ValueSet, between, interval, meet
+from roaml.model.values.evaluate import Evaluator, place_of
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.retype import as_type, wide_enough
 from roaml.text import Span
+
+MAX_COUNTED = 2**8
+"""The maximum number up to which a variable without a limit is assumed to count."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -34,6 +42,60 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 fixes = as_type(context, value, wider) if wider and not _is_nested(value.required) else ()
                 message = f"{number} does not fit into `{type_}`, whose range is {low} to {high}"
                 yield RULE.at(span, message, *fixes)
+            yield from _computed(context, value)
+
+
+def _computed(context: MachineContext, value: TypedValue) -> Iterator[Finding]:
+    """Report computed values that can be outside the range of the type that they must have."""
+    chart = context.values.charts.get(value.place.chart.scope)
+    type_ = value.required.name if isinstance(value.required, Scalar) else ""
+    if chart is None or not isinstance(value.value, Expression) or type_ not in INTEGER_RANGES:
+        return
+    tree = value.value.tree
+    values = chart.at(tree)
+    if values is None or constant(tree) is not None or isinstance(tree, Conditional | Name | Member):
+        return
+    low, high = INTEGER_RANGES[type_]
+    if _is_consequence(chart, tree, low, high):
+        return
+    bounds = interval(values)
+    for above in (True, False):
+        bound, origin = (bounds.high, bounds.high_from) if above else (bounds.low, bounds.low_from)
+        if low <= bound <= high or origin is Origin.ASSUMED or (origin is Origin.WIDENED and high > MAX_COUNTED):
+            continue
+        reached: float | None = bound
+        if origin is Origin.WIDENED:
+            early = _early(context, value, tree)
+            reached = None if early is None else early.high if above else early.low
+        range_ = f"`{type_}`, whose range is {low} to {high}"
+        if reached is not None and not low <= reached <= high:
+            wider = wide_enough(int(reached), type_)
+            verb = "is" if values.value is not None else "can be"
+            message = f"the value {verb} {reached:g}, which does not fit into {range_}"
+            yield RULE.at(tree.span, message, *(as_type(context, value, wider) if wider else ()))
+        else:
+            side = "greater" if above else "smaller"
+            message = f"no condition limits this value, so it can become {side} than {range_}"
+            yield RULE.at(tree.span, message, severity=Severity.INFORMATION)
+        return
+
+
+def _is_consequence(chart: ChartValues, tree: Expr, low: int, high: int) -> bool:
+    """Whether the value fits as long as the variables in the expression have values from `low` to `high`. Then another
+    assignment is the cause."""
+    places = [(place, n) for n in walk(tree) if (place := place_of(n)) is not None]
+    limits = between(low, high)
+    known = {place: meet(interval(v), limits) for place, n in places if (v := chart.at(n)) is not None}
+    result = interval(Evaluator(lambda _: True).values(known, tree))
+    return low <= result.low and result.high <= high
+
+
+def _early(context: MachineContext, value: TypedValue, tree: Expr) -> ValueSet | None:
+    """The values of an expression in the first passes of a loop."""
+    arriving = arriving_by_type(context.machine, context.interface)
+    chart = analyse(context.machine, context.typed, arriving, is_bounded=True).charts.get(value.place.chart.scope)
+    values = chart.at(tree) if chart is not None else None
+    return interval(values) if values is not None else None
 
 
 def _is_nested(required: Type) -> bool:
@@ -64,6 +126,6 @@ def outside(expr: Expr, required: Type) -> Iterator[tuple[Span, int, str]]:
 RULE = Rule(
     "integer-range",
     Severity.WARNING,
-    "A constant is outside the range of its integer type.",
+    "A value is or can be outside the range of its integer type.",
     machine=check,
 )

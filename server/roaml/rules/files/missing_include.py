@@ -14,6 +14,10 @@ def check(context: TreeContext) -> Iterator[Finding]:
         if include.path is not None and include.path.value in context.missing_includes:
             reason = context.missing_includes[include.path.value]
             yield RULE.at(include.path.span, f"`{include.path.value}` cannot be included: {reason}")
+        elif include.path is not None and include.path.value in context.found_includes:
+            found = context.found_includes[include.path.value]
+            message = f"there is no file `{include.path.value}` in the sources; `{found}` is read instead"
+            yield RULE.at(include.path.span, message, severity=Severity.INFORMATION)
         elif include.package is not None and include.package.value in context.unknown_packages:
             message = (
                 f"no folder around this file contains the ROS package `{include.package.value}`, "

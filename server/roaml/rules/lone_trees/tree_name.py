@@ -10,7 +10,7 @@ from roaml.diagnostics import Finding, Related, Severity
 from roaml.edit.elements import remove
 from roaml.forest.forest import CPP, Forest
 from roaml.libraries.scripts import AFTERWARDS, CONDITIONS
-from roaml.libraries.version import NAMES_CHECKED_SINCE
+from roaml.libraries.version import NAMES_CHECKED_SINCE, NEWEST_VERSION, Version
 from roaml.model.syntax import Name
 from roaml.model.tree import Tree, nodes
 from roaml.rules.rule import Rule, TreeContext
@@ -25,29 +25,72 @@ def check(context: TreeContext) -> Iterator[Finding]:
     forest = forest_of(context)
     if forest is None:
         return
-    is_checked = forest.settings.version >= NAMES_CHECKED_SINCE
     for tree in context.file.trees:
         if tree.id is not None:
-            yield from _id(tree.id, "tree", is_checked)
+            if not tree.id.value:
+                yield _empty(tree.id, "tree")
             yield from _like_a_node(forest, tree.id)
-        if is_checked:
-            yield from _instances(tree)
-    yield from _models(context, is_checked)
+    yield from _models(context)
+    yield from _refused(context, forest.settings.version)
 
 
-def _id(name: Name, kind_name: str, is_checked: bool) -> Iterator[Finding]:
-    """Report a name of a tree or node that the library refuses. `is_checked`: whether its version checks the characters
-    of names."""
-    text = name.value
-    if not text:
-        yield RULE.at(name.span, f"the name of a {kind_name} must not be empty")
-    elif not is_checked:
+def _refused(context: TreeContext, version: Version) -> Iterator[Finding]:
+    """Report what versions refuse that check names. Without a setting, the version is not known, so this is a
+    warning."""
+    if version < NAMES_CHECKED_SINCE:
         return
-    elif text in ("Root", "root"):
-        yield RULE.at(name.span, f"BehaviorTree.CPP refuses `{text}` as the name of a {kind_name}; choose another name")
-    elif match := _FORBIDDEN.search(text):
-        shown = "white space" if match[0].isspace() else f"`{match[0]}`"
-        yield RULE.at(name.span, f"BehaviorTree.CPP refuses {shown} in the name of a {kind_name}")
+    severity = Severity.WARNING if version == NEWEST_VERSION else Severity.ERROR
+    for name, what in _checked_names(context):
+        yield RULE.at(name.span, f"{_CHECKING} {what}", severity=severity)
+    for tree in context.file.trees:
+        for later, earlier in _equal_subtrees(tree):
+            message = f"{_CHECKING} two `<SubTree>` of a tree with the same name `{later.value}`; rename one of them"
+            related = [Related(earlier.span, "the first `SubTree` with this name")]
+            yield RULE.at(later.span, message, related=related, severity=severity)
+
+
+_CHECKING = "BehaviorTree.CPP refuses, from version 4.8.4 on,"
+
+
+def _checked_names(context: TreeContext) -> Iterator[tuple[Name, str]]:
+    """The names that the library refuses, each with what it refuses."""
+    for tree in context.file.trees:
+        yield from _wrong(tree.id, "tree")
+        for node in nodes(tree):
+            if node.name is not None and _CONTROL.search(node.name.value):
+                yield node.name, "control characters in the name of a node"
+    for model in context.file.models:
+        yield from _wrong(model.id, "node")
+        for port in model.ports if model.id is not None else ():
+            yield from _wrong_port(port.name)
+
+
+def _wrong(name: Name | None, kind_name: str) -> Iterator[tuple[Name, str]]:
+    if name is None:
+        return
+    if name.value in ("Root", "root"):
+        yield name, f"`{name.value}` as the name of a {kind_name}; choose another name"
+    elif match := _FORBIDDEN.search(name.value):
+        yield name, f"{_shown(match[0])} in the name of a {kind_name}"
+
+
+def _wrong_port(name: Name | None) -> Iterator[tuple[Name, str]]:
+    if name is None:
+        return
+    if name.value in _RESERVED_PORTS:
+        yield name, f"`{name.value}` as the name of a port, because it has a special meaning"
+    elif not name.value[:1].isalpha() or not name.value[:1].isascii():
+        yield name, "the name of a port that does not begin with a letter"
+    elif match := _FORBIDDEN.search(name.value):
+        yield name, f"{_shown(match[0])} in the name of a port"
+
+
+def _shown(character: str) -> str:
+    return "white space" if character.isspace() else f"`{character}`"
+
+
+def _empty(name: Name, kind_name: str) -> Finding:
+    return RULE.at(name.span, f"the name of a {kind_name} must not be empty")
 
 
 def _like_a_node(forest: Forest, name: Name) -> Iterator[Finding]:
@@ -63,26 +106,17 @@ def _like_a_node(forest: Forest, name: Name) -> Iterator[Finding]:
             yield RULE.at(name.span, message, severity=severity)
 
 
-def _instances(tree: Tree) -> Iterator[Finding]:
+def _equal_subtrees(tree: Tree) -> Iterator[tuple[Name, Name]]:
+    """The names of `<SubTree>` nodes that an earlier one of the tree has, each with the first name."""
     first: dict[str, Name] = {}
     for node in nodes(tree):
-        if node.name is None:
-            continue
-        if _CONTROL.search(node.name.value):
-            yield RULE.at(node.name.span, "BehaviorTree.CPP refuses control characters in the name of a node")
-        if node.is_subtree:
+        if node.is_subtree and node.name is not None:
             earlier = first.setdefault(node.name.value, node.name)
             if earlier is not node.name:
-                message = (
-                    f"two `<SubTree>` nodes of a tree must not have the same name `{node.name.value}`; rename one of "
-                    "them"
-                )
-                yield RULE.at(
-                    node.name.span, message, related=[Related(earlier.span, "the first `SubTree` with this name")]
-                )
+                yield node.name, earlier
 
 
-def _models(context: TreeContext, is_checked: bool) -> Iterator[Finding]:
+def _models(context: TreeContext) -> Iterator[Finding]:
     lists = [child for child in context.file.element.elements if child.name == "TreeNodesModel"]
     for extra in lists[1:]:
         message = (
@@ -94,7 +128,8 @@ def _models(context: TreeContext, is_checked: bool) -> Iterator[Finding]:
     for model in context.file.models:
         if model.id is None:
             continue
-        yield from _id(model.id, "node", is_checked)
+        if not model.id.value:
+            yield _empty(model.id, "node")
         earlier = first.setdefault(model.id.value, model.id)
         if earlier is not model.id:
             drop = remove(context.document, model.element)
@@ -111,19 +146,6 @@ def _models(context: TreeContext, is_checked: bool) -> Iterator[Finding]:
                 )
                 related = [Related(ports[port.name.value].span, "the first description")]
                 yield RULE.at(port.name.span, message, related=related, severity=Severity.WARNING)
-            if is_checked:
-                yield from _port(port.name)
-
-
-def _port(name: Name) -> Iterator[Finding]:
-    text = name.value
-    if text in _RESERVED_PORTS:
-        yield RULE.at(name.span, f"BehaviorTree.CPP refuses `{text}` as the name of a port: it has a special meaning")
-    elif not text[:1].isalpha() or not text[:1].isascii():
-        yield RULE.at(name.span, "the name of a port must begin with a letter")
-    elif match := _FORBIDDEN.search(text):
-        shown = "white space" if match[0].isspace() else f"`{match[0]}`"
-        yield RULE.at(name.span, f"BehaviorTree.CPP refuses {shown} in the name of a port")
 
 
 RULE = Rule("tree-name", Severity.ERROR, "BehaviorTree.CPP refuses a name, or the name is not unique.", tree=check)

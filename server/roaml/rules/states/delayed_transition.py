@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.durations import NANOSECONDS, duration
 from roaml.edit.elements import removal
-from roaml.model.parameters import NANOSECONDS, duration
 from roaml.rules.rule import MachineContext, Rule
 
 

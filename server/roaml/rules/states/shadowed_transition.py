@@ -10,9 +10,10 @@ from roaml.edit.elements import indent_of, removal, remove
 from roaml.model.behavior.explore import condition_facts
 from roaml.model.behavior.knowledge import ConditionFacts
 from roaml.model.machine import Chart, Handler, State
+from roaml.model.triggers import Trigger, chooses, trigger
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.conditions import covered
-from roaml.rules.support.triggers import Trigger, chooses, conditional, trigger
+from roaml.rules.support.triggers import conditional
 from roaml.text import Span, TextEdit
 
 

@@ -10,15 +10,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from roaml.diagnostics import Related
+from roaml.diagnostics import Fix, Related, Severity
+from roaml.edit.elements import after, first_in, last_in
 from roaml.language import HL_SCXML
-from roaml.model.behavior.duties import Possible, always, dead_ends, is_suspicious, untaken, waiting_behind
+from roaml.model.behavior.duties import Possible, always, is_suspicious, untaken
 from roaml.model.behavior.explore import Behavior, BehaviorStep, FaultKind, explore
 from roaml.model.behavior.instants import Instants, is_readable
 from roaml.model.behavior.phases import Duty, DutyKind, Phase
-from roaml.model.machine import Handler, Machine, RosSend, State, Statement
+from roaml.model.machine import Handler, If, Machine, RosSend, State, Statement, statements
+from roaml.model.obligations.losses import Loss, losses, waiting_behind
+from roaml.model.obligations.protocols import ClientProtocols
 from roaml.model.system import System, SystemAutomaton
 from roaml.model.value_types import find_handle
+from roaml.record import Record
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext
 from roaml.rules.support import misspelled
@@ -86,26 +90,123 @@ def answered_in(machine: Machine, duty: Duty) -> set[str]:
     return scopes
 
 
-def missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[tuple[BehaviorStep, bool]]:
-    """The steps after which the answer to a duty is missing, at most one for each handler. The flag of a step states
-    whether the answer is missing on all paths.
+class OpenPath(Record, frozen=True, eq=False):
+    """A path on which an answer is missing.
 
-    Steps are left out if the graph is approximate and the step uncertain, or if another finding explains them: an
+    Attributes:
+        certain: whether the answer is missing whatever the conditions in the bodies are.
+        choices: whether the answer is missing only if the handler selects this one of its targets.
+    """
+
+    loss: Loss
+    certain: bool
+    choice: bool
+
+    @property
+    def step(self) -> BehaviorStep:
+        return self.loss.step
+
+    @property
+    def receives(self) -> bool:
+        """Whether the handler at the end of the path is the one that receives the event of the duty."""
+        return not self.loss.path
+
+    @property
+    def span(self) -> Span:
+        """Where the answer is missing."""
+        if self.loss.overwritten is not None:
+            return self.loss.overwritten.element.name_span
+        element = self.step.handler.targets[self.step.choice].element
+        if self.choice and element is not None:
+            return element.name_span
+        return self.step.handler.element.name_span
+
+    @property
+    def related(self) -> Iterator[Related]:
+        """The handlers on the path."""
+        for number, step in enumerate(self.loss.path):
+            yield Related(step.handler.element.name_span, _QUESTIONS[self.loss.duty.kind] if number == 0 else "then")
+        if self.loss.path:
+            yield Related(self.step.handler.element.name_span, "without an answer")
+
+    @property
+    def order(self) -> str:
+        """The order of requests under which the answer is missing, as a clause; "" if it does not depend on one."""
+        between = self.loss.between
+        if self.loss.race and self.step.event is not None:
+            return f"if the event `{self.step.event.name}` arrives first"
+        if between is None:
+            return ""
+        what = "goal" if between.event.part is ProtocolPart.GOAL else "request"
+        name = f" of `{between.sender}`" if between.sender else ""
+        due = "goal" if between.duty.kind is not DutyKind.REQUEST else "request"
+        asker = f" of `{between.asker}`" if between.asker else ""
+        return f"if a {what} for `{between.event.name}`{name} arrives while the {due}{asker} is pending"
+
+    @property
+    def severity(self) -> Severity | None:
+        """The severity of a finding, `None` for that of the rule: a warning if the loss depends on a condition or on
+        the order in which several clients act."""
+        between = self.loss.between
+        if not self.certain or self.loss.race or (between is not None and not between.is_of_one_client):
+            return Severity.WARNING
+        return None
+
+
+_QUESTIONS = {
+    DutyKind.TICK: "the tick arrives",
+    DutyKind.HALT: "the halt arrives",
+    DutyKind.REQUEST: "the request arrives",
+    DutyKind.GOAL: "the goal arrives",
+    DutyKind.RESULT: "the goal is accepted",
+}
+
+
+def protocols(context: MachineContext) -> ClientProtocols:
+    """What the clients of the machine may send."""
+    if context.system is None:
+        return ClientProtocols(None, ())
+    known: dict[str, ClientProtocols] = context.system.__dict__.setdefault("client_protocols", {})
+    path = context.source.path
+    if path not in known:
+        known[path] = ClientProtocols(context.system, context.automata)
+    return known[path]
+
+
+def missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[OpenPath]:
+    """The paths on which the answer to a duty is missing, at most one for each handler; for a handler with several
+    targets, one for each target after which it is missing, if it is sent after others.
+
+    Paths are left out if the graph is approximate and the step uncertain, or if another finding explains them: an
     answer of the wrong kind is reported by repeated-answer, an element that cannot be read may be the answer, and a
     condition that has no effect because of earlier conditions (shadowed-transition) is probably wrong.
     """
-    steps: dict[Handler, list[BehaviorStep]] = {}
-    for step in dead_ends(behavior, duty):
+    lost: dict[Handler, list[Loss]] = {}
+    for loss in losses(behavior, duty, protocols(context)):
+        step = loss.step
         wrong = any(fault.kind is FaultKind.WRONG_KIND and fault.duty == duty for fault in step.faults)
         if not wrong and (step.certain or not behavior.approximate):
-            steps.setdefault(step.handler, []).append(step)
-    for handler, handler_steps in steps.items():
-        if all(step.ignored for step in handler_steps) and has_shadowed(context.machine, behavior.chart, handler):
+            lost.setdefault(step.handler, []).append(loss)
+    for handler, of_handler in lost.items():
+        if all(loss.step.ignored for loss in of_handler) and has_shadowed(context.machine, behavior.chart, handler):
             continue
-        unexplained = [step for step in handler_steps if not _may_be_unread(context.machine, behavior, duty, step)]
-        if unexplained:
-            certain = [step for step in unexplained if step.certain and not step.ignored]
-            yield (certain or unexplained)[0], bool(certain)
+        unexplained = [loss for loss in of_handler if not _may_be_unread(context, behavior, loss)]
+        choices = {loss.step.choice for loss in unexplained if not loss.step.ignored}
+        if handler.is_probabilistic and choices and len(choices) < len(handler.targets):
+            for choice in sorted(choices):
+                yield _worst([loss for loss in unexplained if loss.step.choice == choice], True)
+        elif unexplained:
+            yield _worst(unexplained, False)
+
+
+def _worst(of_handler: list[Loss], choice: bool) -> OpenPath:
+    """The path that is certain and depends on no order of requests, if there is one."""
+
+    def rank(loss: Loss) -> tuple[bool, bool, bool]:
+        return (not loss.step.certain or loss.step.ignored, loss.between is not None, loss.overwritten is not None)
+
+    worst = min(of_handler, key=rank)
+    return OpenPath(worst, worst.step.certain and not worst.step.ignored, choice)
 
 
 def place(handler: Handler, statement: Statement | None = None) -> Span:
@@ -120,23 +221,15 @@ def _within(inner: Span, outer: Span) -> bool:
     return outer.start <= inner.start and inner.end <= outer.end
 
 
-def target_of(step: BehaviorStep) -> Iterator[Related]:
-    """The target that a step leads to, if its handler chooses one of several targets; nothing for other steps, and if
-    the step ignores the event."""
-    if step.handler.is_probabilistic and not step.ignored:
-        element = step.handler.targets[step.choice].element
-        if element is not None:
-            yield Related(element.name_span, "on this path")
-
-
-def _may_be_unread(machine: Machine, behavior: Behavior, duty: Duty, step: BehaviorStep) -> bool:
+def _may_be_unread(context: MachineContext, behavior: Behavior, loss: Loss) -> bool:
     """Whether an element that cannot be read might be the missing answer after a step, or handle an event that leads to
     it. Only elements in the handler, in a state that waits for the answer, or in a state that ignores an event are
     considered."""
+    machine, step = context.machine, loss.step
     states = {state.id.value: state.element for state in behavior.chart.states if state.id}
     source = behavior.configurations[step.source]
-    names = {behavior.configurations[number].state for number in waiting_behind(behavior, duty, step)}
-    if step.ignored or source.owes(duty):
+    names = {behavior.configurations[number].state for number in waiting_behind(behavior, loss, protocols(context))}
+    if step.ignored or source.owes(loss.duty):
         names.add(source.state)
     elements = [step.handler.element, *(states[name] for name in names if name in states)]
     unresolved = {
@@ -158,6 +251,74 @@ def _is_misspelled(element: Element) -> bool:
         return True
     missing = [name for name in type_.attributes if element.get(name) is None]
     return any(misspelled.attribute(element, name, type_.attributes) for name in missing)
+
+
+# ------------------------------------------------------------------ the fixes
+
+
+def answered(
+    context: MachineContext,
+    path: OpenPath,
+    states: Iterable[State],
+    title: str,
+    lines: tuple[str, ...],
+    *,
+    preferred: bool,
+) -> Iterator[Fix]:
+    """A fix that adds an answer at the end of an open path. No fix is offered if no place on the path is certain.
+
+    If the handler already answers in some parts of one `<if>`, the answer is added to the part that lacks it. Nothing
+    is added after an `<if>` that may already have answered, or to a handler that has no content.
+
+    Args:
+        lines: the elements that answer.
+    """
+    step, document = path.step, context.document
+    target = step.handler.targets[step.choice]
+    element = target.element or step.handler.element
+    if step.ignored or path.loss.overwritten is not None or not element.complete:
+        return
+    if step.handler.trigger is ProtocolPart.GOAL_RESPONSE:
+        return  # the element has no content
+    name = target.state.value if target.state else ""
+    entered = next((state for state in states if state.id and state.id.value == name), None)
+    answering = [s for s in target.body if _may_answer(context.machine, s, path.loss.duty)]
+    on_entry = entered.entry.statements if entered is not None and entered.entry else ()
+    if any(_may_answer(context.machine, statement, path.loss.duty) for statement in on_entry):
+        return
+    if not answering:
+        yield Fix(title, (last_in(document, element, *lines),), preferred=preferred)
+    elif len(answering) == 1 and isinstance(answering[0], If):
+        yield from _in_branches(context, answering[0], path.loss.duty, title, lines)
+
+
+def _in_branches(context: MachineContext, choice: If, duty: Duty, title: str, lines: tuple[str, ...]) -> Iterator[Fix]:
+    document = context.document
+    if not choice.element.complete:
+        return
+    parts = (*choice.branches, *((choice.otherwise,) if choice.otherwise else ()))
+    for part in parts:
+        if not any(_may_answer(context.machine, statement, duty) for statement in part.body):
+            if part.body:
+                edit = after(document, part.body[-1].element, *lines)
+            elif part.element is choice.element:
+                edit = first_in(document, part.element, *lines)
+            else:
+                edit = after(document, part.element, *lines)
+            yield Fix(f"{title} in this part of the `<if>`", (edit,), preferred=False)
+    if choice.otherwise is None:
+        edit = last_in(document, choice.element, "<else />", *lines)
+        yield Fix(f"{title} if no condition holds", (edit,), preferred=False)
+
+
+def _may_answer(machine: Machine, statement: Statement, duty: Duty) -> bool:
+    names = {*ELEMENTS[SENT.get(duty.kind, ProtocolPart.GOAL)]}
+    for inner in statements((statement,)):
+        if inner.element.name in names:
+            declaration = find_handle(machine, inner) if isinstance(inner, RosSend) else None
+            if declaration is None or declaration.handle is None or declaration.handle.value == duty.handle:
+                return True
+    return False
 
 
 # ------------------------------------------------------------ place in the tree

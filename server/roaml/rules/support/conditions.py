@@ -11,6 +11,9 @@ from roaml.expr.tree import Expr, is_draw, walk
 from roaml.model.behavior.knowledge import MAX_CONJUNCTIONS, NOTHING, ConditionFacts, Knowledge
 from roaml.model.syntax import Expression
 
+MAX_CONDITIONS = 2000
+"""The maximum number of conditions in a row that are compared with each other."""
+
 
 class Covered(NamedTuple):
     """A condition that holds only where an earlier one holds.
@@ -32,10 +35,11 @@ def covered(facts: ConditionFacts, conditions: Sequence[Expression | None]) -> I
 
     A condition that can never hold by itself is left out. `None`, a condition that cannot be read, and a condition that
     draws a random number do not cover other conditions. The search ends when the knowledge about the earlier conditions
-    has more than `MAX_CONJUNCTIONS` cases.
+    has more than `MAX_CONJUNCTIONS` cases, or after `MAX_CONDITIONS` conditions, because the time grows with the
+    square of their number.
     """
     left: tuple[Knowledge, ...] = (NOTHING,)
-    for number, condition in enumerate(conditions):
+    for number, condition in enumerate(conditions[:MAX_CONDITIONS]):
         if condition is None or condition.broken or any(is_draw(node) for node in walk(condition.tree)):
             continue
         tree = condition.tree

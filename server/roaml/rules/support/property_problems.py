@@ -17,13 +17,20 @@ def problem_rule(kind: ProblemKind, severity: Severity, summary: str) -> Rule:
     holder: list[Rule] = []
 
     def check(file: LinkedFile) -> Iterator[Finding]:
-        for problem in file.problems:
-            if problem.kind is kind:
-                fixes = (*replacements(problem.span, problem.close), *_remedies(file, problem))
-                yield holder[0].at(problem.span, problem.message, *fixes)
+        yield from problems(holder[0], kind, file)
 
     holder.append(Rule(kind.value, severity, summary, xml_properties=check))
     return holder[0]
+
+
+def problems(rule: Rule, kind: ProblemKind, file: LinkedFile) -> Iterator[Finding]:
+    """The problems of one kind in a property file, as findings of `rule`."""
+    for problem in file.problems:
+        if problem.kind is kind:
+            fixes = (*replacements(problem.span, problem.close), *_remedies(file, problem))
+            yield rule.at(
+                problem.span, problem.message, *fixes, severity=Severity.WARNING if problem.harmless else None
+            )
 
 
 def _remedies(file: LinkedFile, problem: Problem) -> Iterator[Fix]:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
-from roaml.model.parameters import NANOSECONDS
+from roaml.durations import NANOSECONDS
 from roaml.model.timing import periods
 from roaml.rules.rule import Rule, SystemContext
 from roaml.text import Span, TextEdit

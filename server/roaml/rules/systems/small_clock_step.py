@@ -8,12 +8,13 @@ from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
+from roaml.durations import NANOSECONDS
 from roaml.facts import Facts
-from roaml.model.parameters import NANOSECONDS
 from roaml.model.timing import NANOSECONDS_PER_SECOND, TimerRate, period, rates
 from roaml.record import Record
 from roaml.roles import SymbolKind
 from roaml.rules.rule import Rule, SystemContext
+from roaml.rules.support.timing import drift
 from roaml.text import TextEdit
 
 MAX_STEPS_OF_PERIOD = 10
@@ -75,6 +76,9 @@ def check(context: SystemContext) -> Iterator[Finding]:
     groups = _groups(rates(context.system, context.file.parameters))
     if not groups or end is None:
         return
+    timers = list(rates(context.system, context.file.parameters))
+    if any(drift(timer.hertz, timers, end) is not None for timer in timers):
+        return  # timer-rate reports the rate that has no exact period
     step = math.gcd(*(group.nanoseconds for group in groups))
     steps = -(-end // step)
     if groups[0].nanoseconds <= MAX_STEPS_OF_PERIOD * step or steps <= MAX_STEPS:

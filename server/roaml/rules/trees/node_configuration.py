@@ -15,12 +15,12 @@ from roaml.rules.support.settings import constant_settings, integer_of
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    """Report settings with which a node of BehaviorTree.CPP never returns a status (docs/spec/nodes.md#common), ports
+    """Report settings with which a node of BehaviorTree.CPP never returns a status (docs/spec/nodes.md#as2fm), ports
     that are set under two names, and blackboard variables for ports that need a constant."""
     yield from _set_twice(context)
-    is_library_tree = context.system is None or context.system.is_library_tree
+    is_as2fm = context.system is not None and context.system.is_as2fm
     for node, key, text in constant_settings(context):
-        if is_library_tree and key in ("num_cycles", "num_attempts"):
+        if not is_as2fm and key in ("num_cycles", "num_attempts"):
             continue  # BehaviorTree.CPP accepts any number; `port-range` reports those without use
         number = integer_of(text) if key in _COUNTS else None
         problem = _problem(node, key, number) if number is not None else None

@@ -41,12 +41,12 @@ def _library_node(context: TreeContext, node: TreeNode) -> Node | None:
 
 
 def _check(context: TreeContext, node: TreeNode, known: Node, texts: Mapping[str, str]) -> Iterator[Finding]:
-    is_library_tree = context.system is None or context.system.is_library_tree
+    is_as2fm = context.system is not None and context.system.is_as2fm
     for port in known.ports:
         number = _number(port, texts[port.name]) if port.name in texts else None
         if port.limits is None or number is None:
             continue
-        if number < -1 and not is_library_tree and port.limits.special:
+        if number < -1 and is_as2fm and port.limits.special:
             continue  # the node never returns a status, which `node-configuration` reports
         reason = _reason(port.limits, number, len(node.children))
         effect = f"; {port.limits.effect}" if port.limits.effect and not _upper(port.limits) else ""

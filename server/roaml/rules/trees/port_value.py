@@ -8,11 +8,10 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
 from roaml.expr.infer import IntegerDivision, constant, infer
 from roaml.expr.parse import parse
-from roaml.expr.types import BASE_TYPES, BOOL, INTEGER_RANGES, REAL, ScalarKind, fits, is_kind, is_number
-from roaml.model.expand import PortConstant, Reference
+from roaml.expr.types import BASE_TYPES, BOOL, INTEGER_RANGES, ScalarKind, fits, is_kind, is_number
+from roaml.model.expand import PortConstant
 from roaml.model.outline import MachineOutline, PortOutline
 from roaml.model.syntax import Name
-from roaml.model.system import ANY_TYPE
 from roaml.model.tree import (
     PortModel,
     TreeNode,
@@ -22,7 +21,7 @@ from roaml.model.tree import (
     looks_like_reference,
     nodes,
 )
-from roaml.record import Record, replace
+from roaml.record import Record
 from roaml.roles import Direction, SymbolKind
 from roaml.rules.rule import Rule, TreeContext, did_you_mean, replacements
 from roaml.rules.support.instances import instances
@@ -47,7 +46,6 @@ def check(context: TreeContext) -> Iterator[Finding]:
             if plugin is not None and not model.is_subtree:
                 yield from _default(port, plugin, path)
     yield from _given_by_subtrees(context)
-    yield from _of_any_type(context)
 
 
 def _name(value: Name) -> Iterator[Finding]:
@@ -127,60 +125,6 @@ def _given_by_subtrees(context: TreeContext) -> Iterator[Finding]:
             if problem is not None:
                 message = f"the `<SubTree>` passes `{value.text}` for `{setting.variable}`, but {problem.message}"
                 yield RULE.at(setting.value.span, message, severity=problem.severity)
-
-
-def _of_any_type(context: TreeContext) -> Iterator[Finding]:
-    """Check that all values that a `Switch` compares have the type of the first variable among them: string or int
-    (docs/spec/nodes.md#control)."""
-    if context.system is not None and context.system.is_library_tree:
-        return  # BehaviorTree.CPP compares texts and numbers
-    for node, automaton in instances(context):
-        assert context.system is not None
-        any_type = context.system.any_type(automaton)
-        values = [(p, v) for p in automaton.outline.ports if p.type == ANY_TYPE and (v := automaton.port(p.key))]
-        variables = [(port, value) for port, value in values if isinstance(value, Reference)]
-        if any_type != "string" and any_type not in INTEGER_RANGES:
-            port, reference = variables[0]
-            message = f"a `Switch` compares only strings or integers, but `{reference.variable}` is `{any_type}`"
-            yield RULE.at(_place(node, port), f"{message}; use a variable of one of these types")
-            continue
-        if values and not variables:
-            yield from _literal_choice(node)
-        for port, value in values:
-            if isinstance(value, PortConstant):
-                problem = problem_of(value.text.strip(), replace(port, type=any_type))
-                if problem is not None and not looks_like_reference(value.text):
-                    yield RULE.at(_place(node, port), problem.message, severity=problem.severity)
-                continue
-            given = context.system.variable_type(value.variable)
-            if is_variable_name(value.variable) and not fits(BASE_TYPES[given], BASE_TYPES[any_type]):
-                message = (
-                    f"`{port.key}` is compared with values of type `{any_type}`, but `{value.variable}` is `{given}`"
-                )
-                yield RULE.at(_place(node, port), message)
-
-
-def _literal_choice(node: TreeNode) -> Iterator[Finding]:
-    """Report values like a float or boolean in a `Switch` that uses no variable: they are strings, which is
-    probably not intended.
-
-    A text that a `<SubTree>` passes may be intended as a string, such as a version.
-    """
-    setting = next((s.value for s in node.ports if s.key.value == "variable" and s.variable is None), None)
-    if setting is not None:
-        tree, findings = parse(Decoded(setting.value.strip(), 0))
-        given, problems = infer(tree, lambda _: None)
-        if not findings and not problems and given in (BOOL, REAL):
-            kind = "a boolean" if given == BOOL else "a number"
-            message = f"the `Switch` compares `{setting.value}` as a string, not as {kind}"
-            yield RULE.at(setting.span, f"{message}; use a variable of type integer or string")
-
-
-def _place(node: TreeNode, port: PortOutline) -> Span:
-    """The place where a node sets a port; for a default of `<TreeNodesModel>`, the name of the node."""
-    setting = next((s.value for s in node.ports if s.key.value == port.key), node.plugin)
-    assert setting is not None
-    return setting.span
 
 
 class ConstantProblem(Record, frozen=True):

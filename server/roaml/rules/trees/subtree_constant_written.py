@@ -15,9 +15,8 @@ from roaml.rules.support.instances import instances
 def check(context: TreeContext) -> Iterator[Finding]:
     """Report a subtree that writes a variable for which its `<SubTree>` passes a constant
     (docs/spec/trees.md#subtrees)."""
-    is_library_tree = context.system is not None and context.system.is_library_tree
     for node, automaton in instances(context):
-        if is_library_tree and not automaton.path:
+        if context.system is not None and context.system.is_program(automaton):
             continue  # BehaviorTree.CPP creates a variable with this initial value
         for setting in node.ports:
             port = automaton.outline.port(setting.key.value)

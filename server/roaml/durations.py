@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Durations as users write them, such as `100 s`, and the reaction time of machines."""
+
+from __future__ import annotations
+
+from roaml.record import Record
+
+NANOSECONDS = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}
+"""Unit of time -> its length in ns, the longest first."""
+ANY, INSTANT = "any", "instant"
+REACTION_TIME = "a reaction time must be `any`, `instant`, or a duration such as `20 ms`"
+
+
+def duration(text: str) -> int | None:
+    """The duration in `text`, in ns; `None` if `text` is not a duration above 0, such as `100 s` or `250ms`."""
+    return _nanoseconds(text) or None
+
+
+def duration_text(nanoseconds: int) -> str:
+    """A duration as `duration` reads it, in the largest unit of which it is a whole number."""
+    unit = next(unit for unit, length in NANOSECONDS.items() if nanoseconds % length == 0)
+    return f"{nanoseconds // NANOSECONDS[unit]} {unit}"
+
+
+class ReactionTime(Record, frozen=True):
+    """An assumption about the time that a machine waits before it takes a possible step
+    (docs/spec/semantics.md#reaction-time).
+
+    Attributes:
+        nanoseconds: the maximum; 0 if machines react at once, `None` if there is no maximum.
+    """
+
+    nanoseconds: int | None = None
+
+    @property
+    def is_any(self) -> bool:
+        return self.nanoseconds is None
+
+    @property
+    def is_instant(self) -> bool:
+        return self.nanoseconds == 0
+
+    @property
+    def text(self) -> str:
+        """The assumption as `reaction_time` reads it."""
+        if self.nanoseconds is None:
+            return ANY
+        return duration_text(self.nanoseconds) if self.nanoseconds else INSTANT
+
+    def steps(self, step: int) -> int:
+        """The maximum in steps of a clock, rounded up; only for a duration above 0.
+
+        Args:
+            step: the length of a step of the clock, in ns.
+        """
+        assert self.nanoseconds
+        return -(-self.nanoseconds // step)
+
+
+ANY_TIME = ReactionTime()
+AT_ONCE = ReactionTime(0)
+
+
+def reaction_time(text: str) -> ReactionTime | None:
+    """The reaction time that `text` names: `any`, `instant`, or a duration such as `20 ms`; a duration of 0 is
+    `instant`. `None` for other texts."""
+    word = text.strip()
+    if word in (ANY, INSTANT):
+        return ANY_TIME if word == ANY else AT_ONCE
+    nanoseconds = _nanoseconds(word)
+    return None if nanoseconds is None else ReactionTime(nanoseconds)
+
+
+def _nanoseconds(text: str) -> int | None:
+    number = text.strip().rstrip("abcdefghijklmnopqrstuvwxyz")
+    unit = text.strip().removeprefix(number)
+    value = integer(number.strip())
+    return value * NANOSECONDS[unit] if value is not None and unit in NANOSECONDS else None
+
+
+def integer(text: str) -> int | None:
+    """The number in `text`, of which the first 18 digits are used; `None` if `text` has other characters."""
+    return int(text[:18]) if text.isascii() and text.isdigit() else None

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Completion of the right side of a comparison in a machine: the constants of the interface, and the values that the
+machines of the system send."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+
+from roaml.expr.infer import infer
+from roaml.expr.parse import parse
+from roaml.expr.types import Struct, StructKind, Type
+from roaml.ide.completion.item import CompletionItem, ItemKind, Rank
+from roaml.ide.completion.request import Request
+from roaml.interfaces.registry import NotFound
+from roaml.interfaces.types import SECTION_NAMES, Constant, Kind
+from roaml.model.value_types import GOAL_STATUSES, find_handle
+from roaml.model.values.analyse import DataChannel, data_place
+from roaml.model.values.domain import Constant as ConstantValue
+from roaml.model.values.domain import ValueSet
+from roaml.project.values import arriving_at
+from roaml.text import Decoded
+
+_COMPARED = re.compile(r"((?:[A-Za-z_]\w*\.)+)([A-Za-z_]\w*)\s*[=!]==?\s*\w*\Z", re.ASCII)
+
+
+def compared_values(request: Request, start: int, scope: Mapping[str, Type]) -> Iterator[CompletionItem]:
+    """Values for the right side of a comparison with a field of event data. The caret is behind the operator.
+
+    Args:
+        start: the offset at which the expression begins.
+        scope: the types of the variables and of the event variables.
+    """
+    compared = _COMPARED.search(request.file.document.text[start : request.offset])
+    if compared is None:
+        return
+    owner, name = compared[1][:-1], compared[2]
+    named: dict[ConstantValue | None, str] = {c.value: c.name for c in _constants(request, owner, name, scope)}
+    if (owner, name) == ("_wrapped_result", "code"):
+        named.update((code, text) for code, text in GOAL_STATUSES.items())
+    sent = [value for value in _arriving(request, f"{owner}.{name}").only or () if not isinstance(value, bool)]
+    for value in (*named, *sorted((v for v in sent if v not in named), key=str)):
+        if value is not None:
+            text = f"'{value}'" if isinstance(value, str) else str(value)
+            detail = named.get(value, "is sent")
+            yield CompletionItem(text, ItemKind.VALUE, detail=detail, rank=Rank.BEST, filter=f"{text} {detail}")
+
+
+def _constants(request: Request, owner: str, field: str, scope: Mapping[str, Type]) -> list[Constant]:
+    """The constants of the interface that `owner` is a part of for its field `field`: those that begin like the field;
+    if there are none, those of its type."""
+    tree, findings = parse(Decoded(owner, 0))
+    type_ = None if findings else infer(tree, scope.get)[0]
+    if not isinstance(type_, Struct) or type_.kind is not StructKind.ROS:
+        return []
+    full_name, _, part = type_.name.partition(" ")
+    kind: Kind = "msg" if not part else "srv" if part in SECTION_NAMES["srv"] else "action"
+    definition = request.analysis.registry.resolve(kind, full_name)
+    if isinstance(definition, NotFound):
+        return []
+    section = definition.sections[SECTION_NAMES[kind].index(part) if part else 0]
+    declared = next((f.type for f in section.fields if f.name == field), None)
+    fitting = [c for c in section.constants if declared is not None and c.type.name == declared.element.name]
+    return [c for c in fitting if c.name.startswith(field.upper())] or fitting
+
+
+def _arriving(request: Request, place: str) -> ValueSet:
+    """The values that the machines of the system send to a place of event data."""
+    handler, machine = request.handler, request.machine
+    prefix = data_place(handler.trigger) if handler is not None and handler.trigger is not None else None
+    if machine is None or handler is None or handler.trigger is None or not prefix:
+        return ValueSet()
+    declaration = find_handle(machine, handler)
+    name = declaration.handle if declaration is not None else handler.event
+    channel = DataChannel(handler.trigger, name.value if name is not None else "")
+    fields = arriving_at(request.analysis, request.path, request.system_path).get(channel, {})
+    return fields.get(place.removeprefix(f"{prefix}."), ValueSet())

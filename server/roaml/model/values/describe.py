@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Texts for people about sets of values."""
+
+from __future__ import annotations
+
+import math
+
+from roaml.model.values.domain import Constant, Origin, ValueSet
+
+MAX_NAMED = 4
+"""The maximum number of values that a text lists."""
+
+
+def described(values: ValueSet) -> str:
+    """The values as a phrase after a verb, such as ``0``, ``1, 2 or 3`` or `between 0 and 5`; "" if nothing is known
+    about them."""
+    if values.only is not None and len(values.only) <= MAX_NAMED:
+        texts = [_text(value) for value in sorted(values.only, key=lambda v: (isinstance(v, str), v))]
+        return texts[0] if len(texts) == 1 else " or ".join((", ".join(texts[:-1]), texts[-1])) if texts else ""
+    if values.only is not None:
+        numbers = [value for value in values.only if not isinstance(value, str)]
+        return f"between {_text(min(numbers))} and {_text(max(numbers))}" if len(numbers) == len(values.only) else ""
+    low, high = math.isfinite(values.low), math.isfinite(values.high)
+    if low and high:
+        return f"between {_text(values.low)} and {_text(values.high)}"
+    if low:
+        return f"at least {_text(values.low)}"
+    return f"at most {_text(values.high)}" if high else ""
+
+
+def is_informative(values: ValueSet) -> bool:
+    """Whether a set says more than the type of the values."""
+    if values.only is not None:
+        return values.only != frozenset((True, False)) or not all(isinstance(v, bool) for v in values.only)
+    return min(values.low_from, values.high_from) < Origin.ASSUMED and bool(described(values))
+
+
+def _text(value: Constant) -> str:
+    if isinstance(value, bool):
+        return "`true`" if value else "`false`"
+    if isinstance(value, str):
+        return f"`'{value}'`"
+    return f"{value:,.6g}".replace(",", "") if isinstance(value, float) and not value.is_integer() else str(int(value))

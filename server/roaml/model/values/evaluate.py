@@ -1,0 +1,439 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The values of expressions, and what a condition says about variables.
+
+- A `Valuation` maps the places of values to their sets: `level`, `_msg.data`, `pose.x`, `path.length`. A place that it
+  does not contain may have any value. It never contains elements of arrays.
+- Nothing is remembered about relations between places, so a set may contain values that do not occur together.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterator
+from typing import TypeAlias
+
+from roaml.expr.operators import Operator, OperatorKind, UnaryOperator
+from roaml.expr.tree import (
+    ArrayLiteral,
+    Binary,
+    Boolean,
+    Call,
+    Conditional,
+    Expr,
+    Index,
+    Member,
+    Name,
+    Number,
+    ObjectLiteral,
+    String,
+    Unary,
+    children,
+)
+from roaml.model.values.domain import (
+    ANYTHING,
+    BOTH,
+    FALSE,
+    MAX_LISTED,
+    NONE,
+    TRUE,
+    Constant,
+    Origin,
+    ValueSet,
+    above,
+    below,
+    between,
+    exactly,
+    interval,
+    is_numeric,
+    join,
+    listed,
+    meet,
+    truth,
+    without,
+)
+from roaml.record import Record, field
+from roaml.text import Span
+
+Valuation: TypeAlias = "dict[str, ValueSet]"
+
+_LENGTH = ValueSet(None, 0, math.inf, Origin.REACHED, Origin.ASSUMED)
+_MIRROR = {
+    Operator.LESS: Operator.GREATER,
+    Operator.LESS_EQUAL: Operator.GREATER_EQUAL,
+    Operator.GREATER: Operator.LESS,
+    Operator.GREATER_EQUAL: Operator.LESS_EQUAL,
+    Operator.EQUAL: Operator.EQUAL,
+    Operator.NOT_EQUAL: Operator.NOT_EQUAL,
+}
+_OPPOSITE = {
+    Operator.LESS: Operator.GREATER_EQUAL,
+    Operator.LESS_EQUAL: Operator.GREATER,
+    Operator.GREATER: Operator.LESS_EQUAL,
+    Operator.GREATER_EQUAL: Operator.LESS,
+    Operator.EQUAL: Operator.NOT_EQUAL,
+    Operator.NOT_EQUAL: Operator.EQUAL,
+}
+
+
+def place_of(expr: Expr) -> str | None:
+    """The place that an expression reads or writes, with `[]` for indices; `None` if it is not a chain of members and
+    indices that begins with a name."""
+    match expr:
+        case Name():
+            return expr.name
+        case Member():
+            owner = place_of(expr.object)
+            return None if owner is None else f"{owner}.{expr.name}"
+        case Index():
+            owner = place_of(expr.object)
+            return None if owner is None else f"{owner}[]"
+    return None
+
+
+def is_within(place: str, outer: str) -> bool:
+    """Whether `place` is a part of `outer`, or `outer` itself."""
+    return place.startswith(outer) and (len(place) == len(outer) or place[len(outer)] in ".[")
+
+
+class Evaluator(Record, eq=False):
+    """Evaluates the expressions of one chart.
+
+    Attributes:
+        whole: whether the values of a place are integers.
+        constants: names that are constants, such as `SUCCESS`.
+        seen: the places of expressions in the file -> all values that they had, if `records` is true.
+    """
+
+    whole: Callable[[str], bool]
+    constants: dict[str, Constant] = field(default_factory=dict)
+    records: bool = False
+    seen: dict[Span, ValueSet] = field(default_factory=dict)
+
+    # ------------------------------------------------------------- values
+
+    def values(self, known: Valuation, expr: Expr) -> ValueSet:
+        values = self._values(known, expr)
+        if self.records:
+            before = self.seen.get(expr.span)
+            self.seen[expr.span] = values if before is None else join(before, values)
+        return values
+
+    def _values(self, known: Valuation, expr: Expr) -> ValueSet:
+        match expr:
+            case Name():
+                if expr.name in known:
+                    return known[expr.name]
+                constant = self.constants.get(expr.name)
+                return ANYTHING if constant is None else exactly(constant)
+            case Number() | String() | Boolean():
+                return exactly(expr.value)
+            case Member():
+                return self._member(known, expr)
+            case Index():
+                self.values(known, expr.index)
+                place = place_of(expr)
+                return known.get(place, ANYTHING) if place is not None else ANYTHING
+            case Unary():
+                return self._unary(expr.operator, self.values(known, expr.operand))
+            case Binary():
+                return self._binary(known, expr)
+            case Conditional():
+                return self._conditional(known, expr)
+            case Call():
+                return self._call(known, expr)
+            case _:
+                for part in children(expr):
+                    self.values(known, part)
+                return ANYTHING
+
+    def _member(self, known: Valuation, expr: Member) -> ValueSet:
+        self._inner_indices(known, expr.object)
+        place = place_of(expr)
+        if place is not None and place in known:
+            return known[place]
+        return _LENGTH if expr.name == "length" else ANYTHING
+
+    def _inner_indices(self, known: Valuation, expr: Expr) -> None:
+        """Record the indices inside a chain of members."""
+        while isinstance(expr, Member | Index):
+            if isinstance(expr, Index):
+                self.values(known, expr.index)
+            expr = expr.object
+
+    def _unary(self, operator: UnaryOperator, values: ValueSet) -> ValueSet:
+        match operator:
+            case UnaryOperator.NOT:
+                return BOTH if values.only is None else truth(not value for value in values.only)
+            case UnaryOperator.NEGATE:
+                if values.only is not None:
+                    return listed(-value for value in values.only if not isinstance(value, str))
+                return between(-values.high, -values.low, values.high_from, values.low_from)
+            case _:
+                return values
+
+    def _binary(self, known: Valuation, expr: Binary) -> ValueSet:
+        operator = expr.operator
+        if operator.kind is OperatorKind.LOGICAL:
+            is_and = operator is Operator.AND
+            left = self.values(known, expr.left)
+            if left == (FALSE if is_and else TRUE):
+                return left
+            rest = self.assume(known, expr.left, is_and)
+            right = self.values(rest, expr.right) if rest is not None else NONE
+            # The right operand is evaluated only if the left one does not decide.
+            decided = frozenset((not is_and,)) & (left.only if left.only is not None else frozenset((True, False)))
+            return ValueSet(decided | (right.only if right.only is not None else frozenset((True, False))))
+        left, right = self.values(known, expr.left), self.values(known, expr.right)
+        if left.only == frozenset() or right.only == frozenset():
+            return NONE
+        if operator.kind is OperatorKind.ARITHMETIC:
+            return _arithmetic(operator, left, right)
+        same = place_of(expr.left)
+        if same is not None and same == place_of(expr.right):
+            return TRUE if operator in (Operator.EQUAL, Operator.LESS_EQUAL, Operator.GREATER_EQUAL) else FALSE
+        return compared(operator, left, right)
+
+    def _conditional(self, known: Valuation, expr: Conditional) -> ValueSet:
+        self.values(known, expr.test)
+        result = NONE
+        for part, holds in ((expr.then, True), (expr.otherwise, False)):
+            tested = self.assume(known, expr.test, holds)
+            if tested is not None:
+                result = join(result, self.values(tested, part))
+        return result
+
+    def _call(self, known: Valuation, expr: Call) -> ValueSet:
+        arguments = [self.values(known, argument) for argument in expr.arguments]
+        name = expr.function.name if isinstance(expr.function, Member) else ""
+        match name, arguments:
+            case "random", []:
+                return between(0, 1, Origin.REACHED, Origin.ASSUMED)
+            case "abs", [value]:
+                return _absolute(value)
+            case "floor" | "ceil", [value] if is_numeric(value):
+                function = math.floor if name == "floor" else math.ceil
+                if value.only is not None:
+                    return listed(function(v) for v in value.only if not isinstance(v, str))
+                low, high = (function(bound) if math.isfinite(bound) else bound for bound in (value.low, value.high))
+                return between(low, high, value.low_from, value.high_from)
+            case "min" | "max", [first, second]:
+                return _extreme(name == "min", first, second)
+            case "sin" | "cos", [_]:
+                return between(-1, 1, Origin.ASSUMED, Origin.ASSUMED)
+        return ANYTHING
+
+    # --------------------------------------------------------- conditions
+
+    def assume(self, known: Valuation, condition: Expr, holds: bool) -> Valuation | None:
+        """`known` where `condition` has the value `holds`; `None` if it cannot have it."""
+        match condition:
+            case Boolean():
+                return known if condition.value == holds else None
+            case Unary(operator=UnaryOperator.NOT):
+                return self.assume(known, condition.operand, not holds)
+            case Binary(operator=Operator.AND | Operator.OR):
+                if (condition.operator is Operator.AND) == holds:
+                    first = self.assume(known, condition.left, holds)
+                    return None if first is None else self.assume(first, condition.right, holds)
+                first, rest = (self.assume(known, condition.left, value) for value in (holds, not holds))
+                second = None if rest is None else self.assume(rest, condition.right, holds)
+                return second if first is None else first if second is None else joined_valuations(first, second)
+            case Binary() if condition.operator in _OPPOSITE:
+                operator = condition.operator if holds else _OPPOSITE[condition.operator]
+                return self._compare(known, operator, condition.left, condition.right)
+        if self._quietly(known, condition).only == frozenset((not holds,)):
+            return None
+        place = place_of(condition)
+        return known if place is None else self._with(known, condition, truth((holds,)))
+
+    def _compare(self, known: Valuation, operator: Operator, left: Expr, right: Expr) -> Valuation | None:
+        first, second = self._quietly(known, left), self._quietly(known, right)
+        place = place_of(left)
+        same = place is not None and place == place_of(right)
+        if same or compared(operator, first, second) == FALSE:
+            holds = same and operator in (Operator.EQUAL, Operator.LESS_EQUAL, Operator.GREATER_EQUAL)
+            return known if holds else None
+        narrowed = self._with(known, left, self._related(left, operator, first, second))
+        if narrowed is None:
+            return None
+        return self._with(narrowed, right, self._related(right, _MIRROR[operator], second, first))
+
+    def _quietly(self, known: Valuation, expr: Expr) -> ValueSet:
+        """The values of an expression that is recorded elsewhere."""
+        before, self.records = self.records, False
+        try:
+            return self._values(known, expr)
+        finally:
+            self.records = before
+
+    def _related(self, expr: Expr, operator: Operator, values: ValueSet, other: ValueSet) -> ValueSet:
+        """The part of `values`, those of `expr`, for which `OPERATOR other` can hold."""
+        place = place_of(expr)
+        is_whole = place is not None and self.whole(place)
+        match operator:
+            case Operator.EQUAL:
+                return meet(values, other)
+            case Operator.NOT_EQUAL:
+                return without(values, other, is_whole)
+            case Operator.LESS | Operator.LESS_EQUAL if is_numeric(values) and is_numeric(other):
+                return below(values, other, is_whole, operator is Operator.LESS)
+            case Operator.GREATER | Operator.GREATER_EQUAL if is_numeric(values) and is_numeric(other):
+                return above(values, other, is_whole, operator is Operator.GREATER)
+        return values
+
+    def _with(self, known: Valuation, expr: Expr, values: ValueSet) -> Valuation | None:
+        if values.only == frozenset():
+            return None
+        place = place_of(expr)
+        # The elements of an array share a place, and a string or a constant has none.
+        if place is None or "[" in place or not isinstance(expr, Name | Member) or place in self.constants:
+            return known
+        if known.get(place, ANYTHING) == values:
+            return known
+        return {**known, place: values}
+
+
+def joined_valuations(first: Valuation, second: Valuation) -> Valuation:
+    """The values of both; a place that one of them does not contain is left out."""
+    if first is second:
+        return first
+    return {
+        place: values if values is other else join(values, other)
+        for place, values in first.items()
+        if (other := second.get(place)) is not None
+    }
+
+
+def compared(operator: Operator, left: ValueSet, right: ValueSet) -> ValueSet:
+    """The possible results of a comparison."""
+    if operator in (Operator.EQUAL, Operator.NOT_EQUAL):
+        can_equal = meet(left, right).only != frozenset()
+        can_differ = left.value is None or right.value is None or left.value != right.value
+        results = [True] * can_equal + [False] * can_differ
+        return truth(results if operator is Operator.EQUAL else (not result for result in results))
+    if not (is_numeric(left) and is_numeric(right)):
+        return BOTH
+    if operator in (Operator.GREATER, Operator.GREATER_EQUAL):
+        left, right, operator = right, left, _MIRROR[operator]
+    left, right = interval(left), interval(right)
+    strict = operator is Operator.LESS
+    can_hold = left.low < right.high or (not strict and left.low == right.high)
+    can_fail = left.high > right.low or (strict and left.high == right.low)
+    return truth([True] * can_hold + [False] * can_fail)
+
+
+# ------------------------------------------------------------------ arithmetic
+
+
+def _arithmetic(operator: Operator, left: ValueSet, right: ValueSet) -> ValueSet:
+    if not (is_numeric(left) and is_numeric(right)):
+        return ANYTHING
+    if left.only is not None and right.only is not None and len(left.only) * len(right.only) <= MAX_LISTED**2:
+        return _listed_arithmetic(operator, left.only, right.only)
+    first, second = interval(left), interval(right)
+    match operator:
+        case Operator.ADD:
+            return _interval(
+                first.low + second.low,
+                first.high + second.high,
+                max(first.low_from, second.low_from),
+                max(first.high_from, second.high_from),
+            )
+        case Operator.SUBTRACT:
+            return _interval(
+                first.low - second.high,
+                first.high - second.low,
+                max(first.low_from, second.high_from),
+                max(first.high_from, second.low_from),
+            )
+        case Operator.MULTIPLY:
+            return _corners(first, second, lambda a, b: a * b)
+        case Operator.DIVIDE if second.low > 0 or second.high < 0:
+            return _corners(first, second, lambda a, b: a / b)
+        case Operator.REMAINDER if second.low > 0 and math.isfinite(second.high):
+            return between(0, second.high, Origin.ASSUMED, Origin.ASSUMED)
+    return ANYTHING
+
+
+def _listed_arithmetic(operator: Operator, left: frozenset[Constant], right: frozenset[Constant]) -> ValueSet:
+    results: list[Constant] = []
+    for a, b in itertools.product(left, right):
+        if isinstance(a, str) or isinstance(b, str):
+            return ANYTHING
+        try:
+            results.append(_result(operator, a, b))
+        except (ZeroDivisionError, OverflowError):
+            continue  # the trace ends, or the result is undefined
+    return listed(results) if results else ANYTHING
+
+
+def _result(operator: Operator, a: float, b: float) -> float:
+    match operator:
+        case Operator.ADD:
+            return a + b
+        case Operator.SUBTRACT:
+            return a - b
+        case Operator.MULTIPLY:
+            return a * b
+        case Operator.REMAINDER:
+            return a % b
+        case _:
+            return a / b
+
+
+def _interval(low: float, high: float, low_from: Origin, high_from: Origin) -> ValueSet:
+    low, high = (-math.inf if math.isnan(low) else low), (math.inf if math.isnan(high) else high)
+    return between(low, high, low_from, high_from)
+
+
+def _corners(first: ValueSet, second: ValueSet, operation: Callable[[float, float], float]) -> ValueSet:
+    origin = max(first.low_from, first.high_from, second.low_from, second.high_from)
+    results = [
+        0 if math.isnan(result := operation(a, b)) else result
+        for a, b in itertools.product((first.low, first.high), (second.low, second.high))
+    ]
+    return between(min(results), max(results), origin, origin)
+
+
+def _absolute(values: ValueSet) -> ValueSet:
+    if values.only is not None:
+        return listed(abs(value) for value in values.only if not isinstance(value, str))
+    if values.low >= 0:
+        return values
+    low = 0.0 if values.high >= 0 else -values.high
+    high, high_from = max((-values.low, -values.low_from), (values.high, -values.high_from))
+    return between(low, high, Origin.REACHED if low == 0 else values.high_from, Origin(-high_from))
+
+
+def _extreme(is_least: bool, first: ValueSet, second: ValueSet) -> ValueSet:
+    if first.only is not None and second.only is not None and is_numeric(first) and is_numeric(second):
+        choose = min if is_least else max
+        return listed(choose(a, b) for a, b in itertools.product(first.only, second.only))
+    first, second = interval(first), interval(second)
+    if is_least:
+        low, low_from = min((first.low, first.low_from), (second.low, second.low_from))
+        high, high_from = min((first.high, first.high_from), (second.high, second.high_from))
+        return between(low, high, low_from, high_from)
+    low, low_top = max((first.low, -first.low_from), (second.low, -second.low_from))
+    high, high_top = max((first.high, -first.high_from), (second.high, -second.high_from))
+    return between(low, high, Origin(-low_top), Origin(-high_top))
+
+
+# ------------------------------------------------------------------- literals
+
+
+def literal(place: str, expr: Expr) -> Iterator[tuple[str, ValueSet]]:
+    """The values that a constant gives to `place` and to the places in it. Elements of arrays are left out."""
+    match expr:
+        case ArrayLiteral():
+            yield f"{place}.length", exactly(len(expr.elements))
+        case Number() | String() | Boolean():
+            yield place, exactly(expr.value)
+        case Unary(operator=UnaryOperator.NEGATE, operand=Number() as number):
+            yield place, exactly(-number.value)
+        case Unary(operator=UnaryOperator.PLUS, operand=Number() as number):
+            yield place, exactly(number.value)
+        case ObjectLiteral():
+            for member in expr.members:
+                yield from literal(f"{place}.{member.key}", member.value)

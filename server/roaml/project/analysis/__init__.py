@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The models and systems in the user's files at one moment.
+
+- An `Analysis` never changes: all its results are functions of the content of the files at one moment.
+- Results are cached by content (`Memo`), so a later analysis recomputes only what differs. Parsed files and models are
+  cached by the text of the file, types and outlines by the text and the declarations, a system by the outlines of
+  its files.
+- An analysis reports no findings; `roaml.project.checking` runs the rules.
+- The work is divided by subject. A module uses only those before it: `sources`, `interfaces`, `tree_files`, `systems`,
+  `families`, `machines`, `gaps`, `linking`. Other packages use only `Analysis`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from roaml.forest.settings import NEWEST, TreeSettings
+from roaml.interfaces.registry import Registry
+from roaml.model.parameters import NO_OVERRIDES, Overrides
+from roaml.project.analysis.families import Families
+from roaml.project.analysis.gaps import Gaps
+from roaml.project.analysis.interfaces import Interfaces
+from roaml.project.analysis.linking import Linking
+from roaml.project.analysis.machines import NO_STRUCTS, Machines, Structs
+from roaml.project.analysis.sources import SourceFiles
+from roaml.project.analysis.systems import Systems
+from roaml.project.analysis.tree_files import TreeFiles
+from roaml.project.files import Files
+from roaml.project.memo import Memo
+
+__all__ = ["NO_STRUCTS", "Analysis", "Structs"]
+
+
+class Analysis:
+    """The models and systems in the files of one moment.
+
+    Args:
+        files: the files at this moment.
+        registry: resolves ROS types.
+        memo: the results of earlier analyses.
+        systems: the paths of the system files that are analysed.
+        overrides: parameters that replace those in system files.
+        trees: the settings for trees that are not in a system.
+        listed: the paths of the files in the workspace.
+    """
+
+    def __init__(
+        self,
+        files: Files,
+        registry: Registry,
+        memo: Memo,
+        systems: Iterable[str],
+        overrides: Overrides = NO_OVERRIDES,
+        trees: TreeSettings = NEWEST,
+        listed: Iterable[str] = (),
+    ) -> None:
+        self.files = files
+        self.registry = registry
+        self.memo = memo
+        self.overrides = overrides
+        self.tree_settings = trees
+
+        sources = SourceFiles(files, memo, overrides)
+        interfaces = Interfaces(registry, memo)
+        tree_files = TreeFiles(sources)
+        self._systems = Systems(sources, tree_files, systems)
+        families = Families(sources, tree_files, self._systems, trees, listed)
+        machines = Machines(sources, interfaces, self._systems)
+        gaps = Gaps(sources, tree_files, self._systems, machines)
+        linking = Linking(sources, interfaces, self._systems, machines, gaps)
+        self._open_files(sources, interfaces)
+        self._open_trees(tree_files, families)
+        self._open_systems(self._systems, machines, gaps, linking)
+
+    def _open_files(self, sources: SourceFiles, interfaces: Interfaces) -> None:
+        self.source = sources.source
+        self.kind = sources.kind
+        self.document = sources.document
+        self.json = sources.json
+        self.configuration = sources.configuration
+        self.properties = sources.properties
+        self.violations = sources.violations
+        self.misfits = sources.misfits
+        self.machine = sources.machine
+        self.tree = sources.tree
+        self.property_file = sources.property_file
+        self.system_file = sources.system_file
+        self.struct_declarations = sources.struct_declarations
+        self.interface = interfaces.interface
+        self.interfaces_of = interfaces.interfaces_of
+        self.repeated_types = interfaces.repeated_types
+
+    def _open_trees(self, tree_files: TreeFiles, families: Families) -> None:
+        self.trees_from = tree_files.trees_from
+        self.outlines_from = tree_files.outlines_from
+        self.tree_outline = tree_files.tree_outline
+        self.includes = tree_files.includes
+        self.include_path = tree_files.include_path
+        self.include_places = tree_files.include_places
+        self.named_path = tree_files.named_path
+        self.family = families.family
+        self.family_outlines = families.family_outlines
+        self.outlines_around = families.outlines_around
+        self.forest = families.forest
+
+    def _open_systems(self, systems: Systems, machines: Machines, gaps: Gaps, linking: Linking) -> None:
+        self.system_paths = systems.paths
+        self.listed = systems.listed
+        self.lists_all = systems.lists_all
+        self.kind_in = systems.kind_in
+        self.tree_paths = systems.tree_paths
+        self.tree_outlines = systems.tree_outlines
+        self.files_of = systems.files_of
+        self.systems_of = systems.systems_of
+        self.names_before = systems.names_before
+        self.structs = machines.structs
+        self.interface_files_of = machines.interface_files_of
+        self.outline = machines.outline
+        self.typed = machines.typed
+        self.machine_gaps = machines.machine_gaps
+        self.gaps = gaps.gaps
+        self.system = linking.system
+        self.library_tree = linking.library_tree
+        self.linked_properties = linking.linked_properties
+        self.typed_in = linking.typed_in
+        self.environment = linking.environment
+        self.globals = linking.globals
+        self.event_parameters = linking.event_parameters
+
+    @property
+    def memberships(self) -> Mapping[str, tuple[str, ...]]:
+        """File -> its systems."""
+        return self._systems.memberships

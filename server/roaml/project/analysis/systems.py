@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The files of each system, and the systems of each file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from roaml.disk import UnreadableReason
+from roaml.model.expand import TreeFileOutline
+from roaml.model.kinds import EXTENSIONS, FileKind
+from roaml.model.system_file import ListedFile, SystemInput, SystemSection, required_kind
+from roaml.project.analysis.sources import SourceFiles
+from roaml.project.analysis.tree_files import TreeFiles
+from roaml.project.files import MAX_CHARACTERS
+from roaml.project.paths import resolve
+
+if TYPE_CHECKING:
+    pass
+
+
+class Systems:
+    """Which files a system consists of.
+
+    Args:
+        paths: the paths of the system files that are analysed.
+    """
+
+    def __init__(self, sources: SourceFiles, tree_files: TreeFiles, paths: Iterable[str]) -> None:
+        self._sources = sources
+        self._tree_files = tree_files
+        self.paths = tuple(dict.fromkeys(paths))
+        self._listed: dict[str, tuple[ListedFile, ...]] = {}
+
+    def listed(self, path: str) -> tuple[ListedFile, ...]:
+        """The files that a system file lists, in order; empty if it cannot be read."""
+        if path not in self._listed:
+            file = self._sources.system_file(path)
+            self._listed[path] = tuple(self._listed_file(path, entry) for entry in file.inputs) if file else ()
+        return self._listed[path]
+
+    def lists_all(self, system: str, section: SystemSection) -> bool:
+        """Whether all files that a system lists in the section `section` are known and can be used."""
+        file = self._sources.system_file(system)
+        if file is None or section in file.unread:
+            return False
+        return all(listed.usable for listed in self.listed(system) if listed.input.section is section)
+
+    def kind_in(self, path: str, system: str | None) -> FileKind:
+        """The kind of a file, from its name and its content. If they do not identify the kind, and `system` lists the
+        file as struct declarations in JSON, it is this kind."""
+        kind = self._sources.kind(path)
+        if kind is not FileKind.UNKNOWN or system is None:
+            return kind
+        listed = (file.kind for file in self.listed(system) if file.path == path)
+        return FileKind.JSON_STRUCTS if FileKind.JSON_STRUCTS in listed else kind
+
+    def _listed_file(self, base: str, entry: SystemInput) -> ListedFile:
+        kind_required = required_kind(entry)
+        if entry.src is None:
+            return ListedFile(entry, "", None, kind_required, FileKind.UNKNOWN)
+        path = resolve(base, entry.src.value)
+        source = self._sources.files.read(path)
+        if isinstance(source, UnreadableReason):
+            return ListedFile(entry, path, source, kind_required, FileKind.UNKNOWN)
+        if len(source.text) > MAX_CHARACTERS:
+            return ListedFile(entry, path, UnreadableReason.TOO_LONG, kind_required, self._sources.kind(path))
+        kind = self._sources.kind(path)
+        if kind is FileKind.MACHINE and self._sources.machine(path) is None:
+            kind = FileKind.UNKNOWN
+        if kind_required is FileKind.JSON_STRUCTS and kind is FileKind.UNKNOWN and path.endswith(".json"):
+            kind = FileKind.JSON_STRUCTS
+        return ListedFile(entry, path, None, kind_required, kind)
+
+    def tree_paths(self, path: str) -> tuple[str, ...]:
+        """The tree files of a system without duplicates: those of `trees_from` for the first listed tree file that can
+        be used; empty if there is none."""
+        first = next((f.path for f in self.listed(path) if f.required_kind is FileKind.TREE and f.usable), None)
+        return self._tree_files.trees_from(first) if first else ()
+
+    def tree_outlines(self, system: str) -> tuple[TreeFileOutline, ...]:
+        """The outlines of the tree files of a system."""
+        first = next(iter(self.tree_paths(system)), None)
+        return self._tree_files.outlines_from(first) if first else ()
+
+    def files_of(self, system: str) -> tuple[str, ...]:
+        """The system file and all files of the system, without duplicates.
+
+        A listed file is left out if neither its name nor its content is that of a supported file.
+        """
+        listed = (f.path for f in self.listed(system) if f.path and (f.usable or f.path.lower().endswith(EXTENSIONS)))
+        return tuple(dict.fromkeys((system, *listed, *self.tree_paths(system))))
+
+    def systems_of(self, path: str) -> tuple[str | None, ...]:
+        """The systems in which a file is analysed; `(None,)` if it is in none."""
+        return self.memberships.get(path, ()) or (None,)
+
+    @cached_property
+    def memberships(self) -> Mapping[str, tuple[str, ...]]:
+        """File -> its systems."""
+        systems_by_file: dict[str, list[str]] = {}
+        for system in self.paths:
+            for path in self.files_of(system):
+                systems_by_file.setdefault(path, []).append(system)
+        return {path: tuple(systems) for path, systems in systems_by_file.items()}
+
+    def names_before(self, path: str, system: str) -> Iterator[tuple[str, str]]:
+        """The names of the properties in the files that `system` lists before the file `path`, each with the name of
+        its file for messages."""
+        for listed in self.listed(system):
+            if listed.path == path:
+                return
+            if not listed.usable:
+                continue
+            file = f"`{listed.input.src.value}`" if listed.input.src else "another file"
+            if listed.required_kind is FileKind.PROPERTIES:
+                yield from ((property_.name, file) for property_ in self._sources.properties(listed.path)[0])
+            elif (
+                listed.required_kind is FileKind.XML_PROPERTIES
+                and (before := self._sources.property_file(listed.path)) is not None
+            ):
+                yield from ((written.id.value, file) for written in before.properties if written.id is not None)

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The rule `real-equality`, which real_equality.md describes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.expr.infer import RealEquality
+from roaml.expr.operators import Operator
+from roaml.expr.tree import Binary, Call, Expr, walk
+from roaml.model.syntax import Expression
+from roaml.model.value_types import TypedValue
+from roaml.model.values.domain import ANYTHING, ValueSet
+from roaml.rules.rule import MachineContext, Rule
+from roaml.text import TextEdit
+
+TOLERANCE = "0.001"
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for value in context.typed.values:
+        for problem in value.problems:
+            if isinstance(problem, RealEquality) and not _is_exact(context, value, problem):
+                left, right = (_text(context, side) for side in (problem.left, problem.right))
+                message = (
+                    f"real numbers are compared for equality: `{left}` and `{right}`; computed numbers are rounded, so "
+                    f"they are rarely equal; compare with a tolerance: `Math.abs({left} - {right}) < {TOLERANCE}`"
+                )
+                yield RULE.at(problem.span, message, *_fix(context, value, problem))
+
+
+def _is_exact(context: MachineContext, value: TypedValue, problem: RealEquality) -> bool:
+    """Whether both numbers are some of a few known numbers, which are equal or clearly different, or nothing is known
+    about one of them, which may be a number that is only passed on, and the other is an integer."""
+    values = context.values.charts.get(value.place.chart.scope)
+    if values is None:
+        return True
+    sides = [values.at(side) for side in (problem.left, problem.right)]
+    if any(side is None for side in sides):
+        return True
+    if all(side is not None and side.only is not None for side in sides):
+        return not any(_is_rounded(values.at(side)) for side in (problem.left, problem.right) if _is_computed(side))
+    whole = any(side is not None and isinstance(side.value, int | float) and side.value % 1 == 0 for side in sides)
+    return whole and ANYTHING in sides
+
+
+def _is_computed(expr: Expr) -> bool:
+    return isinstance(expr, Binary | Call)
+
+
+def _is_rounded(values: ValueSet | None) -> bool:
+    """Whether a value is not an integer, so that a computation may have rounded it."""
+    return values is not None and any(isinstance(v, float) and not v.is_integer() for v in values.only or ())
+
+
+def _fix(context: MachineContext, value: TypedValue, problem: RealEquality) -> Iterator[Fix]:
+    tree = value.value.tree if isinstance(value.value, Expression) else None
+    node = next((n for n in walk(tree) if n.span == problem.span), None) if tree is not None else None
+    if not isinstance(node, Binary):
+        return
+    left, right = (_text(context, side) for side in (problem.left, problem.right))
+    subtrahend = f"({right})" if isinstance(problem.right, Binary) else right
+    comparison = "&lt;" if node.operator is Operator.EQUAL else "&gt;="
+    new = f"Math.abs({left} - {subtrahend}) {comparison} {TOLERANCE}"
+    yield Fix(f"Compare with a tolerance of {TOLERANCE}", (TextEdit(problem.span, new),), preferred=False)
+
+
+def _text(context: MachineContext, expr: Expr) -> str:
+    return context.source.text[expr.span.start : expr.span.end]
+
+
+RULE = Rule("real-equality", Severity.WARNING, "Real numbers are compared for equality.", machine=check)

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The rule `constant-condition`, which constant_condition.md describes."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.expr.operators import Operator
+from roaml.expr.tree import Binary, Expr, Member, Name, String, walk
+from roaml.model.behavior.explore import condition_facts
+from roaml.model.behavior.knowledge import NOTHING, ConditionFacts, variables_in
+from roaml.model.machine import Assign, Chart, Handler, If, State
+from roaml.model.syntax import Expression
+from roaml.model.triggers import trigger
+from roaml.model.values.analyse import ChartValues, MachineValues, analyse
+from roaml.model.values.arriving import arriving_by_type
+from roaml.model.values.describe import described, is_informative
+from roaml.model.values.domain import FALSE, TRUE, ValueSet
+from roaml.model.values.evaluate import place_of
+from roaml.rules.rule import MachineContext, Rule, close_names
+from roaml.rules.support.assignments import is_unchanged
+from roaml.text import Span, TextEdit
+
+MAX_NAMED = 3
+"""The maximum number of variables whose values a message states."""
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    findings = _findings(context, context.local_values)
+    if len(findings) > 1:
+        # A condition may be constant only because another one is: a part that is never executed assigns no values.
+        arriving = arriving_by_type(context.machine, context.interface)
+        relaxed = analyse(context.machine, context.typed, arriving, frozenset(findings))
+        causes = _findings(context, relaxed).keys() & findings.keys()
+        findings = {span: finding for span, finding in findings.items() if span in causes} or dict(
+            [*findings.items()][:1]
+        )
+    yield from findings.values()
+    yield from _never_sent(context, findings.keys())
+
+
+def _never_sent(context: MachineContext, reported: Collection[Span]) -> Iterator[Finding]:
+    """Report comparisons with a text that no machine sends, if a similar one is sent and no text is ever equal. Other
+    conditions that no message of the system makes true are not reported, because machines of the environment often
+    answer in one way only."""
+    compared: dict[tuple[Chart, str], list[tuple[String, ValueSet]]] = {}
+    for value in context.typed.values:
+        chart = context.values.charts.get(value.place.chart.scope)
+        tree = value.value.tree if isinstance(value.value, Expression) else None
+        if chart is None or tree is None or value.value.span in reported:
+            continue
+        for node in walk(tree):
+            if isinstance(node, Binary) and node.operator in (Operator.EQUAL, Operator.NOT_EQUAL):
+                for text, other in ((node.left, node.right), (node.right, node.left)):
+                    known, place = chart.at(other), place_of(other)
+                    if isinstance(text, String) and place is not None and known is not None:
+                        compared.setdefault((value.place.chart, place), []).append((text, known))
+    for (_, place), comparisons in compared.items():
+        if any(known.includes(text.value) for text, known in comparisons):
+            continue
+        for text, known in comparisons:
+            close = close_names(text.value, [sent for sent in known.only or () if isinstance(sent, str)])
+            if close:
+                message = f"`{place}` is never `'{text.value}'`; did you mean `'{close[0]}'`?"
+                quote = context.source.text[text.span.start]
+                fix = Fix(f"Change to `'{close[0]}'`", (TextEdit(text.span, f"{quote}{close[0]}{quote}"),))
+                yield RULE.at(text.span, message, fix)
+
+
+def _findings(context: MachineContext, machine: MachineValues) -> dict[Span, Finding]:
+    """The findings by the places of the conditions."""
+    findings: list[Finding] = []
+    for chart in context.machine.charts:
+        values = machine.charts.get(chart.scope)
+        if values is None:
+            continue
+        facts = condition_facts(chart)
+        unjudged = _unjudged(context, chart)
+        for state in chart.states:
+            for handlers in _groups(context, state):
+                findings += _first(values, facts, [h.cond for h in handlers], "transition", unjudged)
+        for statement in chart.statements:
+            if isinstance(statement, If):
+                findings += _first(values, facts, [b.cond for b in statement.branches], "branch", unjudged)
+    return {finding.span: finding for finding in findings}
+
+
+def _unjudged(context: MachineContext, chart: Chart) -> frozenset[str]:
+    """The variables whose values are not a reason to report a condition: those that are assigned to themselves, which
+    self-assignment reports and, in a machine without a system, which may not be finished, those that are never
+    assigned."""
+    assignments = [s for s in chart.statements if isinstance(s, Assign) and s.location is not None]
+    unchanged = variables_in(s.location.tree for s in assignments if s.location is not None and is_unchanged(s))
+    if context.system is not None:
+        return unchanged
+    assigned = variables_in(s.location.tree for s in assignments if s.location is not None)
+    return unchanged | {data.id.value for data in chart.data if data.id and data.id.value not in assigned}
+
+
+def _groups(context: MachineContext, state: State) -> Iterable[list[Handler]]:
+    """The handlers of a state, grouped by their triggers."""
+    groups: dict[object, list[Handler]] = {}
+    for number, handler in enumerate(state.handlers):
+        if handler.effective:
+            key = trigger(context.machine, handler)
+            groups.setdefault(number if key is None else key, []).append(handler)
+    return groups.values()
+
+
+def _first(
+    values: ChartValues,
+    facts: ConditionFacts,
+    conditions: Iterable[Expression | None],
+    what: str,
+    unjudged: frozenset[str],
+) -> Iterator[Finding]:
+    """Report the conditions that are never true, up to the first one that is always true: the conditions after it are
+    not tested."""
+    for cond in conditions:
+        names = variables_in((cond.tree,)) if cond is not None else frozenset()
+        if cond is None or cond.broken or not names:
+            continue
+        results = values.conditions.get(cond.span)
+        if results is None:
+            continue
+        contradicts = not any(facts.assume(NOTHING, cond.tree))
+        if names & unjudged and not contradicts:
+            continue
+        if results.alone == FALSE or contradicts:
+            effect = "transition is never taken" if what == "transition" else "branch is never executed"
+            why = _why(values, cond.tree) or ("its parts contradict each other" if contradicts else "")
+            yield RULE.at(cond.span, f"this condition is never true{_because(why)}, so the {effect}")
+        elif results.alone == TRUE:
+            why = _why(values, cond.tree)
+            after = "has no effect; later ones are never tested"
+            yield RULE.at(cond.span, f"this condition is always true{_because(why)}, so it {after}")
+            return
+
+
+def _because(why: str) -> str:
+    return f": {why}" if why else ""
+
+
+def _why(values: ChartValues, tree: Expr) -> str:
+    """The values of the variables in a condition, where the values are known."""
+    texts: dict[str, None] = {}
+    for node in walk(tree):
+        place = place_of(node) if isinstance(node, Name | Member) else None
+        known = values.at(node) if place is not None else None
+        if place is not None and known is not None and is_informative(known):
+            texts[f"`{place}` is {'always ' if known.value is not None else ''}{described(known)}"] = None
+    return ", ".join(list(texts)[:MAX_NAMED])
+
+
+RULE = Rule("constant-condition", Severity.WARNING, "A condition is always true or never true.", machine=check)

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Helpers of the rules about time: timers of a machine, durations in trees, and texts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from fractions import Fraction
+
+from roaml.durations import NANOSECONDS, duration_text
+from roaml.model.exact_number import exact_number
+from roaml.model.machine import Declaration
+from roaml.model.syntax import Name
+from roaml.model.timing import NANOSECONDS_PER_SECOND, TimerRate, period
+from roaml.model.tree import TreeNode
+from roaml.record import Record
+from roaml.roles import SymbolKind
+from roaml.rules.rule import MachineContext, TreeContext
+from roaml.rules.support.settings import constant_settings, integer_of
+
+DURATIONS = {("Delay", "delay_msec"), ("Timeout", "msec"), ("Sleep", "msec")}
+"""The nodes of BehaviorTree.CPP that wait, each with the port that contains the time in ms."""
+
+
+def timers(context: MachineContext) -> Iterator[tuple[Declaration, Name, Fraction]]:
+    """The timers of a machine whose declaration contains a valid rate, with the rate as written and in Hz."""
+    for declaration in context.machine.declarations:
+        rate = declaration.rate
+        if declaration.kind is SymbolKind.TIMER and isinstance(rate, Name):
+            hertz = exact_number(rate.value)
+            if hertz is not None and 0 < hertz <= NANOSECONDS_PER_SECOND:
+                yield declaration, rate, hertz
+
+
+def durations(context: TreeContext) -> Iterator[tuple[TreeNode, str, int]]:
+    """The waiting nodes of the trees of a system, each with its port and the time in ns. 0 is left out."""
+    seen: set[tuple[TreeNode, str]] = set()
+    for node, port, text in constant_settings(context):
+        name = node.plugin.value if node.plugin is not None else ""
+        if (name, port) in DURATIONS and (node, port) not in seen:
+            seen.add((node, port))
+            milliseconds = integer_of(text)
+            if milliseconds is not None and milliseconds > 0:
+                yield node, port, milliseconds * NANOSECONDS["ms"]
+
+
+def tick_period(context: TreeContext) -> int | None:
+    """The time between two ticks of the tree of a system, in ns; `None` without a system."""
+    return period(Fraction(str(context.system.parameters.tick_rate))).nanoseconds if context.system else None
+
+
+class Drift(Record, frozen=True):
+    """A timer that should tick at the same time as `other` at the time `at_ns`, but ticks `early_ns` earlier."""
+
+    other: TimerRate
+    at_ns: int
+    early_ns: Fraction
+
+
+def drift(hertz: Fraction, others: Iterable[TimerRate], end: int | None) -> Drift | None:
+    """The drift of a timer whose rate has no exact period, against the first timer with an exact period whose rate is
+    a multiple or a part of its rate; `None` if there is none before `end`, the end of the traces in ns."""
+    exact, rounded = NANOSECONDS_PER_SECOND / hertz, period(hertz).nanoseconds
+    if exact == rounded or end is None:
+        return None
+    for other in others:
+        at = max(exact, NANOSECONDS_PER_SECOND / other.hertz)  # one of the periods is a multiple of the other
+        is_exact = other.period.nanoseconds == NANOSECONDS_PER_SECOND / other.hertz
+        if is_exact and are_multiples(hertz, other.hertz) and at == int(at) <= end:
+            return Drift(other, int(at), at - at / exact * rounded)
+    return None
+
+
+def are_multiples(hertz: Fraction, other: Fraction) -> bool:
+    """Whether one of two rates is a multiple of the other."""
+    return (hertz / other).denominator == 1 or (other / hertz).denominator == 1
+
+
+def duration(nanoseconds: int | Fraction) -> str:
+    """A duration in the largest unit in which it is a whole number; otherwise in ms, rounded."""
+    if nanoseconds != int(nanoseconds):
+        return f"{float(nanoseconds) / NANOSECONDS['ms']:.6g} ms"
+    return duration_text(int(nanoseconds))

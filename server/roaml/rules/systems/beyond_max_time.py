@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The rule `beyond-max-time`, which beyond_max_time.md describes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+
+from roaml.diagnostics import Finding, Severity
+from roaml.model.property_links import LinkedFile
+from roaml.model.property_problems import ProblemKind
+from roaml.model.system import System
+from roaml.model.timing import period, periods, rates
+from roaml.rules.rule import MachineContext, Rule, SystemContext, TreeContext
+from roaml.rules.support.property_problems import problems
+from roaml.rules.support.settings import place_of
+from roaml.rules.support.timing import duration, durations, timers
+
+
+def _machine(context: MachineContext) -> Iterator[Finding]:
+    end = context.system.parameters.max_time if context.system else None
+    if context.system is None or end is None or not context.automata or _nothing_ticks(context.system, end):
+        return
+    for _, rate, hertz in timers(context):
+        ns = period(hertz).nanoseconds
+        if ns > end:
+            message = (
+                f"this timer never ticks: its period is {duration(ns)}, and the system runs for {duration(end)} "
+                "(`max_time`)"
+            )
+            yield RULE.at(rate.span, message)
+
+
+def _tree(context: TreeContext) -> Iterator[Finding]:
+    end = context.system.parameters.max_time if context.system else None
+    for node, port, ns in durations(context) if end is not None else ():
+        if end is not None and ns > end:
+            effect = "it never ends the child" if port == "msec" and node.children else "it never ends"
+            message = f"{duration(ns)} is longer than the system runs, {duration(end)} (`max_time`), so {effect}"
+            yield RULE.at(place_of(node, port), message)
+
+
+def _system(context: SystemContext) -> Iterator[Finding]:
+    end = context.file.parameters.max_time
+    if end is None:
+        return
+    ns = period(Fraction(str(context.file.parameters.tick_rate))).nanoseconds
+    shown, rate = context.file.parameter("max_time"), context.file.parameter("bt_tick_rate")
+    unit = min((p.unit for p in periods(context.system, context.file.parameters)), default=1)
+    if _nothing_ticks(context.system, end) and shown is not None:
+        if end % unit:
+            return  # inexact-max-time reports it
+        shortest = min(timer.period.nanoseconds for timer in rates(context.system, context.file.parameters))
+        value = shown.get("value")
+        message = (
+            f"no timer ticks: the system runs for {duration(end)}, and the shortest period of a timer is "
+            f"{duration(shortest)}"
+        )
+        yield RULE.at(value.value_span if value is not None else shown.name_span, message)
+    elif context.system.instances and ns > end and rate is not None:
+        value = rate.get("value")
+        message = (
+            f"the tree is never ticked: the time between two ticks is {duration(ns)}, and the system runs for "
+            f"{duration(end)} (`max_time`)"
+        )
+        yield RULE.at(value.value_span if value is not None else rate.name_span, message)
+
+
+def _properties(file: LinkedFile) -> Iterator[Finding]:
+    return problems(RULE, ProblemKind.BEYOND_END, file)
+
+
+def _nothing_ticks(system: System, end: int) -> bool:
+    """Whether the system has timers and none of them ticks."""
+    periods = [timer.period.nanoseconds for timer in rates(system, system.parameters)]
+    return bool(periods) and min(periods) > end
+
+
+RULE = Rule(
+    "beyond-max-time",
+    Severity.WARNING,
+    "A time is longer than the system runs.",
+    machine=_machine,
+    tree=_tree,
+    system=_system,
+    xml_properties=_properties,
+)

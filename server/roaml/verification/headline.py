@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The words for a result: what is known about the value that the property asks for. Reports, lenses, hints and the list
+of tests all use these words.
+
+- A property that asks for a minimum or maximum over all schedulers is never answered by the value under uniform
+  choices. The sampled traces of one scheduler bound the minimum from above and the maximum from below; if not even that
+  excludes a value, there is no answer for all schedulers.
+- If traces are undecided, the words name bounds, the number of undecided traces and the remedy, and no value between
+  the bounds.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from roaml.exhaustive import assert_never
+from roaml.record import Record
+from roaml.smc.choices import Choices
+from roaml.smc.end import End
+from roaml.smc.goal import Question
+from roaml.smc.run import Answer
+from roaml.verification.results import Computed, CutShort, Estimated, Refused, Result, Sampled, Undecided
+from roaml.verification.schedulers import extreme_of, is_minimised
+
+NO_ANSWER = "no answer for all schedulers"
+NO_TRACES = "no result yet"
+UNKNOWN = "unknown"
+
+
+class Headline(Record, frozen=True):
+    """The words for a result.
+
+    Attributes:
+        claim: what is known for all schedulers, such as `minimum at most 0.17`; "" if the property asks only for
+            uniform choices, or all schedulers agree.
+        estimate: the estimate from traces with uniform choices; "" if there is none.
+        short: a short form of both, for editors; "" if there is no result.
+    """
+
+    claim: str = ""
+    estimate: str = ""
+    short: str = ""
+
+    @property
+    def text(self) -> str:
+        """Both as one phrase."""
+        return f"{self.claim}; under uniform choices: {self.estimate}" if self.claim else self.estimate
+
+
+def headline(result: Result) -> Headline:
+    match result.outcome:
+        case Computed() as computed:
+            return Headline(short=f"{_rounded(computed.asked_value()[1], 4)}, exact")
+        case Estimated(answer=answer, choices=choices):
+            return of_answer(answer, choices)
+        case Undecided():
+            return Headline(short="undecided")
+        case Refused() | CutShort() | Sampled():
+            return Headline()
+        case never:
+            return assert_never(never)
+
+
+def of_answer(answer: Answer, choices: Choices | None = None) -> Headline:
+    """The words for an estimate.
+
+    Args:
+        choices: what is known about other schedulers; `None` if only uniform choices are considered.
+    """
+    estimate, short = estimate_text(answer), _short(answer)
+    claim = claim_for_all(answer.question, choices) if answer.tally.traces else ""
+    if not claim:
+        return Headline("", estimate, short)
+    brief = claim.replace(" at most ", " ≤ ").replace(" at least ", " ≥ ")
+    return Headline(claim, estimate, f"{brief}; uniform {short}")
+
+
+def claim_for_all(question: Question, choices: Choices | None) -> str:
+    """What is known about the minimum or maximum that a property asks for, if it may differ from the value under
+    uniform choices; otherwise ""."""
+    if question.asks_for_extreme_state:
+        known = None if choices is None else choices.minimum if is_minimised(question) else choices.maximum
+        return f"{extreme_of(question)} {known.value:.6g}, exact" if known is not None and known.is_exact else NO_ANSWER
+    if choices is None or choices.agreement:
+        return ""
+    known = choices.minimum if is_minimised(question) else choices.maximum
+    if known is not None and known.is_exact:
+        return f"{extreme_of(question)} {known.value:.6g}, exact"
+    if known is None or question.has_opposite_extremes or question.is_reward:
+        return NO_ANSWER
+    if is_minimised(question):
+        upper = _outwards(known.bounds.upper, math.ceil)
+        return f"minimum at most {upper:g}" if upper < 1 else NO_ANSWER
+    lower = _outwards(known.bounds.lower, math.floor)
+    return f"maximum at least {lower:g}" if lower > 0 else NO_ANSWER
+
+
+def estimate_text(answer: Answer) -> str:
+    """An estimate with its interval and the numbers of traces; without a value if there are undecided traces."""
+    tally, (lower, upper) = answer.tally, answer.bounds
+    if tally.traces == 0:
+        return NO_TRACES
+    good, bad = ("stuck", "not stuck") if answer.question.is_stuck else ("passed", "failed")
+    if not tally.undecided or answer.question.is_reward:
+        value = UNKNOWN if answer.is_unknown else "infinite" if math.isinf(answer.value) else number(answer.value)
+        counts = f"{tally.traces:,} traces: {tally.successes:,} {good}, {answer.failures:,} {bad}"
+        if tally.undecided:
+            counts += f", {tally.undecided:,} undecided"
+        return f"{value} in [{number(lower)}, {number(upper)}] from {counts}"
+    results = [f"{tally.successes:,} of {tally.traces:,} traces {good}"]
+    results += [f"{answer.failures:,} {bad}"] if answer.failures else []
+    results.append(_undecided(answer))
+    bounds = _between(answer)
+    confidence = "" if bounds == UNKNOWN else f" ({answer.options.confidence:g} confidence)"
+    return f"{bounds}{confidence}: {', '.join(results)}"
+
+
+def _between(answer: Answer) -> str:
+    """The bounds of an estimate with undecided traces."""
+    lower, upper = _outwards(answer.bounds.lower, math.floor), _outwards(answer.bounds.upper, math.ceil)
+    match lower > 0, upper < 1:
+        case True, True:
+            return f"between {lower:g} and {upper:g}"
+        case True, False:
+            return f"at least {lower:g}"
+        case False, True:
+            return f"at most {upper:g}"
+        case _:
+            return UNKNOWN
+
+
+def _undecided(answer: Answer) -> str:
+    """The number of undecided traces, why they are undecided, and the remedy."""
+    cut = answer.tally.ended(End.CUT)
+    open_ = answer.tally.undecided - cut
+    parts = []
+    if cut:
+        were = "was" if cut == 1 else "were"
+        steps = f"{answer.options.max_steps:,} steps"
+        parts.append(f"{cut:,} {were} cut after {steps}: raise --max-steps, or use --exhaustive")
+    if open_:
+        were = "was" if open_ == 1 else "were"
+        parts.append(f"{open_:,} {were} too short, because the time ended before a deadline: raise max_time")
+    return "; ".join(parts)
+
+
+def _short(answer: Answer) -> str:
+    if answer.tally.traces == 0:
+        return ""
+    if answer.is_unknown:
+        return UNKNOWN
+    if answer.tally.undecided and not answer.question.is_reward:
+        return _between(answer).replace("at least ", "≥ ").replace("at most ", "≤ ")
+    lower, upper = answer.bounds
+    return f"{_rounded(answer.value)} [{_rounded(lower)}, {_rounded(upper)}]"
+
+
+def _outwards(value: float, rounding: Callable[[float], int]) -> float:
+    """A bound with three digits after the point, rounded so that the statement remains true."""
+    return rounding(round(value * 1000, 9)) / 1000
+
+
+def number(value: float) -> str:
+    """A number with six significant digits."""
+    if math.isinf(value):
+        return "∞" if value > 0 else "-∞"
+    return f"{value:.6g}"
+
+
+def _rounded(value: float, digits: int = 3) -> str:
+    if math.isinf(value):
+        return "∞" if value > 0 else "-∞"
+    return f"{value:.{digits}g}"

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Trees as public repositories contain them: of version 3, without names, with names that only old versions accept,
+with nodes that have the names of Nav2's, and with paths of installed files."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from as2fm_lsp.cli.main import run
+from roaml import api
+
+OLD = """<root main_tree_to_execute="Main">
+<BehaviorTree ID="Main"><SequenceStar>
+    <Parallel success_threshold="1" failure_threshold="2"><Never/><Always/></Parallel>
+    <RetryUntilSuccesful num_attempts="3"><Always/></RetryUntilSuccesful>
+    <SetBlackboard output_key="place" value="3"/>
+    {subtree}
+</SequenceStar></BehaviorTree>
+<BehaviorTree ID="Sub">
+    <BlackboardCheckInt value_A="{{here}}" value_B="3" return_on_mismatch="FAILURE"><Always/></BlackboardCheckInt>
+</BehaviorTree></root>
+"""
+MOCKS = ("--mock", "Always: 1", "--mock", "Never: 0")
+
+
+def found(folder: Path, files: dict[str, str]) -> list[tuple[str, str, str]]:
+    """The severity, code and message of each finding."""
+    for name, text in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+    return [(d.severity.name, d.code, d.message) for d in api.check([str(folder)]).diagnostics]
+
+
+def success(capsys: pytest.CaptureFixture[str], path: Path, *mocks: str) -> float:
+    """The share of the traces in which a tree succeeds."""
+    assert run(["verify", str(path), *mocks, "--max-traces", "20", "--format", "json"]) == 0, capsys.readouterr().err
+    value = json.loads(capsys.readouterr().out)["tree"]["success"]["value"]
+    assert isinstance(value, float)
+    return value
+
+
+@pytest.mark.parametrize(
+    ("subtree", "expected"),
+    [
+        ('<SubTree ID="Sub" here="place"/>', 1.0),
+        ('<SubTreePlus ID="Sub" here="{place}"/>', 1.0),
+        ('<SubTreePlus ID="Sub" here="4"/>', 0.0),
+    ],
+)
+def test_a_tree_of_version_3_is_executed_as_it_is_meant(
+    subtree: str, expected: float, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "tree.xml"
+    path.write_text(OLD.format(subtree=subtree))
+    assert success(capsys, path, *MOCKS) == expected
+
+
+@pytest.mark.parametrize(
+    "node",
+    [
+        '<Parallel success_threshold="1"><A/><B/></Parallel>',
+        '<Parallel failure_threshold="1"><A/><B/></Parallel>',
+        "<SequenceStar><A/></SequenceStar>",
+        '<RetryUntilSuccesful num_attempts="1"><A/></RetryUntilSuccesful>',
+        '<BlackboardCheckInt value_A="1" value_B="1" return_on_mismatch="FAILURE"><A/></BlackboardCheckInt>',
+        '<Decorator ID="RetryUntilSuccesful" num_attempts="1"><A/></Decorator>',
+    ],
+)
+def test_a_file_of_version_3_need_not_state_it(node: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    findings = found(tmp_path, {"tree.xml": f'<root><BehaviorTree ID="Main">{node}</BehaviorTree></root>'})
+    assert [(severity, code) for severity, code, _ in findings] == [("WARNING", "tree-format")]
+    assert success(capsys, tmp_path / "tree.xml", "--mock", "*: 1") == 1.0
+
+
+def test_the_only_tree_of_a_file_needs_no_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    tree = '<root BTCPP_format="4"><BehaviorTree><Sequence><A/><B/></Sequence></BehaviorTree></root>'
+    assert found(tmp_path, {"tree.xml": tree}) == []
+    assert success(capsys, tmp_path / "tree.xml", "--mock", "*: 1") == 1.0
+    assert success(capsys, tmp_path / "tree.xml", "--mock", "A: 1", "--mock", "B: 0") == 0.0
+
+
+def test_names_that_only_newer_versions_refuse_are_a_warning(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    trees = (
+        '<root BTCPP_format="4" main_tree_to_execute="Main Tree">'
+        '<BehaviorTree ID="Main Tree"><Sequence><A/><SubTree ID="Go home" name="x"/></Sequence></BehaviorTree>'
+        '<BehaviorTree ID="Go home"><B/></BehaviorTree></root>'
+    )
+    findings = found(tmp_path, {"tree.xml": trees})
+    assert [(severity, code) for severity, code, _ in findings] == [("WARNING", "tree-name")] * 2
+    assert success(capsys, tmp_path / "tree.xml", "--mock", "*: 1") == 1.0
+    stated = found(tmp_path, {"as2fm.toml": 'behaviortree-cpp = "4.8.4"'})
+    assert [(severity, code) for severity, code, _ in stated] == [("ERROR", "tree-name")] * 2
+    assert found(tmp_path, {"as2fm.toml": 'behaviortree-cpp = "4.8.3"'}) == []
+
+
+NAV2_TREE = """<root BTCPP_format="4" main_tree_to_execute="Main"><BehaviorTree ID="Main">
+<RecoveryNode number_of_retries="1"><ComputePathToPose goal="{goal}" path="{path}"/>BACKUP</RecoveryNode>
+</BehaviorTree>MODELS</root>
+"""
+OWN_MODEL = '<TreeNodesModel><Action ID="BackUp"><input_port name="meters"/></Action></TreeNodesModel>'
+
+
+@pytest.mark.parametrize(
+    ("backup", "own", "beside", "expected"),
+    [
+        ('<BackUp backup_dist="0.1"/>', "", "", []),
+        ('<BackUp backup_dst="0.1"/>', "", "", ["unknown-node-port"]),
+        ('<BackUp backup_dist="0.1" meters="1"/>', "", "", ["unknown-node-port"]),
+        ('<BackUp meters="a few"/>', "", "", ["unknown-node"]),
+        ('<BackUp meters="a few"/>', OWN_MODEL, "", []),
+        ('<BackUp meters="a few"/>', "", OWN_MODEL, ["unknown-node"]),
+        ('<BackUp backup_dist="0.1" meters="1"/>', "", OWN_MODEL, ["unknown-node"]),
+    ],
+)
+def test_an_own_node_with_the_name_of_a_node_of_nav2(
+    backup: str, own: str, beside: str, expected: list[str], tmp_path: Path
+) -> None:
+    """A node that no model of the file describes is only stated (`unknown-node`, information)."""
+    files = {"tree.xml": NAV2_TREE.replace("BACKUP", backup).replace("MODELS", own)}
+    if beside:
+        files["models.xml"] = f'<root BTCPP_format="4">{beside}</root>'
+    findings = found(tmp_path, files)
+    assert [code for _, code, _ in findings] == expected
+    assert all(severity == "INFORMATION" for severity, code, _ in findings if code == "unknown-node")
+    if expected == ["unknown-node"]:
+        named = found(tmp_path, {"as2fm.toml": 'tree-libraries = ["nav2"]'})
+        assert {code for _, code, _ in named} == {"unknown-node-port"}
+
+
+@pytest.mark.parametrize(
+    ("path", "place", "seen"),
+    [
+        ("share/robot/trees/sub.xml", "trees/sub.xml", "trees/sub.xml"),
+        ("share/robot/trees/sub.xml", "sub.xml", "sub.xml"),
+        ("/opt/robot/share/robot/trees/sub.xml", "robot/trees/sub.xml", "robot/trees/sub.xml"),
+        ("trees/sub.xml", "sub.xml", "sub.xml"),
+        ("../../install/trees/sub.xml", "trees/sub.xml", "trees/sub.xml"),
+    ],
+)
+def test_an_included_file_is_found_beside_the_file(path: str, place: str, seen: str, tmp_path: Path) -> None:
+    include = f'<include path="{path}"/><BehaviorTree ID="Main"><SubTree ID="Sub"/></BehaviorTree>'
+    main = f'<root BTCPP_format="4" main_tree_to_execute="Main">{include}</root>'
+    sub = '<root BTCPP_format="4"><BehaviorTree ID="Sub"><A/></BehaviorTree></root>'
+    findings = found(tmp_path, {"main.xml": main, place: sub})
+    message = f"there is no file `{path}` in the sources; `{seen}` is read instead"
+    assert findings == [("INFORMATION", "missing-include", message)]
+    (tmp_path / place).unlink()
+    ((severity, code, message),) = found(tmp_path, {})
+    assert (severity, code) == ("ERROR", "missing-include")
+    assert f"`{seen}`" in message
+
+
+def test_a_path_with_share_leads_to_the_folder_of_the_package(tmp_path: Path) -> None:
+    include = '<include path="/opt/ros/share/robot/trees/sub.xml"/>'
+    main = f'<root BTCPP_format="4">{include}<BehaviorTree ID="Main"><SubTree ID="Sub"/></BehaviorTree></root>'
+    files = {
+        "src/robot/package.xml": "<package><name>robot</name></package>",
+        "src/robot/trees/sub.xml": '<root BTCPP_format="4"><BehaviorTree ID="Sub"><A/></BehaviorTree></root>',
+        "src/app/behaviors/main.xml": main,
+    }
+    findings = found(tmp_path, files)
+    assert [code for _, code, _ in findings] == ["missing-include"]
+    assert "`../../robot/trees/sub.xml` is read instead" in findings[0][2]
