@@ -15,6 +15,7 @@ from roaml.lower.program import TranslatableSystem
 from roaml.lower.services import service_handler
 from roaml.lower.timers import clock, clock_step, timers_of
 from roaml.lower.tree import tick_timer, tree_root
+from roaml.model.globals import tree_flags
 from roaml.model.machine import Machine
 from roaml.model.system import SystemAutomaton
 from roaml.scxml.model import Automaton as PlainAutomaton
@@ -40,6 +41,7 @@ def lower(program: TranslatableSystem) -> Network:
         parameters.random_values,
         clock_step(timers),
         parameters.reaction_time or ANY_TIME,
+        tree_flags(program.system),
     )
 
 

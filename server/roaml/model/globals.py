@@ -2,7 +2,7 @@
 """The global variables of the translated system, which properties may use (docs/spec/jani.md#global-variables).
 
 Every event that is sent has a flag `EVENT.valid` and one variable for each leaf of a parameter. Arrays and strings also
-have variables with their lengths. The translation does not read this table; a test compares the two.
+have variables with their lengths. The translation reads only the flags of the tree; a test compares the whole table.
 """
 
 from __future__ import annotations
@@ -65,6 +65,12 @@ def global_variables(system: System, interface: FindInterface) -> dict[str, Glob
             for variable, stored, leaf in _flatten(f"{event}__{name}", type_):
                 table.setdefault(variable, GlobalVariable(variable, stored, leaf, event, name, source))
     return table
+
+
+def tree_flags(system: System) -> tuple[str, ...]:
+    """The flags of the events of a tree that is executed as the libraries execute it. They exist even if the tree never
+    sends the event, so that properties may use them whatever the other nodes of the tree are."""
+    return tuple(flag_of(event) for event, _, _ in _tree(system)) if system.is_library_tree else ()
 
 
 def event_names(system: System, interface: FindInterface) -> frozenset[str]:
@@ -201,12 +207,20 @@ def _tree(system: System) -> Iterator[_Event]:
         plugin = automaton.outline.plugin
         if parent is None or _calls(parent, instance.number):
             yield tree_event_name(instance.number, TreeEventKind.TICK), symbol, []
-        if parent is not None and parent.outline.plugin.halts_children and _calls(parent, instance.number):
+        if _is_halted(system, parent, instance.number):
             yield tree_event_name(instance.number, TreeEventKind.HALT), symbol, []
         if plugin.answers_tick:
             yield tree_event_name(instance.number, TreeEventKind.RESPONSE), symbol, [("status", INT)]
         if plugin.answers_halt:
             yield tree_event_name(instance.number, TreeEventKind.HALT_RESPONSE), symbol, []
+
+
+def _is_halted(system: System, parent: SystemAutomaton | None, number: int) -> bool:
+    """Whether the node with the instance number `number` is halted: by its parent; the topmost node, by the root of a
+    tree that is ticked again after it has ended."""
+    if parent is None:
+        return system.is_library_tree and system.parameters.tick_if_not_running
+    return parent.outline.plugin.halts_children and _calls(parent, number)
 
 
 def _calls(parent: SystemAutomaton, number: int) -> bool:

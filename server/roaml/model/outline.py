@@ -18,6 +18,7 @@ from roaml.language import HL_SCXML
 from roaml.model.behavior.summary import ChartOutline, summarised
 from roaml.model.gaps import Gap, PlacedGap, reads_of_ports
 from roaml.model.machine import (
+    Assign,
     CallChild,
     Chart,
     Declaration,
@@ -31,7 +32,7 @@ from roaml.model.machine import (
     Statement,
     statements,
 )
-from roaml.model.syntax import Expression, Name, PortRead
+from roaml.model.syntax import Expression, Name, PortRead, Value
 from roaml.model.value_types import TypedMachine, ValueUse, find_handle
 from roaml.record import Record
 from roaml.roles import Direction, ProtocolPart, SymbolKind
@@ -386,20 +387,35 @@ def _plugin(machine: Machine) -> PluginOutline:
         len(literal) < len(indexes),
         None if None in ticked else frozenset(index for index in ticked if index is not None),
         any(call.halts for call in calls if call.child) and ProtocolPart.CHILD_HALTED in triggers,
-        _acts_on_first_halt(machine.chart),
+        _acts_on_first_halt(machine),
     )
 
 
-def _acts_on_first_halt(chart: Chart) -> bool:
-    """Whether a halt in the initial state of a machine does more than confirm the halt."""
+def _acts_on_first_halt(machine: Machine) -> bool:
+    """Whether a halt in the initial state of a machine does more than confirm the halt and give variables their initial
+    values, which they still have."""
+    chart = machine.chart
     name = chart.initial.value if chart.initial else ""
+    initial = {data.id.value: _text(data.value) for data in chart.data if data.id}
     handlers = (h for state in chart.states if state.id and state.id.value == name for h in state.handlers)
     for handler in handlers:
         if handler.trigger is ProtocolPart.BT_HALT:
             moves = any(target.state is None or target.state.value != name for target in handler.targets)
             bodies = (statement for target in handler.targets for statement in statements(target.body))
-            return moves or any(not isinstance(statement, ReturnHalted) for statement in bodies)
+            return moves or not all(isinstance(s, ReturnHalted) or _is_reset(s, initial) for s in bodies)
     return False
+
+
+def _is_reset(statement: Statement, initial: Mapping[str, str | None]) -> bool:
+    """Whether a statement assigns to a variable its initial value, as written."""
+    if not isinstance(statement, Assign) or statement.location is None:
+        return False
+    value = _text(statement.value)
+    return value is not None and value == initial.get(statement.location.text.strip())
+
+
+def _text(value: Value | None) -> str | None:
+    return value.text.strip() if isinstance(value, Expression) else None
 
 
 def _index(child: Name | None) -> int | None:

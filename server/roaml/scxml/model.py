@@ -128,6 +128,7 @@ class Network(Record, frozen=True):
         random_values: the number of values of `Math.random()`.
         clock_step: the length of a step of the clock, in ns; 0 if there is no clock.
         reaction_time: how long automata may wait before they take a possible step.
+        flags: names of flags of events that exist even if no automaton sends or awaits the event.
     """
 
     automata: tuple[Automaton, ...]
@@ -135,6 +136,7 @@ class Network(Record, frozen=True):
     random_values: int
     clock_step: int = 0
     reaction_time: ReactionTime = ANY_TIME
+    flags: tuple[str, ...] = ()
 
 
 def statements(body: Body) -> Iterator[Statement]:

@@ -51,6 +51,9 @@ def translate(
     earlier = {event.event.after for event in events}
     automata += [event_automaton(event, has_clock, event.name in earlier) for event in events]
     globals_ = {v: shape for event in events for v, shape in _global_shapes(event, network.max_array_size)}
+    if network.flags:
+        origin = network.automata[0].origin
+        globals_ |= {flag: (ArrayShape(BOOL), origin) for flag in network.flags if flag not in globals_}
     shapes = {name: shape for name, (shape, _) in globals_.items()}
     actions = sorted({edge.action for automaton in automata for edge in automaton.edges if edge.action})
     model = Model(
