@@ -12,7 +12,7 @@ SYSTEM = """
 -- main.xml --
 <roaml>
     <parameters><max_time value="10" unit="s" /></parameters>
-    <behavior_tree><input type="bt.cpp-xml" src="trees/tree.xml" /></behavior_tree>
+    <behavior_tree tree-semantics="behaviortree-cpp"><input type="bt.cpp-xml" src="trees/tree.xml" /></behavior_tree>
     <properties><input type="jani" src="properties.jani" /></properties>
 </roaml>
 -- properties.jani --

@@ -108,7 +108,7 @@ def test_a_port_with_a_number_that_no_model_can_have(tmp_path: Path, number: str
 -- main.xml --
 <roaml>
     <parameters><max_time value="5" unit="s" /><bt_tick_rate value="1.0" /></parameters>
-    <behavior_tree><input type="bt.cpp-xml" src="tree.xml" /></behavior_tree>
+    <behavior_tree tree-semantics="as2fm"><input type="bt.cpp-xml" src="tree.xml" /></behavior_tree>
     <properties><input type="jani" src="properties.jani" /></properties>
 </roaml>
 -- properties.jani --

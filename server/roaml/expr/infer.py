@@ -135,7 +135,7 @@ class IntegerDivision(Record, frozen=True):
 
 
 class RealEquality(Record, frozen=True):
-    """`==` or `!=` compares numbers of which at least one is real."""
+    """`==` or `!=` compares numbers of which at least one is real. An int and a number such as `2.0` are exact."""
 
     span: Span
     left: Expr
@@ -366,7 +366,7 @@ class _Inference:
         )
         if not comparable or isinstance(unwrap(left)[0], Struct) or isinstance(unwrap(right)[0], Struct):
             self.problems.append(BadComparison(expr.span, expr.operator.symbol, left, right))
-        elif is_number(left) and is_number(right) and ScalarKind.REAL in map(_kind, (left, right)):
+        elif is_number(left) and is_number(right) and (_is_real(expr.left, left) or _is_real(expr.right, right)):
             self.problems.append(RealEquality(expr.span, expr.left, expr.right))
 
     def unary(self, expr: Unary) -> Type:
@@ -441,6 +441,11 @@ class _Inference:
 
 def _kind(type_: Type) -> ScalarKind | None:
     return type_.kind if isinstance(type_, Scalar) else None
+
+
+def _is_real(expr: Expr, type_: Type) -> bool:
+    """Whether an expression of the type `type_` can have a value that is not an integer."""
+    return _kind(type_) is ScalarKind.REAL and not (isinstance(expr, Number) and expr.is_whole)
 
 
 def _function_name(function: Expr) -> str | None:
