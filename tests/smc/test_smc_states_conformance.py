@@ -31,7 +31,7 @@ def assert_same(checker: ModelChecker) -> None:
 
 @pytest.mark.parametrize("path", conformance.systems(), ids=lambda path: f"{path.parent.name}-{path.stem}")
 def test_systems(path: Path) -> None:
-    assert_same(api.checker(api.to_jani(api.load(str(path), [str(conformance.INTERFACES)]))))
+    assert_same(api.checker(api.to_jani(conformance.load(path))))
 
 
 @pytest.mark.parametrize("path", MODELS, ids=lambda path: path.stem)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The translation of every conformance model has the reference's names, types, properties and sizes.
+"""With the semantics of AS2FM, the translation of every conformance model has the reference's names, types, properties
+and sizes.
 
 What differs on purpose is listed in `differences.toml`; everything else of those models is compared.
 """
@@ -56,17 +57,14 @@ def reference(path: Path) -> Path:
 TRANSLATED = [path for path in conformance.systems() if reference(path).exists()]
 
 
-def load(path: Path) -> api.LoadedSystem:
-    return api.load(str(path), [str(conformance.INTERFACES)])
-
-
 def test_there_are_references() -> None:
     assert TRANSLATED
 
 
 @pytest.mark.parametrize("path", TRANSLATED, ids=conformance.label)
 def test_shape(path: Path) -> None:
-    ours = shape(json.loads("".join(write(api.to_jani(load(path))))))
+    system = conformance.load(path, as_reference=True)
+    ours = shape(json.loads("".join(write(api.to_jani(system)))))
     theirs = shape(json.loads(gzip.decompress(reference(path).read_bytes())))
     nodes = {d["node"] for d in DIFFERENCES if path == conformance.ROOT / "models" / d["model"]}
     if nodes:
@@ -86,7 +84,7 @@ def without(whole: Shape, nodes: set[str]) -> Shape:
 
 @pytest.mark.parametrize("path", conformance.systems(), ids=conformance.label)
 def test_sound_and_read_back(path: Path) -> None:
-    model = api.to_jani(load(path))
+    model = api.to_jani(conformance.load(path))
     assert check_model(model) == ()
     text = "".join(write(model))
     again, findings = read_model(parse(text)[0])
@@ -98,6 +96,6 @@ def test_sound_and_read_back(path: Path) -> None:
 @pytest.mark.parametrize("path", conformance.systems(), ids=conformance.label)
 def test_what_the_checker_takes_for_global_variables(path: Path) -> None:
     """The table by which properties are checked is that of the translation."""
-    system = load(path)
+    system = conformance.load(path)
     names = {variable.name for variable in api.to_jani(system).variables}
     assert set(system.analysis.globals(system.path)) == names

@@ -51,7 +51,7 @@ TREES = {
 
 @cache
 def loaded(path: Path) -> api.LoadedSystem:
-    return api.load(str(path), [str(conformance.INTERFACES)])
+    return conformance.load(path, as_reference=True)
 
 
 @pytest.mark.parametrize("path", conformance.systems(), ids=conformance.label)
