@@ -184,6 +184,9 @@ Problem: TypeAlias = (
     | ElementComputed
 )
 
+ADVICE = (IntegerDivision, RealEquality)
+"""The problems of expressions that can be evaluated."""
+
 
 def infer(expr: Expr, scope: Scope, *, reprinted: bool = False) -> tuple[Type, tuple[Problem, ...]]:
     """The type of `expr` and its problems, in the order of the text.

@@ -11,10 +11,10 @@ from fractions import Fraction
 from roaml.comparison import read_comparison
 from roaml.durations import NANOSECONDS
 from roaml.expr.infer import (
+    ADVICE,
     BadComparison,
     BadOperand,
     DivisionByZero,
-    IntegerDivision,
     RandomUsed,
     UnknownFunction,
     UnknownMember,
@@ -277,7 +277,7 @@ class _Linker:
         self.used |= {node.name for node in walk(condition.tree) if isinstance(node, Name)}
         reported = False
         for problem in problems:
-            if isinstance(problem, IntegerDivision):
+            if isinstance(problem, ADVICE):
                 continue
             reported = True
             close: tuple[str, ...] = ()

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
-from roaml.expr.infer import IntegerDivision, constant, infer
+from roaml.expr.infer import ADVICE, constant, infer
 from roaml.expr.parse import parse
 from roaml.expr.types import BASE_TYPES, BOOL, INTEGER_RANGES, ScalarKind, fits, is_kind, is_number
 from roaml.model.expand import PortConstant
@@ -146,7 +146,7 @@ def problem_of(text: str, port: PortOutline) -> ConstantProblem | None:
         return ConstantProblem(f"the port `{port.key}` has no value; it needs a value of the type `{port.type}`")
     tree, findings = parse(Decoded(text, 0))
     given, problems = infer(tree, lambda _: None)
-    sound = not findings and all(isinstance(problem, IntegerDivision) for problem in problems)
+    sound = not findings and all(isinstance(problem, ADVICE) for problem in problems)
     if type_ == BOOL:
         if sound and given == BOOL:
             return None
