@@ -225,7 +225,7 @@ def test_explains_a_failing_trace(command: Command, robot: Path) -> None:
     done = command("verify", "main.xml", "--property", "all_delivered", "--explain", "--seed", 0)
     assert done.status == 0
     story = done.out.partition("all_delivered failed in trace ")[2]
-    assert "it reads bt_1000_response__status" in story
+    assert "it reads topic_parcels_msg.valid, topic_parcels_msg__ros_fields__data" in story
     # Each line contains its time and its place; the changes follow below it.
     lines = (robot / "plugins/deliver.ascxml").read_text().splitlines()
     number = next(n for n, text in enumerate(lines, 1) if '<bt_tick target="carrying"' in text)
@@ -761,7 +761,7 @@ def test_a_property_on_an_unknown_variable(command: Command, tmp_path: Path, rob
     assert done.status == 1
     assert errors(done.out)[0]["line"] == place(tmp_path, '"unknown"')
     text = (robot / "properties.jani").read_text()
-    (robot / "properties.jani").write_text(text.replace("bt_1000_response__status", "bt_1000_response__statu"))
+    (robot / "properties.jani").write_text(text.replace("topic_parcels_msg.valid", "topic_parcel_msg.valid"))
     done = command("verify", "main.xml")
     assert (done.status, "properties.jani:" in done.err) == (1, True)
 

@@ -429,8 +429,9 @@ def counted_one_by_one(traces: Sequence[Trace], first: int, can_be_late: bool) -
         tally.successes += verdict == TRUE
         tally.undecided += verdict == UNKNOWN
         tally.late += verdict == FALSE and end == End.TIME and can_be_late
-        tally.closed += activity == Activity.CLOSED
-        tally.idle += activity == Activity.IDLE
+        if end != End.DECIDED:  # a trace that decides the property shows what it asks for
+            tally.closed += activity == Activity.CLOSED
+            tally.idle += activity == Activity.IDLE
         if verdict == TRUE:
             tally.mean = tally.mean.add(reward)
         seen = StoredTrace(trace, steps)
