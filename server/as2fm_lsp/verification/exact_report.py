@@ -74,8 +74,8 @@ def short(exact: Exact) -> str:
     states = "1 state" if exact.states == 1 else f"{exact.states:,} states"
     end = f"{states}{' after reductions' if exact.is_reduced else ''}"
     if is_same(exact.minimum, exact.maximum):
-        return f"= {_number(exact.minimum)} for all schedulers, exact, {end}"
-    return f"minimum {_number(exact.minimum)}, maximum {_number(exact.maximum)}, exact, {end}"
+        return f"{_below_one(exact) or f'= {_number(exact.minimum)}'} for all schedulers, exact, {end}"
+    return f"minimum {_below_one(exact) or _number(exact.minimum)}, maximum {_number(exact.maximum)}, exact, {end}"
 
 
 def row(exact: Exact) -> dict[str, Any]:
