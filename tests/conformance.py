@@ -12,9 +12,6 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from roaml import api
-from roaml.model.parameters import Overrides, TreeSemantics
-
 if sys.version_info >= (3, 11):
     import tomllib
 else:
@@ -70,12 +67,6 @@ def mistakes() -> tuple[Mistake, ...]:
         Mistake(case["id"], ROOT / "bad" / case["id"], ROOT / case["base"], case["severity"], tuple(case["at"]))
         for case in _table("bad.toml")
     )
-
-
-def load(path: Path, *, as_reference: bool = False) -> api.LoadedSystem:
-    """A system of the cases. With `as_reference`, the nodes of its tree mean what they mean in AS2FM."""
-    overrides = Overrides(semantics=TreeSemantics.AS2FM if as_reference else None)
-    return api.load(str(path), [str(INTERFACES)], overrides=overrides)
 
 
 def label(path: Path) -> str:

@@ -415,19 +415,29 @@ def test_a_rate_with_a_larger_clock_step() -> None:
 @pytest.mark.parametrize(
     ("rates", "rate"),
     [
-        (("30", "10"), "`control` to 10.0001 Hz"),
-        (("60", "10"), "`control` to 10.0004 Hz"),
+        (("30", "20"), "`scan` to 33.333 Hz"),
+        (("60", "25"), "`control` to 30.001 Hz"),
         (("7", "10"), "`scan` to 6.66 Hz"),
-        (("1", "3"), "`scan` to 1.001 Hz"),
+        (("3", "4"), "`control` to 4.5 Hz"),
         (("100", "30"), "`control` to 33.333 Hz"),
         (("13", "17"), "`control` to 19.5 Hz"),
     ],
 )
 def test_the_nearest_rate_with_the_largest_steps(rates: tuple[str, str], rate: str) -> None:
     """Large steps come first: 50 ms for 7 Hz and 10 Hz, although 142.5 ms is nearer to the period of 7 Hz. Periods are
-    rounded down, so three periods of 30 Hz are 99,999 µs."""
+    rounded down, so two periods of 60 Hz are 33,332 µs."""
     written = CLOCKS.replace('rate_hz="3"', f'rate_hz="{rates[0]}"').replace('rate_hz="10"', f'rate_hz="{rates[1]}"')
     assert f"Change the rate of {rate}" in titles(written, "quickfix")
+
+
+@pytest.mark.parametrize(("rates", "rate"), [(("30", "10"), "20"), (("60", "10"), "50"), (("3", "1"), "2")])
+def test_the_next_lower_rate_that_stays_in_step(rates: tuple[str, str], rate: str) -> None:
+    """The period of 30 Hz is not a whole number of microseconds, so the timer drifts away from one with 10 Hz."""
+    written = CLOCKS.replace("‸", "").replace('rate_hz="10"', f'rate_hz="{rates[1]}"')
+    written = written.replace('rate_hz="3"', f'rate_hz="‸{rates[0]}"')
+    after = done(written, f"Change to {rate} Hz")
+    assert list(after) == ["lidar.ascxml"]
+    assert f'rate_hz="{rate}"' in after["lidar.ascxml"]
 
 
 def test_half_typed() -> None:

@@ -103,7 +103,7 @@ def test_what_hints_name(tmp_path: Path) -> None:
                     descriptions.append(f"{part.text}: {plain(explanation.text).splitlines()[0]} ({place})")
     assert "Pose: struct Pose (types.xml)" in descriptions
     assert "/a/b: topic a__b : std_msgs/Int32 (a.ascxml)" in descriptions
-    assert "bt_1000: In JANI automaton BT_plugin_1000_Sequence (Sequence.ascxml)" in descriptions
+    assert "bt_1000: In JANI automaton BT_plugin_1000_Sequence (behaviortree_cpp.txt)" in descriptions
     assert "bt_1002: In JANI automaton BT_plugin_1002_w (plugin.ascxml)" in descriptions
 
 

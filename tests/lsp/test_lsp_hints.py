@@ -198,5 +198,5 @@ async def test_what_types_are_made_of(tmp_path: Path) -> None:
         locations = await client.text_document_definition_async(types.DefinitionParams(*at))
         assert isinstance(locations, (list, tuple))
         assert [location.uri.rpartition("/")[2] for location in locations if isinstance(location, types.Location)] == [
-            "Sequence.ascxml"
+            "behaviortree_cpp.txt"
         ]

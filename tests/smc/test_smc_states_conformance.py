@@ -10,6 +10,7 @@ import pytest
 from test_smc_states import NO_PAYLOAD, results, with_nodes
 
 import conformance
+from conformance_systems import load
 from roaml import api
 from roaml.jani.reader import read_model
 from roaml.json_syntax import parse
@@ -31,7 +32,7 @@ def assert_same(checker: ModelChecker) -> None:
 
 @pytest.mark.parametrize("path", conformance.systems(), ids=lambda path: f"{path.parent.name}-{path.stem}")
 def test_systems(path: Path) -> None:
-    assert_same(api.checker(api.to_jani(conformance.load(path))))
+    assert_same(api.checker(api.to_jani(load(path))))
 
 
 @pytest.mark.parametrize("path", MODELS, ids=lambda path: path.stem)

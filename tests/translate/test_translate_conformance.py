@@ -17,6 +17,7 @@ from typing import Any
 import pytest
 
 import conformance
+from conformance_systems import load
 from roaml import api
 from roaml.jani.reader import read_model
 from roaml.jani.typecheck import check_model
@@ -63,7 +64,7 @@ def test_there_are_references() -> None:
 
 @pytest.mark.parametrize("path", TRANSLATED, ids=conformance.label)
 def test_shape(path: Path) -> None:
-    system = conformance.load(path, as_reference=True)
+    system = load(path, as_reference=True)
     ours = shape(json.loads("".join(write(api.to_jani(system)))))
     theirs = shape(json.loads(gzip.decompress(reference(path).read_bytes())))
     nodes = {d["node"] for d in DIFFERENCES if path == conformance.ROOT / "models" / d["model"]}
@@ -84,7 +85,7 @@ def without(whole: Shape, nodes: set[str]) -> Shape:
 
 @pytest.mark.parametrize("path", conformance.systems(), ids=conformance.label)
 def test_sound_and_read_back(path: Path) -> None:
-    model = api.to_jani(conformance.load(path))
+    model = api.to_jani(load(path))
     assert check_model(model) == ()
     text = "".join(write(model))
     again, findings = read_model(parse(text)[0])
@@ -96,6 +97,6 @@ def test_sound_and_read_back(path: Path) -> None:
 @pytest.mark.parametrize("path", conformance.systems(), ids=conformance.label)
 def test_what_the_checker_takes_for_global_variables(path: Path) -> None:
     """The table by which properties are checked is that of the translation."""
-    system = conformance.load(path)
+    system = load(path)
     names = {variable.name for variable in api.to_jani(system).variables}
     assert set(system.analysis.globals(system.path)) == names

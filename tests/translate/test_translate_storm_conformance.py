@@ -10,6 +10,7 @@ import pytest
 from storm import Exact, exact, read
 
 import conformance
+from conformance_systems import load
 from roaml import api
 
 # System, property: probability and number of states that Storm 1.11.3 found in the reference's translation.
@@ -51,7 +52,7 @@ TREES = {
 
 @cache
 def loaded(path: Path) -> api.LoadedSystem:
-    return conformance.load(path, as_reference=True)
+    return load(path, as_reference=True)
 
 
 @pytest.mark.parametrize("path", conformance.systems(), ids=conformance.label)

@@ -392,8 +392,8 @@ def _plugin(machine: Machine) -> PluginOutline:
 
 
 def _acts_on_first_halt(machine: Machine) -> bool:
-    """Whether a halt in the initial state of a machine does more than confirm the halt and give variables their initial
-    values, which they still have."""
+    """Whether a halt in the initial state of a machine does more than confirm the halt, pass it on to a child, and give
+    variables their initial values, which they still have."""
     chart = machine.chart
     name = chart.initial.value if chart.initial else ""
     initial = {data.id.value: _text(data.value) for data in chart.data if data.id}
@@ -401,8 +401,10 @@ def _acts_on_first_halt(machine: Machine) -> bool:
     for handler in handlers:
         if handler.trigger is ProtocolPart.BT_HALT:
             moves = any(target.state is None or target.state.value != name for target in handler.targets)
-            bodies = (statement for target in handler.targets for statement in statements(target.body))
-            return moves or not all(isinstance(s, ReturnHalted) or _is_reset(s, initial) for s in bodies)
+            done = [statement for target in handler.targets for statement in statements(target.body)]
+            passes_on = any(isinstance(statement, CallChild) and statement.halts for statement in done)
+            acts = (s for s in done if not isinstance(s, ReturnHalted | CallChild) and not _is_reset(s, initial))
+            return (moves and not passes_on) or any(acts)
     return False
 
 
