@@ -220,6 +220,21 @@ def test_unanimous_traces_prove_no_certainty(command: Command, tmp_path: Path) -
     )
 
 
+def test_a_value_that_is_almost_1_is_not_1(command: Command, tmp_path: Path) -> None:
+    """Of 60 attempts, one succeeds with the probability 1 - 2**-60, which no float64 can tell from 1."""
+    trying = op("<", "n", 60)
+    steps = [edge("s", way("t", 0.5), way("s", 0.5, n=op("+", "n", 1)), guard=trying)]
+    goals = {"p": probability(op("F", op("=", "done", 1)))}
+    steps.append(edge("t", way("u", 1, done=1)))
+    variables = [variable("n"), variable("done")]
+    name = write(tmp_path, document(automaton("a", "s t u", steps), variables=variables, properties=goals))
+    done = command("verify", name, "--expect", "p >= 1", "--exhaustive")
+    assert done.out.startswith("p: less than 1 for all schedulers, exact")
+    assert "expected ≥ 1: NOT MET by an example trace; the value is less than 1" in done.out
+    assert done.status == 1
+    assert "expected ≥ 0.99: met" in command("verify", name, "--expect", "p >= 0.99", "--exhaustive").out
+
+
 def test_explains_a_failing_trace(command: Command, robot: Path) -> None:
     late(command, robot)
     done = command("verify", "main.xml", "--property", "all_delivered", "--explain", "--seed", 0)

@@ -193,6 +193,21 @@ def check_exactly(
         slack = 0.0 if is_strict else _SLACK
         return threshold.met(number + slack) or threshold.met(number - slack)
 
+    if _is_excluded(expectation, exact, question, only_uniform=only_uniform):
+        relation = "less than 1" if threshold.is_lower else "greater than 0"
+        return Verdict(expectation, False, True, under=f"by an example trace; the value is {relation}")
     met = is_met(value)
     is_certain = exact.is_precise or is_met(bounds.lower) is is_met(bounds.upper)
     return Verdict(expectation, met, is_certain, under="" if met else missed_by)
+
+
+def _is_excluded(expectation: Expectation, exact: Exact, question: Question, *, only_uniform: bool) -> bool:
+    """Whether a trace shows that a probability is not 1 or not 0 as expected, however close it is."""
+    threshold = expectation.threshold
+    if question.is_reward or threshold.relation not in (BinaryOperator.GREATER_EQUAL, BinaryOperator.LESS_EQUAL):
+        return False
+    if not only_uniform and is_minimised(question) is not threshold.is_lower:
+        return False
+    if threshold.is_lower:
+        return threshold.number == 1 and exact.shortest(FALSE) is not None
+    return threshold.number == 0 and exact.shortest(TRUE) is not None

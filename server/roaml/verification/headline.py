@@ -19,6 +19,7 @@ from roaml.record import Record
 from roaml.smc.choices import Choices
 from roaml.smc.end import End
 from roaml.smc.goal import Question
+from roaml.smc.program import FALSE
 from roaml.smc.run import Answer
 from roaml.verification.results import Computed, CutShort, Estimated, Refused, Result, Sampled, Undecided
 from roaml.verification.schedulers import extreme_of, is_minimised
@@ -51,7 +52,7 @@ class Headline(Record, frozen=True):
 def headline(result: Result) -> Headline:
     match result.outcome:
         case Computed() as computed:
-            return Headline(short=f"{_rounded(computed.asked_value()[1], 4)}, exact")
+            return Headline(short=f"{exact_text(computed)}, exact")
         case Estimated(answer=answer, choices=choices):
             return of_answer(answer, choices)
         case Undecided():
@@ -60,6 +61,13 @@ def headline(result: Result) -> Headline:
             return Headline()
         case never:
             return assert_never(never)
+
+
+def exact_text(computed: Computed) -> str:
+    """An exact value with four significant digits; `< 1` if it would be shown as 1 although a trace fails."""
+    text = _rounded(computed.asked_value()[1], 4)
+    fails = not computed.question.is_reward and computed.exact.shortest(FALSE) is not None
+    return "< 1" if text == "1" and fails and is_minimised(computed.question) else text
 
 
 def of_answer(answer: Answer, choices: Choices | None = None) -> Headline:

@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable, Iterator
 
 from roaml.comparison import read_comparison
+from roaml.smc.program import FALSE
 from roaml.verification.expectations import expectation_of
 from roaml.verification.results import Result
 from roaml.verification.verifier import with_expectations
@@ -27,7 +28,8 @@ def _candidates(result: Result) -> Iterator[str]:
         return
     exact = result.asked_value()
     if exact is not None:
-        yield from _around(exact[1], answer.question.is_reward)
+        fails = result.exact is not None and result.exact.shortest(FALSE) is not None
+        yield from _around(exact[1], answer.question.is_reward, fails=fails)
         return
     lower, upper = answer.bounds
     for extreme in (choices.minimum, choices.maximum) if choices is not None else ():
@@ -50,11 +52,16 @@ def _candidates(result: Result) -> Iterator[str]:
         yield f"<= {_rounded(upper, math.ceil)}"
 
 
-def _around(value: float, is_reward: bool) -> Iterator[str]:
-    """Bounds on an exact value, without those that every probability satisfies."""
+def _around(value: float, is_reward: bool, *, fails: bool) -> Iterator[str]:
+    """Bounds on an exact value, without those that every probability satisfies.
+
+    Args:
+        fails: whether a trace fails, so that a probability is less than 1 even if it is rounded to 1.
+    """
     if math.isfinite(value):
         if is_reward or value > 0:
-            yield f">= {_rounded(value, math.floor)}"
+            rounded = _rounded(value, math.floor)
+            yield ">= 0.99" if rounded == "1" and fails and not is_reward else f">= {rounded}"
         if is_reward or value < 1:
             yield f"<= {_rounded(value, math.ceil)}"
 
