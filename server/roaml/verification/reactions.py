@@ -19,11 +19,12 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.program import FALSE, TRUE
 from roaml.verification.exhaustive import UndecidedError, alone, values_from
 from roaml.verification.results import Computed, Estimated, Exact, Outcome, ShortestTrace, UnderAssumption, is_same
+from roaml.verification.small import Budget, setup_cost
 from roaml.verification.target import VerificationTarget
 
 ASSUMPTION = "if machines react at once"
-LIMITS = StateLimits(states=300_000, bytes=1 << 30, transitions=1_500_000, work=300_000_000)
-"""The limits of the search, which nobody has requested."""
+LIMITS = StateLimits(states=300_000, bytes=1 << 30, transitions=3_000_000, work=300_000_000)
+"""The limits of the searches of all properties of one verification together, which nobody has requested."""
 
 
 def at_once(
@@ -31,9 +32,10 @@ def at_once(
     property_: CompiledProperty,
     outcome: Outcome,
     checker_of: Callable[[VerificationTarget], ModelChecker],
+    budget: Budget,
 ) -> UnderAssumption | None:
     """The values of a property if machines react at once; `None` if the result does not leave them open, if the model
-    assumes a reaction time, or if they cannot be computed within `LIMITS`.
+    assumes a reaction time, or if they cannot be computed within the budget, which has the limits `LIMITS`.
 
     Args:
         outcome: the result without the assumption.
@@ -47,7 +49,7 @@ def at_once(
     try:
         checker = checker_of(replace(target, model=reacting(target.model, AT_ONCE)))
         subject = next((p for p in checker.compiled_properties if p.question.name == question.name), None)
-        exact = None if subject is None else _values(*alone(checker, subject))
+        exact = None if subject is None else _values(checker, subject, budget)
     except (FaultError, UndecidedError, LimitError):
         return None
     if exact is None or not exact.is_precise:
@@ -66,9 +68,20 @@ def _is_open(outcome: Outcome) -> bool:
             return False
 
 
-def _values(checker: ModelChecker, property_: CompiledProperty) -> Exact:
-    is_reduced = can_be_reduced(checker.program, property_.goal)
-    return values_from(explore(checker, property_, LIMITS, is_reduced=is_reduced), LIMITS)
+def _values(checker: ModelChecker, property_: CompiledProperty, budget: Budget) -> Exact | None:
+    setup = setup_cost(checker)
+    limits = budget.share(len(checker.compiled_properties), setup)
+    if limits is None:
+        return None
+    alone_checker, subject = alone(checker, property_)
+    is_reduced = can_be_reduced(alone_checker.program, subject.goal)
+    transitions = limits.transitions or 0
+    try:
+        space = explore(alone_checker, subject, limits, is_reduced=is_reduced)
+        transitions = space.search.transitions + space.search.passed
+        return values_from(space, limits)
+    finally:
+        budget.spend(setup + transitions)
 
 
 def _remark(outcome: Outcome, exact: Exact, clock: Clock) -> str:

@@ -32,6 +32,8 @@ REDUCED_SHARE = 2
 long."""
 _COST_OF_ALL, _COST_OF_REDUCED, _COST_OF_BOTH = 3, 10, 8
 """The duration of a transition in both kinds of search. If both reach their limits, their cost is the limit."""
+SETUP_COST = 10
+"""The transitions that take as long as the preparation of one instruction of the model for a search."""
 EXAMPLE_TRACES = 200
 """The number of traces that are generated as examples if the value is exact."""
 MAX_EXAMPLE_STEPS = 50_000
@@ -70,10 +72,10 @@ def attempt(
     """
     if property_.question.is_conditional:
         return Attempt(None)
+    cost, reason = setup_cost(checker), ""
     checker, property_ = alone(checker, property_)
     tables = search_tables(checker, property_, limits)
     passes = (False, True) if leaves_out and can_be_reduced(checker.program, property_.goal) else (False,)
-    cost, reason = 0, ""
     for upper, is_reduced in itertools.product(_steps_to(limits), passes):
         search: Any = None
         exact = None
@@ -99,6 +101,11 @@ def attempt(
     return Attempt(None, cost, reason)
 
 
+def setup_cost(checker: ModelChecker) -> int:
+    """The duration of the preparation of a search, in transitions."""
+    return SETUP_COST * len(checker.program.code)
+
+
 def _steps_to(limits: StateLimits) -> tuple[StateLimits, ...]:
     """The limits of the searches that follow each other: if `limits` are much wider than `LIMITS`, these come first,
     because the search without choices may be small where the one through all states is large."""
@@ -115,19 +122,26 @@ def values_if_small(checker: ModelChecker, property_: CompiledProperty, *, leave
 
 class Budget:
     """What is left of limits that several properties share. Each gets an equal share of what those before it have left,
-    but at least `LIMITS`."""
+    but at least `LIMITS`. If nothing is left, a model whose preparation alone takes longer than that is not searched
+    again."""
 
     def __init__(self, limits: StateLimits = SHARED_LIMITS) -> None:
         self._limits = limits
         self._left = limits.transitions or 0
         self._asked = 0
 
-    def share(self, properties: int) -> StateLimits:
-        """The limits of the next property of this number."""
+    def share(self, properties: int, setup: int = 0) -> StateLimits | None:
+        """The limits of the next property of this number; `None` if it should not be searched.
+
+        Args:
+            setup: the duration of the preparation of the search, in transitions.
+        """
         others = max(1, properties - self._asked)
         self._asked += 1
-        transitions = max(self._left // others, min(LIMITS.transitions or 0, self._limits.transitions or 0))
-        return replace(self._limits, transitions=transitions)
+        least = min(LIMITS.transitions or 0, self._limits.transitions or 0)
+        if self._left == 0 and setup > least:
+            return None
+        return replace(self._limits, transitions=max(self._left // others, least))
 
     def spend(self, transitions: int) -> None:
         self._left = max(0, self._left - transitions)

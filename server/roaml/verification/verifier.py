@@ -23,6 +23,7 @@ from roaml.verification import stuck
 from roaml.verification.exhaustive import UndecidedError, check_exactly, exact_values
 from roaml.verification.expectations import Expectation, Verdict, check_expectation, check_range, is_possible
 from roaml.verification.explorations import Explorations, subject_of
+from roaml.verification.reactions import LIMITS as REACTION_LIMITS
 from roaml.verification.reactions import at_once
 from roaml.verification.refusal import refusal
 from roaml.verification.results import (
@@ -45,6 +46,7 @@ from roaml.verification.small import (
     Budget,
     attempt,
     choices_of,
+    setup_cost,
     values_if_small,
 )
 from roaml.verification.stuck import StuckLevel, StuckResult
@@ -198,6 +200,7 @@ class Verifier(Record, frozen=True):
             that an estimate needs.
         explorations: the exact values that several properties share.
         budget: the limits of all searches for exact values that are not requested.
+        reaction_budget: those of all searches under the assumption that machines react at once.
     """
 
     target: VerificationTarget
@@ -209,6 +212,7 @@ class Verifier(Record, frozen=True):
     example_traces: int | None = None
     explorations: Explorations = field(default_factory=Explorations)
     budget: Budget = field(default_factory=Budget)
+    reaction_budget: Budget = field(default_factory=lambda: Budget(REACTION_LIMITS))
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -374,7 +378,9 @@ class Verifier(Record, frozen=True):
                 pulsed = time.monotonic()
                 pulse(0, 0)
 
-        limits = self.budget.share(len(self.checker.compiled_properties))
+        limits = self.budget.share(len(self.checker.compiled_properties), setup_cost(self.checker))
+        if limits is None:
+            return None
         attempted = attempt(self.checker, property_, limits, watch)
         self.budget.spend(attempted.transitions)
         return attempted.exact
@@ -538,6 +544,7 @@ class Verifier(Record, frozen=True):
             property_,
             result.outcome,
             lambda target: self.explorations.checker(lambda: checker_of(target, self.names)),
+            self.reaction_budget,
         )
         if under is None:
             return result
