@@ -53,7 +53,8 @@ def estimated(size: int, folder: Path, command: str) -> list[str]:
     shutil.copytree(HERE / "robot", folder / "robot")
     replace(folder / "robot/world.ascxml", '"size" type="int32" expr="10"', f'"size" type="int32" expr="{size}"')
     replace(folder / "robot/main.xml", 'max_time value="30"', f'max_time value="{3 * size}"')
-    seconds, said = timed([command, "verify", str(folder / "robot/main.xml")])
+    options = ("--method", "adaptive", "--scheduler", "uniform")
+    seconds, said = timed([command, "verify", str(folder / "robot/main.xml"), *options])
     found = re.search(r"^arrives: (.*?) from", said, re.MULTILINE)
     return [found[1] if found else "no answer", seconds]
 

@@ -27,7 +27,8 @@ def test_what_it_writes_is_clean(command: Command, tmp_path: Path, name: str) ->
     assert lines[-1] == f"next: as2fm-lsp --check {quoted}"
     checked = command("--check", tmp_path / name / "main.xml", "--warnings-as-errors", "--severity", "information")
     assert checked.status == 0
-    assert checked.out.startswith(f"{len(written)} files checked: ")
+    assert checked.out.endswith(f"{len(written)} files checked: 1 information\n")
+    assert "[not-in-reference]" in checked.out.splitlines()[0]
 
 
 def test_a_second_init_is_refused(command: Command, tmp_path: Path) -> None:

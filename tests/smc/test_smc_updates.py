@@ -135,4 +135,4 @@ def test_the_example() -> None:
     loaded = api.load(str(ROOT / "examples/delivery_robot/main.xml"))
     compiled = first_program(api.checker(api.to_jani(loaded)))
     assert kinds(compiled.program) == {-2, -1, 0}
-    assert len(visited(compiled, kernel, 4, 1_000)) > 1_000
+    assert len(visited(compiled, kernel, 6, 1_000)) > 1_000

@@ -148,7 +148,7 @@ def test_names_of_messages_overlap_no_name_and_no_mark(path: Path, axis: Axis) -
 
 @pytest.mark.parametrize("width", [60.0, 120.0])
 def test_messages_that_are_close_to_each_other_have_one_mark(width: float) -> None:
-    session = api.session(api.load(str(DELIVERY)), seed=3)
+    session = api.session(api.load(str(DELIVERY)), seed=9)
     session.until_decided(2_000)
     timeline = timeline_of(session)
     end = extent(timeline, Axis.TIME)

@@ -316,6 +316,7 @@ class Session:
             steps,
             tuple(clock_times(steps, self._clock)),
             tuple(range(len(steps))),
+            (len(steps) - 1,),
             question.variables,
             self._automata,
             self._run.start,

@@ -185,6 +185,7 @@ class Recorder:
         compiled = checker.compiled(property_)
         self.legend = checker.legend
         self.system = checker.model.system
+        self._marks = compiled.program.location_mark
         self.compiled_property = property_
         self.seed = seed
         self.max_steps = max_steps
@@ -249,6 +250,11 @@ class Recorder:
     def standstill(self) -> Standstill:
         """The final state of the last trace, as input for the analysis of which automaton waits for which."""
         return self._steps.standstill(self.system)
+
+    def causes_of(self, end: End) -> list[int]:
+        """The instances whose final locations are the reason for which the last trace ended."""
+        places = [self._kernel.location(i) for i in range(len(self.legend.layout.instances))]
+        return [i for i, place in enumerate(places) if self._marks[place] == end]
 
     def reads(self, part: AutomatonStep) -> set[RecordedVariable]:
         """The variables on which a part of a step depends."""

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Explains a trace by the steps that led to its end.
 
-The relevant steps are the last one, those that change a variable of the property, and those on which these steps
-depend, back to the start: the last change of each variable that a step reads, and the step that triggered the automaton
-that takes it.
+The relevant steps are the last one, or the one that finished the tree if the trace ended because of it, those that
+change a variable of the property, and those on which these steps depend, back to the start: the last change of each
+variable that a step reads, and the step that triggered the automaton that takes it.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ class Story(Record, frozen=True):
         property: the name of the property.
         clock: for each step the time in s; `None` if the model has no clock.
         relevant: the indices of the relevant steps, in their order.
+        ends: the indices of the steps that ended the trace: the last one, or those that finished the trees.
         variables: the variables that the property reads.
         automata: the automaton of each instance.
         start: the variables of the model before the first step.
@@ -37,6 +38,7 @@ class Story(Record, frozen=True):
     steps: tuple[TraceStep, ...]
     clock: tuple[float | None, ...]
     relevant: tuple[int, ...]
+    ends: tuple[int, ...]
     variables: tuple[str, ...]
     automata: tuple[Automaton, ...]
     start: Mapping[str, Plain]
@@ -56,7 +58,9 @@ def build_story(recorder: Recorder, trace: int, clock: tuple[str, str] | None = 
     start = dict(zip((storage.name for storage in shared), recorder.initial(shared, trace), strict=True))
     steps = list(recorder.walk(recording))
     variables = recorder.compiled_property.question.variables
-    relevant = _relevant(recorder, steps, variables)
+    finished = recorder.causes_of(End.FINISHED) if recording.end is End.FINISHED else []
+    ends = _last_steps(steps, finished) or [len(steps) - 1] * bool(steps)
+    relevant = _relevant(recorder, steps, variables, ends)
     automata = tuple(instance.automaton for instance in recorder.legend.layout.instances)
     return Story(
         recorder.compiled_property.question.name,
@@ -64,6 +68,7 @@ def build_story(recorder: Recorder, trace: int, clock: tuple[str, str] | None = 
         tuple(steps),
         tuple(clock_times(steps, clock)),
         tuple(relevant),
+        tuple(ends),
         variables,
         automata,
         start,
@@ -89,7 +94,13 @@ def clock_times(steps: Iterable[TraceStep], clock: tuple[str, str] | None) -> It
         yield None if clock is None else seconds + nanoseconds / 1e9
 
 
-def _relevant(recorder: Recorder, steps: list[TraceStep], variables: tuple[str, ...]) -> list[int]:
+def _last_steps(steps: list[TraceStep], instances: list[int]) -> list[int]:
+    """The indices of the last steps of some instances; an instance without a step has none."""
+    last = {part.instance: i for i, step in enumerate(steps) for part in step.parts}
+    return sorted({last[instance] for instance in instances if instance in last})
+
+
+def _relevant(recorder: Recorder, steps: list[TraceStep], variables: tuple[str, ...], ends: list[int]) -> list[int]:
     last_change: dict[RecordedVariable, list[int]] = {}
     last_step: dict[int, list[int]] = {}
     for i, step in enumerate(steps):
@@ -99,8 +110,7 @@ def _relevant(recorder: Recorder, steps: list[TraceStep], variables: tuple[str, 
             last_step.setdefault(part.instance, []).append(i)
     kept: set[int] = set()
     waiting = [i for name in variables for i in last_change.get(RecordedVariable(-1, name), ())]
-    if steps:
-        waiting.append(len(steps) - 1)
+    waiting += ends
     while waiting:
         i = waiting.pop()
         if i in kept:

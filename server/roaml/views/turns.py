@@ -59,7 +59,7 @@ class Turn(Record):
         messages: the events that the automaton has sent.
         matters: whether one of the steps is relevant for the property.
         last: the number of the last step.
-        ends: whether the automaton takes part in the last step of the trace.
+        ends: whether the automaton takes part in a step that ends the trace.
         observed: the name of the observed property if the automaton is an observer; otherwise "".
         observation: what an observer observes.
         phrases: phrases for those variables of the automaton whose names are not those of the user, by their names.
@@ -272,7 +272,7 @@ class _Reader:
             if part.instance not in self.inner:
                 turn.changes += self._changes(changes, part, is_last=part is last)
             turn.matters |= index in self._relevant
-            turn.ends |= index == len(self._story.steps) - 1
+            turn.ends |= index in self._story.ends
         event = sent_by(step.action or "")
         if event:
             self._send(event, self._current[actors[0].instance] if actors else None)
