@@ -16,6 +16,7 @@ from roaml.model.syntax import Expression
 from roaml.model.value_types import TypedValue, ValuePlace, ValueUse
 from roaml.model.values.domain import Origin, interval
 from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.written import written
 from roaml.text import TextEdit
 
 
@@ -114,7 +115,7 @@ def _append(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[
     if _fits(context, value.place, tree.index, array.bound):
         return
     if not (_has_room(context, value.place, tree.object, array.bound) or _set_before(context, value, tree.object)):
-        name = _text(context, tree.object)
+        name = written(context, tree.object)
         yield RULE.at(
             tree.index.span,
             (
@@ -150,31 +151,28 @@ def _length(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[
     elif number is not None and most is not None and number > most:
         yield RULE.at(
             assigned.value.span,
-            f"`{_text(context, tree.object)}` has at most {most} elements, so its length cannot be {number}",
+            f"`{written(context, tree.object)}` has at most {most} elements, so its length cannot be {number}",
         )
 
 
 def _set_before(context: MachineContext, value: TypedValue, array: Expr) -> bool:
     """Whether an earlier statement of the same body sets the whole array or its length."""
-    names = (_text(context, array), f"{_text(context, array)}.length")
+    names = (written(context, array), f"{written(context, array)}.length")
     return any(
         isinstance(other.value, Expression)
         and other.use is ValueUse.LOCATION
         and (other.place.state, other.place.handler, other.place.part)
         == (value.place.state, value.place.handler, value.place.part)
         and other.value.span.start < value.value.span.start
-        and _text(context, other.value.tree) in names
+        and written(context, other.value.tree) in names
         for other in context.typed.values
     )
 
 
 def _is_length_of(context: MachineContext, expr: Expr, array: Expr) -> bool:
-    return isinstance(expr, Member) and expr.name == "length" and _text(context, expr.object) == _text(context, array)
-
-
-def _text(context: MachineContext, expr: Expr) -> str:
-    """The text of an expression without white space."""
-    return "".join(context.source.text[expr.span.start : expr.span.end].split())
+    return (
+        isinstance(expr, Member) and expr.name == "length" and written(context, expr.object) == written(context, array)
+    )
 
 
 def _type_of(context: MachineContext, place: ValuePlace, expr: Expr) -> Type:

@@ -7,8 +7,10 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.expr.infer import constant
-from roaml.expr.tree import ArrayLiteral, Conditional, Expr, Member, Name, Number, ObjectLiteral, walk
+from roaml.expr.operators import Operator
+from roaml.expr.tree import ArrayLiteral, Binary, Conditional, Expr, Member, Name, Number, ObjectLiteral, walk
 from roaml.expr.types import INTEGER_RANGES, Array, Scalar, ScalarKind, Struct, Type, is_kind, unwrap
+from roaml.model.machine import Assign, Handler, statements
 from roaml.model.syntax import Expression
 from roaml.model.value_types import TypedValue
 from roaml.model.values.analyse import ChartValues, analyse
@@ -17,6 +19,7 @@ from roaml.model.values.domain import Origin, ValueSet, between, interval, meet
 from roaml.model.values.evaluate import Evaluator, place_of
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.retype import as_type, wide_enough
+from roaml.rules.support.written import written
 from roaml.text import Span
 
 MAX_COUNTED = 2**8
@@ -63,6 +66,8 @@ def _computed(context: MachineContext, value: TypedValue) -> Iterator[Finding]:
         bound, origin = (bounds.high, bounds.high_from) if above else (bounds.low, bounds.low_from)
         if low <= bound <= high or origin is Origin.ASSUMED or (origin is Origin.WIDENED and high > MAX_COUNTED):
             continue
+        if _is_limited(context, value, chart, above=above):
+            continue
         reached: float | None = bound
         if origin is Origin.WIDENED:
             early = _early(context, value, tree)
@@ -88,6 +93,55 @@ def _is_consequence(chart: ChartValues, tree: Expr, low: int, high: int) -> bool
     known = {place: meet(interval(v), limits) for place, n in places if (v := chart.at(n)) is not None}
     result = interval(Evaluator(lambda _: True).values(known, tree))
     return low <= result.low and result.high <= high
+
+
+def _is_limited(context: MachineContext, value: TypedValue, chart: ChartValues, *, above: bool) -> bool:
+    """Whether a condition that holds compares the same expression, such as `x + y`, with a value that fits. The
+    analysis of values only follows what conditions say about variables."""
+    assert isinstance(value.value, Expression)
+    place, type_ = value.place, value.required
+    handler = place.handler
+    if handler is None or not isinstance(type_, Scalar) or _is_changed(value, handler):
+        return False
+    holding = [condition for condition, holds in place.branch_conditions or () if holds]
+    holding += [handler.cond] if handler.cond is not None else []
+    low, high = INTEGER_RANGES[type_.name]
+    own = written(context, value.value.tree)
+    for comparison in (part for condition in holding for part in _conjuncts(condition.tree)):
+        smaller, greater = _sides(comparison)
+        same, other = (smaller, greater) if above else (greater, smaller)
+        if same is None or other is None or written(context, same) != own:
+            continue
+        limit = chart.at(other)
+        if limit is not None and (interval(limit).high <= high if above else interval(limit).low >= low):
+            return True
+    return False
+
+
+def _is_changed(value: TypedValue, handler: Handler) -> bool:
+    """Whether another assignment of the handler changes a variable of an expression."""
+    assert isinstance(value.value, Expression)
+    used = {place_of(n) for n in walk(value.value.tree)} - {None}
+    assigned = (s for target in handler.targets for s in statements(target.body) if isinstance(s, Assign))
+    return any(s.value is not value.value and s.location and place_of(s.location.tree) in used for s in assigned)
+
+
+def _conjuncts(tree: Expr) -> Iterator[Expr]:
+    if isinstance(tree, Binary) and tree.operator is Operator.AND:
+        yield from _conjuncts(tree.left)
+        yield from _conjuncts(tree.right)
+    else:
+        yield tree
+
+
+def _sides(tree: Expr) -> tuple[Expr | None, Expr | None]:
+    """The smaller and the greater side of a comparison; `None` twice if it is none."""
+    match tree:
+        case Binary(operator=Operator.LESS | Operator.LESS_EQUAL):
+            return tree.left, tree.right
+        case Binary(operator=Operator.GREATER | Operator.GREATER_EQUAL):
+            return tree.right, tree.left
+    return None, None
 
 
 def _early(context: MachineContext, value: TypedValue, tree: Expr) -> ValueSet | None:
