@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
-from roaml.diagnostics import Finding, Severity
-from roaml.forest.entries import Entries, Use
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.forest.entries import Entries, Key, Use
 from roaml.forest.forest import Forest
 from roaml.rules.rule import Rule, TreeContext, did_you_mean, replacements
 from roaml.rules.support.entries import entries_of
@@ -22,19 +22,27 @@ def check(context: TreeContext) -> Iterator[Finding]:
     executed = forest.executed
     by_entry = entries.by_entry
     written = {key for key, uses in by_entry.items() if any(use.writes is not False for use in uses)}
-    names: dict[str, list[str]] = {}
+    names: dict[str, dict[str, Key]] = {}
     for key in written:
         for use in by_entry[key]:
-            names.setdefault(use.tree, []).append(use.name)
+            names.setdefault(use.tree, {}).setdefault(use.name, key)
+    reported: set[Use] = set()
     for key, uses in by_entry.items():
         hosted = any(use.name.removeprefix("@") in forest.host_entries for use in uses)
-        if key in written or hosted or not any(use.reads for use in uses):
+        if key in written or not any(use.reads for use in uses):
             continue
         if any(entries.is_intended(use.tree, use.name) for use in uses):
             continue  # node-port-value reports the output port that should write the entry
         for use in uses:
             if use.path == context.source.path and _is_outermost(forest, entries, use) and use.tree in executed:
-                yield _finding(use, names.get(use.tree, []))
+                known = names.get(use.tree, {})
+                near = nearest_name(use.name, known)
+                writer = None if near is None else _only_written(by_entry[known[near]])
+                if writer is None or writer.path != use.path:
+                    yield from () if hosted else (_unwritten(use, near),)
+                elif writer not in reported:
+                    reported.add(writer)
+                    yield _unread(writer, use)
 
 
 def _is_outermost(forest: Forest, entries: Entries, use: Use) -> bool:
@@ -51,12 +59,28 @@ def _is_parameter(forest: Forest, use: Use) -> bool:
     return port is not None and port.direction.reads
 
 
-def _finding(use: Use, names: list[str]) -> Finding:
-    near = nearest_name(use.name, names)
+def _only_written(uses: Iterable[Use]) -> Use | None:
+    """The place that writes an entry, if its name is written there and nothing reads the entry."""
+    writers = [use for use in uses if use.writes]
+    is_read = any(use.reads is not False or use.remaps for use in uses)
+    return None if is_read or len(writers) != 1 or writers[0].script else writers[0]
+
+
+def _unwritten(use: Use, near: str | None) -> Finding:
     close = (near,) if near else ()
     hint = did_you_mean(close) or "; the program that runs the tree must set it"
-    message = f"no tree writes the entry `{use.name}`{hint}"
-    return RULE.at(use.span, message, *replacements(use.span, tuple(f"{{{name}}}" for name in close)))
+    fixes = replacements(use.span, tuple(f"{{{name}}}" for name in close))
+    severity = Severity.WARNING if close else Severity.INFORMATION
+    return RULE.at(use.span, f"no tree writes the entry `{use.name}`{hint}", *fixes, severity=severity)
+
+
+def _unread(writer: Use, reader: Use) -> Finding:
+    message = (
+        f"no tree reads the entry `{writer.name}`, and no tree writes `{reader.name}`{did_you_mean((reader.name,))}"
+    )
+    related = [Related(reader.span, f"`{reader.name}` is read here")]
+    fixes = replacements(writer.span, (f"{{{reader.name}}}",))
+    return RULE.at(writer.span, message, *fixes, severity=Severity.WARNING, related=related)
 
 
 RULE = Rule("entry-never-written", Severity.INFORMATION, "A blackboard entry is read but never written.", tree=check)
