@@ -162,6 +162,7 @@ def _run(request: dict[str, Any], streams: list[int]) -> None:
         os.chdir(request["folder"])
         os.environ.clear()
         os.environ.update(request["environment"])
+        sys.dont_write_bytecode = bool(os.environ.get("PYTHONDONTWRITEBYTECODE"))
         resource.setrlimit(resource.RLIMIT_FSIZE, tuple(request["file size"]))
         is_unbuffered = bool(os.environ.get("PYTHONUNBUFFERED"))
         sys.stdin = os.fdopen(0, encoding="utf-8", closefd=False)

@@ -41,7 +41,8 @@ def call(
             text=True,
             check=False,
             preexec_fn=limit,
-            env={**os.environ, "PYTHONUNBUFFERED": "", **more},
+            # Modules that are compiled now would be stored as files that are too short.
+            env={**os.environ, "PYTHONUNBUFFERED": "", "PYTHONDONTWRITEBYTECODE": "1" if size >= 0 else "", **more},
         )
     return done.returncode, done.stderr
 

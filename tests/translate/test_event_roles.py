@@ -12,7 +12,9 @@ from bt_trees import Setup, Tree, leaf, system, writer
 from translating import lowered
 
 from roaml import api
+from roaml.durations import ANY_TIME
 from roaml.jani.writer import write
+from roaml.model.parameters import Overrides
 from roaml.record import replace
 from roaml.scxml.events import EventRole, ScxmlEvent
 from roaml.scxml.model import Body, If, Network, Send, bodies, statements
@@ -26,11 +28,13 @@ Change = Callable[[ScxmlEvent], ScxmlEvent]
 
 @cache
 def network_of(name: str) -> Network:
-    """That of an example, or of a tree that writes and reads a variable."""
+    """That of an example, or of a tree that writes and reads a variable. A reaction time is added to a model in JANI,
+    which has only names, and flags of events that are never sent have no event that could be renamed."""
     if name == "blackboard":
         wait = Tree("Repeat", (("num_cycles", "{few}"),), (leaf("S"),))
         return lowered(system(Tree("Sequence", children=(writer("few", 2), wait)), Setup(3)))
-    return api.to_scxml(api.load(str(next(path for path in EXAMPLES if path.parent.name == name))))
+    path = next(path for path in EXAMPLES if path.parent.name == name)
+    return replace(api.to_scxml(api.load(str(path), overrides=Overrides(reaction_time=ANY_TIME))), flags=())
 
 
 @pytest.fixture(params=NETWORKS)

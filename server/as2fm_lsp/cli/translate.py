@@ -31,6 +31,7 @@ from as2fm_lsp.translation import jani_path, summary, without_bounded
 from roaml import api
 from roaml.diagnostics import Diagnostic
 from roaml.jani.model import Model
+from roaml.jani.reaction import ReactionError, without_hold
 from roaml.jani.writer import write as jani_text
 from roaml.model.parameters import Overrides
 from roaml.project.configuration import find_settings
@@ -79,12 +80,13 @@ def run(arguments: Sequence[str]) -> int:
             outputs = outputs_of(options, system.files)
             status.stage("translating")
             network = api.to_scxml(system)
-            model, left_out = without_bounded(api.to_jani(system, options.property or None))
+            # The summary, the map and the diagrams describe the written model.
+            model, left_out = without_bounded(without_hold(api.to_jani(system, options.property or None)))
             is_refused = bool(left_out and options.property)
             if not is_refused:
                 status.stage("writing")
                 _write(options, outputs, system, network, model)
-        except (api.PathError, api.PropertyError) as error:
+        except (api.PathError, api.PropertyError, ReactionError) as error:
             return _fail(str(error))
         except api.ModelError as error:
             failure: api.ModelError | None = error

@@ -221,15 +221,20 @@ class _Encoder:
     def model_with(
         self, syncs: Iterable[Sync], edges_of: Mapping[str, Sequence[Edge]], variables: Sequence[Variable] = ()
     ) -> Model:
-        """The model with other synchronisations, and other edges of some automata."""
-        automata = tuple(
-            replace(a, edges=(*edges_of.get(a.name, a.edges), *self.added.get(a.name, ()))) for a in self.model.automata
-        )
+        """The model with other synchronisations, and other edges of some automata. What is added comes from the place
+        of its automaton, and variables from that of the clock."""
+
+        def edges(automaton: Automaton) -> Iterator[Edge]:
+            for edge in (*edges_of.get(automaton.name, automaton.edges), *self.added.get(automaton.name, ())):
+                yield edge if edge.origin is not None else replace(edge, origin=automaton.origin)
+
+        automata = tuple(replace(automaton, edges=tuple(edges(automaton))) for automaton in self.model.automata)
+        origin = self.elements[self.clock].origin
         return replace(
             self.model,
             automata=automata,
             system=replace(self.model.system, syncs=tuple(syncs)),
-            variables=(*self.model.variables, *variables),
+            variables=(*self.model.variables, *(replace(variable, origin=origin) for variable in variables)),
             actions=(*self.model.actions, *map(Action, self.actions)),
         )
 

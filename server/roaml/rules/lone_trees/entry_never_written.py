@@ -37,7 +37,8 @@ def check(context: TreeContext) -> Iterator[Finding]:
             if use.path == context.source.path and _is_outermost(forest, entries, use) and use.tree in executed:
                 known = names.get(use.tree, {})
                 near = nearest_name(use.name, known)
-                writer = None if near is None else _only_written(by_entry[known[near]])
+                is_right = hosted or len(uses) > 1 or use.name in _keys(use)
+                writer = _only_written(by_entry[known[near]]) if near is not None and is_right else None
                 if writer is None or writer.path != use.path:
                     yield from () if hosted else (_unwritten(use, near),)
                 elif writer not in reported:
@@ -57,6 +58,11 @@ def _is_parameter(forest: Forest, use: Use) -> bool:
     model = forest.subtree_models.get(use.tree)
     port = model.port(use.name) if model is not None else None
     return port is not None and port.direction.reads
+
+
+def _keys(use: Use) -> set[str]:
+    """The attributes of the node that name the entry, as in `path="{path}"`, where the name is certainly intended."""
+    return {attribute.name for attribute in use.node.element.attributes if attribute.value_span == use.span}
 
 
 def _only_written(uses: Iterable[Use]) -> Use | None:
