@@ -8,7 +8,16 @@ import copy
 from collections.abc import Mapping, Sequence
 
 from roaml.jani.model import Automaton
-from roaml.scxml.names import FIELD_PREFIX, client_of, flagged_by, is_length, received_by, sent_by, without_client
+from roaml.scxml.names import (
+    FIELD_PREFIX,
+    client_of,
+    flagged_by,
+    is_length,
+    read_tree_event,
+    received_by,
+    sent_by,
+    without_client,
+)
 from roaml.smc.record import AutomatonStep, Plain, TraceStep
 from roaml.views.arrays import DeclaredValue, declared
 
@@ -79,7 +88,7 @@ class EventReader:
     def _is_of_event(self, name: str) -> bool:
         """Whether a variable of the model belongs to an event. If it does, its parameter is stored."""
         if event := flagged_by(name):
-            return event in self._events
+            return event in self._events or read_tree_event(event) is not None  # a tree may never send an event
         at = name.rfind("__")
         while at > 0:
             if name[:at] in self._events:
