@@ -209,5 +209,5 @@ def _is_excluded(expectation: Expectation, exact: Exact, question: Question, *, 
     if not only_uniform and is_minimised(question) is not threshold.is_lower:
         return False
     if threshold.is_lower:
-        return threshold.number == 1 and exact.shortest(FALSE) is not None
+        return threshold.number == 1 and exact.fails
     return threshold.number == 0 and exact.shortest(TRUE) is not None

@@ -19,7 +19,6 @@ from roaml.record import Record
 from roaml.smc.choices import Choices
 from roaml.smc.end import End
 from roaml.smc.goal import Question
-from roaml.smc.program import FALSE
 from roaml.smc.run import Answer
 from roaml.verification.results import Computed, CutShort, Estimated, Refused, Result, Sampled, Undecided
 from roaml.verification.schedulers import extreme_of, is_minimised
@@ -66,8 +65,8 @@ def headline(result: Result) -> Headline:
 def exact_text(computed: Computed) -> str:
     """An exact value with four significant digits; `< 1` if it would be shown as 1 although a trace fails."""
     text = _rounded(computed.asked_value()[1], 4)
-    fails = not computed.question.is_reward and computed.exact.shortest(FALSE) is not None
-    return "< 1" if text == "1" and fails and is_minimised(computed.question) else text
+    is_probability = not computed.question.is_reward and is_minimised(computed.question)
+    return "< 1" if text == "1" and is_probability and computed.exact.fails else text
 
 
 def of_answer(answer: Answer, choices: Choices | None = None) -> Headline:

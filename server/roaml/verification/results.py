@@ -16,6 +16,7 @@ from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty, InitialFold, Question
 from roaml.smc.lss import Side
 from roaml.smc.model import ModelChecker
+from roaml.smc.program import FALSE
 from roaml.smc.record import SELECTED, SHORTEST, Recorder, Recording, TraceStep
 from roaml.smc.run import Answer, Options
 from roaml.smc.statistics import Bounds
@@ -129,6 +130,11 @@ class Exact(PartlyCompared, frozen=True):
         if only_uniform:
             return Bounds(-math.inf, math.inf) if self.uniform is None else self.uniform, self.average
         return (self.minimum, self.least) if is_minimised(question) else (self.maximum, self.greatest)
+
+    @property
+    def fails(self) -> bool:
+        """Whether a trace fails. Then a minimum is less than 1, even if no number shows the difference."""
+        return self.shortest(FALSE) is not None
 
     def shortest(self, verdict: int) -> ShortestTrace | None:
         """The shortest trace with a verdict; `None` if there is none."""

@@ -7,7 +7,6 @@ import math
 from collections.abc import Callable, Iterator
 
 from roaml.comparison import read_comparison
-from roaml.smc.program import FALSE
 from roaml.verification.expectations import expectation_of
 from roaml.verification.results import Result
 from roaml.verification.verifier import with_expectations
@@ -28,7 +27,7 @@ def _candidates(result: Result) -> Iterator[str]:
         return
     exact = result.asked_value()
     if exact is not None:
-        fails = result.exact is not None and result.exact.shortest(FALSE) is not None
+        fails = result.exact is not None and result.exact.fails
         yield from _around(exact[1], answer.question.is_reward, fails=fails)
         return
     lower, upper = answer.bounds

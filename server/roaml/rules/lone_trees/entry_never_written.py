@@ -26,7 +26,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     for key in written:
         for use in by_entry[key]:
             names.setdefault(use.tree, {}).setdefault(use.name, key)
-    reported: set[Use] = set()
+    misspelled: dict[Use, Use] = {}
     for key, uses in by_entry.items():
         hosted = any(use.name.removeprefix("@") in forest.host_entries for use in uses)
         if key in written or not any(use.reads for use in uses):
@@ -39,11 +39,12 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 near = nearest_name(use.name, known)
                 is_right = hosted or len(uses) > 1 or use.name in _keys(use)
                 writer = _only_written(by_entry[known[near]]) if near is not None and is_right else None
-                if writer is None or writer.path != use.path:
-                    yield from () if hosted else (_unwritten(use, near),)
-                elif writer not in reported:
-                    reported.add(writer)
-                    yield _unread(writer, use)
+                if writer is not None and writer.path == use.path:
+                    misspelled.setdefault(writer, use)
+                elif not hosted:
+                    yield _unwritten(use, near)
+    for writer, reader in misspelled.items():
+        yield _unread(writer, reader)
 
 
 def _is_outermost(forest: Forest, entries: Entries, use: Use) -> bool:
