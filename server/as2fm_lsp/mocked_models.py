@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,6 +19,7 @@ from roaml.text import decode
 
 if TYPE_CHECKING:
     from roaml.api.trees import LoadedTree
+    from roaml.mocks.proposal import MockableLeaf
 
 MAX_RATE = 10_000
 """The maximum tick rate, in Hz."""
@@ -113,16 +114,21 @@ def load_mocked_tree(
     messages: MockMessages,
     *,
     counts: bool,
+    uses_proposal: bool = False,
 ) -> LoadedTree:
     """A tree without a system, with the declared mocks; if there are none, with those in the file beside the tree. The
     file with mocks is one of the files of the target.
 
+    If no mocks are declared and there is no such file, a proposal is written into it.
+
     Args:
         max_time: the limit of the simulated time in ns; `None` for the default.
         counts: whether mocks count their answers, for measurements.
+        uses_proposal: whether proposed mocks are used at once. They are also added to the file if it lacks some, and
+            used if it cannot be written. Otherwise, a `MockError` asks the user to review them.
 
     Raises:
-        MockError: a mock is not valid, or leaves have no mock.
+        MockError: a mock is not valid, leaves have no mock, or mocks were proposed and are not used.
         OSError: the file with mocks cannot be read.
         PathError, ModelError: as `load_tree`.
     """
@@ -135,7 +141,8 @@ def load_mocked_tree(
     )
     from roaml.project.mock_files import mocks_path  # noqa: PLC0415
 
-    if not declared.has_mocks and Path(beside := mocks_path(path)).is_file():
+    beside = mocks_path(path)
+    if not declared.has_mocks and Path(beside).is_file():
         messages.write(f"uses the mocks of {messages.shown(beside)}")
         declared = replace(declared, file=beside)
     mocks = declared.mocks()
@@ -144,11 +151,74 @@ def load_mocked_tree(
     try:
         tree = load_tree(path, run, settings)
     except MissingMocksError as missing:
-        raise _missing_mocks(path, [leaf.type for leaf in missing.leaves], messages) from None
+        if declared.has_mocks and declared.file != beside:
+            raise _missing_mocks(path, [leaf.type for leaf in missing.leaves], messages) from None
+        leaves = missing.mockable
+        if not uses_proposal:
+            raise _review(path, beside, leaves, messages, is_new=declared.file is None) from None
+        _keep_proposal(path, beside, leaves, messages)
+        declared = replace(declared, file=beside if Path(beside).is_file() else None)
+        proposed = tuple(leaf.proposed for leaf in leaves if leaf.mock is None)
+        tree = load_tree(path, replace(run, mocks=mocks + proposed), settings)
     _report_unused(unused(mocks, [(node.name, node.type) for node in tree.mocked.tree.nodes]), messages)
     if declared.file is None:
         return tree
     return replace(tree, target=replace(tree.target, files=(*tree.target.files, os.path.abspath(declared.file))))
+
+
+def keep_proposal(path: str, leaves: Sequence[MockableLeaf]) -> int:
+    """Write the proposed mocks of a tree into the file beside it, or add those that it lacks.
+
+    Returns:
+        The number of leaves that had no mock.
+
+    Raises:
+        OSError: the file cannot be read or written.
+    """
+    from as2fm_lsp.atomic_write import write_file  # noqa: PLC0415 - most trees have mocks
+    from roaml.mocks.proposal import completed_text, proposed_text  # noqa: PLC0415
+    from roaml.project.mock_files import mocks_path  # noqa: PLC0415
+
+    beside = mocks_path(path)
+    if Path(beside).is_file():
+        text = completed_text(required(beside).decode("utf-8"), leaves)
+    else:
+        text = proposed_text(os.path.basename(path), leaves)
+    write_file(beside, text)
+    return sum(len(leaf.nodes) for leaf in leaves if leaf.is_missing)
+
+
+def _keep_proposal(path: str, beside: str, leaves: Sequence[MockableLeaf], messages: MockMessages) -> None:
+    try:
+        count = keep_proposal(path, leaves)
+    except OSError as error:
+        reason = error.strerror or error
+        messages.write(f"uses proposed mocks, which could not be written into {messages.shown(beside)}: {reason}")
+    else:
+        leaves_ = "1 leaf" if count == 1 else f"{count} leaves"
+        messages.write(f"proposed mocks for {leaves_}: review them in {messages.shown(beside)}")
+
+
+def _review(
+    path: str, beside: str, leaves: Sequence[MockableLeaf], messages: MockMessages, *, is_new: bool
+) -> MockError:
+    """The error that asks the user to review proposed mocks. They are written if there was no file with mocks."""
+    lines = "\n".join(f"  {leaf.line}" for leaf in leaves if leaf.is_missing)
+    if not is_new:
+        return MockError(f"{messages.shown(beside)}: leaves have no mock; add lines for them, for example\n{lines}")
+    try:
+        count = keep_proposal(path, leaves)
+    except OSError as error:
+        reason = error.strerror or error
+        return MockError(
+            f"{messages.shown(path)}: its leaves need mocks, and a proposal could not be written into "
+            f"{messages.shown(beside)}: {reason}; write these lines into a file and name it with --mocks\n{lines}"
+        )
+    leaves_ = "its leaf needs a mock" if count == 1 else f"its {count} leaves need mocks"
+    return MockError(
+        f"{messages.shown(path)}: {leaves_}; a proposal is in {messages.shown(beside)}, with a reason for each: "
+        f"review it and repeat the command, or set mocks with {messages.example}"
+    )
 
 
 def mocked_system_texts(

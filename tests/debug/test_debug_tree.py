@@ -157,8 +157,8 @@ def test_wrong_declarations_are_refused(client: Client, tree: Path) -> None:
     def refusal(path: Path = tree, **attributes: Any) -> str:
         return client.refusal("launch", program=str(path), **attributes)
 
-    missing = refusal(entries={"load": 5})
-    assert missing == f'{tree}: these leaves need mocks: Drive, Grasp; for example `"mocks": ["*: 0.9 in 1 s"]`'
+    missing = refusal(entries={"load": 5}, mocks=["Drive: 1"])
+    assert missing == f'{tree}: these leaves need mocks: Grasp; for example `"mocks": ["*: 0.9 in 1 s"]`'
     assert "`Drive 1` is not a mock" in refusal(mocks=["Drive 1"])
     assert "nothing sets the entry `load`" in refusal(mocks=["*: 1"])
     assert refusal(mocksFile="none.mocks") == f"{tree.parent / 'none.mocks'}: there is no such file"
@@ -168,6 +168,20 @@ def test_wrong_declarations_are_refused(client: Client, tree: Path) -> None:
     model = tree.parent / "model.jani"
     model.write_text("{}", encoding="utf-8")
     assert "a JANI model has none" in refusal(model, mocks=["*: 1"])
+
+
+def test_a_tree_without_mocks_runs_with_proposed_ones(client: Client, tree: Path) -> None:
+    beside = tree.with_suffix(".mocks")
+    client.begin(tree, entries={"load": 5})
+    assert f"proposed mocks for 2 leaves: review them in {beside}" in _outputs(client)
+    assert [mock.pattern for mock in api.read_mocks(beside.read_text(encoding="utf-8"))] == ["Drive", "Grasp"]
+
+
+def test_mocks_that_are_missing_in_the_file_are_added(client: Client, tree: Path) -> None:
+    beside = tree.with_suffix(".mocks")
+    beside.write_text("# mine\nDrive: 1 in 1 s", encoding="utf-8")
+    client.begin(tree, entries={"load": 5})
+    assert beside.read_text(encoding="utf-8").startswith("# mine\nDrive: 1 in 1 s\nGrasp: 0.9 in 1 s  # action: ")
 
 
 def test_mocks_replace_missing_plugins_of_a_system(client: Client, tmp_path: Path) -> None:

@@ -192,7 +192,7 @@ def _sources(launch: Launch, log: Log) -> Sources:
     messages = MockMessages(lambda text: log(text, None), str, '`"mocks": ["*: 0.9 in 1 s"]`')
     if names_tree(path):
         settings = replace(settings, reaction_time=launch.reaction_time or settings.reaction_time)
-        tree = load_mocked_tree(path, mocks, launch.max_time, settings, messages, counts=False)
+        tree = load_mocked_tree(path, mocks, launch.max_time, settings, messages, counts=False, uses_proposal=True)
         return Sources(_with_one_property(tree.target, launch.start), tree=tree.mocked.tree)
     texts = None if mocks.is_empty else mocked_system_texts(path, mocks, launch.ros_paths, settings, messages)
     system = api.load(path, launch.ros_paths, settings, texts, overrides)

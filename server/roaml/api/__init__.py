@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from roaml.api.migrating import SharedFileError, migrate
     from roaml.api.simulating import session
     from roaml.api.systems import LoadedSystem, ModelError, load, loaded, source_map, to_jani, to_scxml
+    from roaml.api.trees import propose_mocks
     from roaml.api.verifying import ConstantError, as_target, checker, target, verifier, verify
     from roaml.comparison import Comparison
     from roaml.diagnostics import Diagnostic, Severity
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from roaml.jani.selection import PropertyError
     from roaml.jani.writer import write as write_jani
     from roaml.mocks.mock import Mock, MockError, read_mocks
+    from roaml.mocks.proposal import LeafKind, MockableLeaf, proposed_text
     from roaml.model.parameters import NO_OVERRIDES, Overrides
     from roaml.project.analysis import Analysis
     from roaml.project.migrate import Migration
@@ -103,6 +105,7 @@ else:
         "roaml.api.migrating": ("SharedFileError", "migrate"),
         "roaml.api.simulating": ("session",),
         "roaml.api.systems": ("LoadedSystem", "ModelError", "load", "loaded", "source_map", "to_jani", "to_scxml"),
+        "roaml.api.trees": ("propose_mocks",),
         "roaml.api.verifying": ("ConstantError", "as_target", "checker", "target", "verifier", "verify"),
         "roaml.diagnostics": ("Diagnostic", "Severity"),
         "roaml.figures.layout": ("LayoutDirection",),
@@ -112,6 +115,7 @@ else:
         "roaml.jani.properties": ("Property",),
         "roaml.jani.selection": ("PropertyError",),
         "roaml.mocks.mock": ("Mock", "MockError", "read_mocks"),
+        "roaml.mocks.proposal": ("LeafKind", "MockableLeaf", "proposed_text"),
         "roaml.model.parameters": ("NO_OVERRIDES", "Overrides"),
         "roaml.project.analysis": ("Analysis",),
         "roaml.project.migrate": ("Migration",),
@@ -214,6 +218,7 @@ __all__ = [
     "InitialFold",
     "JaniError",
     "LayoutDirection",
+    "LeafKind",
     "LineColumn",
     "LoadedSystem",
     "Location",
@@ -221,6 +226,7 @@ __all__ = [
     "Migration",
     "Mock",
     "MockError",
+    "MockableLeaf",
     "Model",
     "ModelChecker",
     "ModelError",
@@ -292,6 +298,8 @@ __all__ = [
     "load",
     "loaded",
     "migrate",
+    "propose_mocks",
+    "proposed_text",
     "read_jani",
     "read_mocks",
     "session",

@@ -7,7 +7,7 @@ import os
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from roaml.api.checking import check
+from roaml.api.checking import CheckResult, check
 from roaml.api.jani_files import PathError
 from roaml.api.systems import ModelError
 from roaml.diagnostics import Diagnostic, Severity
@@ -16,7 +16,11 @@ from roaml.project.settings import Settings
 from roaml.record import Record, replace
 
 if TYPE_CHECKING:
+    from roaml.forest.forest import Forest
+    from roaml.lower.programs.refusal import TreeRefusal
     from roaml.mocks.network import MockedTree, MockOptions
+    from roaml.mocks.proposal import MockableLeaf
+    from roaml.project.workspace import Snapshot
     from roaml.verification.target import VerificationTarget
 
 
@@ -49,29 +53,76 @@ def load_tree(
         ModelError: the trees have errors, or the executed tree cannot be translated.
         MissingMocksError: leaves have no mock.
     """
+
+    return loaded_tree(check([path], settings=settings, texts=texts).snapshot, os.path.abspath(path), options)
+
+
+def loaded_tree(snapshot: Snapshot, path: str, options: MockOptions) -> LoadedTree:
+    """A tree without a system, from a workspace.
+
+    Args:
+        path: the absolute path of the file of the tree.
+        options: as for `load_tree`.
+
+    Raises:
+        PathError: the path is not a file of trees.
+        ModelError, MissingMocksError: as for `load_tree`.
+    """
     from roaml.lower.programs.refusal import TreeRefusal  # noqa: PLC0415
     from roaml.mocks.network import mocked  # noqa: PLC0415 - a check starts faster without these
     from roaml.to_jani import translate  # noqa: PLC0415
     from roaml.verification.target import target_of  # noqa: PLC0415
     from roaml.verification.tree_outcome import tree_properties  # noqa: PLC0415
 
-    result = check([path], settings=settings, texts=texts)
-    analysis = result.snapshot.analysis
-    full = os.path.abspath(path)
-    forest = analysis.forest(full)
-    if forest is None or analysis.kind(full) is not FileKind.TREE:
-        raise PathError(f"{path}: not a file of behavior trees")
-    errors = tuple(diagnostic for diagnostic in result.diagnostics if diagnostic.severity is Severity.ERROR)
-    if errors:
-        raise ModelError(replace(result, diagnostics=errors))
+    forest = _forest(snapshot, path)
     try:
         tree = mocked(forest, options)
     except TreeRefusal as refusal:
-        origin = refusal.origin
-        source = analysis.source(origin.path)
-        reason = Diagnostic(origin.path, UNTRANSLATABLE, Severity.ERROR, origin.span, refusal.reason, source=source)
-        raise ModelError(replace(result, diagnostics=(reason,))) from None
+        raise _untranslatable(snapshot, path, refusal) from None
     model = translate(tree.network)
     model = replace(model, properties=tree_properties(tree.tree.root))
     files = tuple(file for file, _ in forest.files)
-    return LoadedTree(tree, target_of(model, full, files, analysis.source))
+    return LoadedTree(tree, target_of(model, path, files, snapshot.analysis.source))
+
+
+def propose_mocks(
+    path: str, settings: Settings | None = None, texts: Mapping[str, str | bytes] | None = None
+) -> tuple[MockableLeaf, ...]:
+    """The leaves of a tree without a system whose behaviour a mock determines, each with a proposed mock and the reason
+    for it. `roaml.mocks.proposal.proposed_text` writes them as a file.
+
+    Args:
+        path, settings, texts: as for `load_tree`.
+
+    Raises:
+        PathError, ModelError: as for `load_tree`.
+    """
+    from roaml.lower.programs.refusal import TreeRefusal  # noqa: PLC0415
+    from roaml.mocks.proposal import mockable_leaves  # noqa: PLC0415
+    from roaml.project.mock_files import mocks_beside  # noqa: PLC0415
+
+    snapshot, full = check([path], settings=settings, texts=texts).snapshot, os.path.abspath(path)
+    try:
+        return mockable_leaves(_forest(snapshot, full), mocks_beside(snapshot.analysis, full))
+    except TreeRefusal as refusal:
+        raise _untranslatable(snapshot, full, refusal) from None
+
+
+def _forest(snapshot: Snapshot, path: str) -> Forest:
+    analysis = snapshot.analysis
+    forest = analysis.forest(path)
+    if forest is None or analysis.kind(path) is not FileKind.TREE:
+        raise PathError(f"{path}: not a file of behavior trees")
+    diagnostics = snapshot.checker.diagnostics(path)
+    errors = tuple(diagnostic for diagnostic in diagnostics if diagnostic.severity is Severity.ERROR)
+    if errors:
+        raise ModelError(CheckResult(errors, (path,), (), snapshot))
+    return forest
+
+
+def _untranslatable(snapshot: Snapshot, path: str, refusal: TreeRefusal) -> ModelError:
+    """The error for a tree that cannot be translated."""
+    origin = refusal.origin
+    source = snapshot.analysis.source(origin.path)
+    reason = Diagnostic(origin.path, UNTRANSLATABLE, Severity.ERROR, origin.span, refusal.reason, source=source)
+    return ModelError(CheckResult((reason,), (path,), (), snapshot))

@@ -32,6 +32,7 @@ from roaml.lower.programs.refusal import TreeRefusal
 from roaml.lower.programs.values import ticks_of
 from roaml.lower.timers import Timer, clock, clock_step
 from roaml.mocks.mock import Mock, mock_for
+from roaml.mocks.proposal import MockableLeaf, leaves_of
 from roaml.mocks.unfolding import unfold
 from roaml.model.timing import period
 from roaml.record import Record, field
@@ -101,11 +102,17 @@ class MockedTree(Record, frozen=True, eq=False):
 
 
 class MissingMocksError(Exception):
-    """Raised if leaves have no mock; `leaves` are these leaves."""
+    """Raised if leaves have no mock.
 
-    def __init__(self, leaves: Sequence[ExecutedNode]) -> None:
+    Attributes:
+        leaves: these leaves.
+        mockable: all leaves of the tree whose behaviour a mock determines, with proposals.
+    """
+
+    def __init__(self, leaves: Sequence[ExecutedNode], mockable: Sequence[MockableLeaf]) -> None:
         super().__init__()
         self.leaves = tuple(leaves)
+        self.mockable = tuple(mockable)
 
 
 def mocked(forest: Forest, options: MockOptions) -> MockedTree:
@@ -134,7 +141,7 @@ class _Builder:
             if program is None and self.find_mock(node) is None:
                 missing.append(node)
         if missing:
-            raise MissingMocksError(missing)
+            raise MissingMocksError(missing, leaves_of(self.tree, self.options.mocks))
         board = build_board(self.tree, self.options.entries, self.programs)
         automata: dict[int, Automaton] = {}
         children: dict[int, Child] = {}
