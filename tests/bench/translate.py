@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import conformance
 from bench.check import EXAMPLES, GROWTH, system
-from bench.plot import svg
+from bench.plot import growth_svg
 from bench.report import Benchmark, Row, listed, median, megabytes, seconds
 from roaml import api
 from roaml.jani.writer import write
@@ -112,7 +112,10 @@ def growing_arrays() -> list[Run]:
 def diagram() -> str:
     """All three measurements in one diagram, as SVG."""
     series = {"machines": growing_machines(), "topics": growing_topics(), "max_array_size": growing_arrays()}
-    return svg({name: [(run.size / 1e6, run.translate + run.write) for run in runs] for name, runs in series.items()})
+    points = {name: [(run.size / 1e6, run.translate + run.write) for run in runs] for name, runs in series.items()}
+    return growth_svg(
+        "Translation by the size of the output", points, "size of the JANI file (MB)", "translating and writing (s)"
+    )
 
 
 def growth() -> list[Row]:

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import conformance
-from bench.plot import svg
+from bench.plot import growth_svg
 from bench.report import Benchmark, Row, listed, megabytes, seconds
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
@@ -191,8 +191,12 @@ def diagrams() -> dict[str, str]:
         "time in ms": [(1 / (1 - level), took * 1000) for level, (_, took) in confidences().items()],
     }
     return {
-        "verify-grid.svg": svg(sizes, "cells on a side of the grid", "time in s"),
-        "verify-confidence.svg": svg(levels, "1 / (1 - confidence)", "traces, and time in ms"),
+        "verify-grid.svg": growth_svg(
+            "Verification by the size of a grid world", sizes, "cells on a side of the grid", "time (s)"
+        ),
+        "verify-confidence.svg": growth_svg(
+            "Traces and time by the confidence", levels, "1 / (1 - confidence)", "number of traces, and time (ms)"
+        ),
     }
 
 

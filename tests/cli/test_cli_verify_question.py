@@ -356,6 +356,8 @@ def test_constants(command: Command, tmp_path: Path) -> None:
     given = ["--constant", "N=20", "--constant", "p=0.25", "--constant", "on=true", "--constant", "k=20"]
     done = command("verify", name, *given, "--expect", "heads = 0.25")
     assert (done.status, done.err) == (0, "")
+    fraction = [text.replace("p=0.25", "p=1/4") for text in given]
+    assert command("verify", name, *fraction, "--constant", "fixed=3", "--expect", "heads = 0.25").status == 0
     without = command("verify", name, *given[2:])
     assert without.status == 1
     assert "the constant `N` has no value; give one with `--constant N=VALUE`" in without.err
@@ -368,13 +370,13 @@ def test_constants(command: Command, tmp_path: Path) -> None:
         ("N=", "a constant must have the form `NAME=VALUE`"),
         ("N=2.5", "the constant `N` must be a whole number of 64 bits, not `2.5`"),
         ("N=99999999999999999999", "the constant `N` must be a whole number of 64 bits"),
-        ("p=nan", "the constant `p` must be a finite number, not `nan`"),
-        ("p=1e999", "the constant `p` must be a finite number, not `1e999`"),
+        ("p=nan", "the constant `p` must be a number or a fraction, not `nan`"),
+        ("p=1e999", "the constant `p` must be a number or a fraction, not `1e999`"),
         ("on=1", "the constant `on` must be true or false, not `1`"),
         ("k=0", "the constant `k` must be at least 1, not `0`"),
         ("k=21", "the constant `k` must be at most 20, not `21`"),
         ("fixd=1", "there is no constant `fixd`; did you mean `fixed`?"),
-        ("fixed=1", "the constant `fixed` has a value in the model"),
+        ("p=0.1:0.1:0.9", "gives the constant `p` several values; use `as2fm-lsp experiment`"),
         ("N=3", "the constant `N` is given twice"),
     ],
 )

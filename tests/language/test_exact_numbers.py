@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import pytest
 
-from roaml.model.exact_number import exact_number
+from roaml.exact_number import exact_number
 
 
 @pytest.mark.parametrize(

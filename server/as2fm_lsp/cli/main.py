@@ -27,6 +27,7 @@ COMMANDS = {
     "migrate": "migrate systems to the current dialect",
     "translate": "translate a system to JANI and plain SCXML",
     "verify": "compute or estimate the probabilities of properties",
+    "experiment": "compute properties for many values of parameters",
     "draw": "draw a state machine, a tree or a ROS graph",
     "simulate": "run a system step by step",
     "debug": "run the debug adapter for an editor",

@@ -38,8 +38,8 @@ def add_model_arguments(parser: ArgumentParser) -> None:
     add = parser.add_argument
     add("--max-time", type=time_of, metavar="TIME", help='overrides <max_time> of MAIN.xml, for example "100 s"')
     add_reaction_time(parser)
-    add("--constant", action="append", default=[], metavar="NAME=VALUE", help="sets a constant that "
-        "MODEL.jani declares without a value; may be repeated")  # fmt: skip
+    add("--constant", action="append", default=[], metavar="NAME=VALUE", help="sets a constant of "
+        "MODEL.jani, also one that has a value there; may be repeated")  # fmt: skip
     add("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages")
     add_semantics(parser)
     add_mock_options(parser)

@@ -5,12 +5,11 @@ explain traces."""
 from __future__ import annotations
 
 import argparse
-import importlib
 import os
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, nullcontext
+from contextlib import nullcontext
 from typing import TYPE_CHECKING, Any
 
 from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
@@ -39,6 +38,7 @@ from as2fm_lsp.cli.verify_arguments import (
     parser,
     state_limits_in,
 )
+from as2fm_lsp.cli.workers import cluster
 from as2fm_lsp.mocked_models import load_mocked_tree, names_tree
 from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, outputs_of
 from as2fm_lsp.verification import stuck_report
@@ -72,8 +72,6 @@ from roaml.verification.target import VerificationTarget
 from roaml.verification.verifier import NoThresholdError, Verifier
 
 if TYPE_CHECKING:
-    from concurrent.futures import Executor
-
     from roaml.mocks.network import MockedTree
     from roaml.project.settings import Settings
     from roaml.smc.story import Story
@@ -217,7 +215,7 @@ class _Verification:
     def run(self) -> int:
         checker = self.verifier.checker
         searches = self.searches or nullcontext()
-        with _executor(self.options.dask) as (executor, workers), ProgressBar() as bar, searches:
+        with cluster(self.options.dask) as (executor, workers), ProgressBar() as bar, searches:
             with Pool(workers or self.options.jobs, executor) as pool:
                 shared = self._answer_shared(pool, bar)
             interrupted = any(result.is_interrupted for result in shared.values())
@@ -579,25 +577,6 @@ class _Verification:
             print_text(text, stream=sys.stdout if self.options.format is Format.TEXT else sys.stderr)
         else:
             self.outputs.write(file, text)
-
-
-@contextmanager
-def _executor(address: str | None) -> Iterator[tuple[Executor | None, int]]:
-    """The executor that runs batches of traces on a Dask cluster, and its number of workers; `None` and 0 without an
-    address, for local processes."""
-    if address is None:
-        yield None, 0
-        return
-    try:
-        distributed: Any = importlib.import_module("distributed")
-    except ImportError:
-        raise UsageError("--dask needs the package distributed: pip install distributed") from None
-    try:
-        client = distributed.Client(address, timeout=10)
-    except OSError as error:
-        raise UsageError(f"there is no Dask scheduler at {address}: {error}") from None
-    with client:
-        yield client.get_executor(), max(1, sum(client.nthreads().values()))
 
 
 def _except(names: list[str]) -> str:

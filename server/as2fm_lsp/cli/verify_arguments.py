@@ -82,29 +82,7 @@ def parser() -> ArgumentParser:
     add("--property", action="append", default=[], metavar="NAME", help="verify only this property; may be repeated")
     add("--expect", action="append", default=[], metavar="'NAME >= P'", help="expect this of the "
         "property NAME, with >=, <=, >, < or ==, and exit with 1 if it does not hold; may be repeated")  # fmt: skip
-    add(
-        "--confidence",
-        type=_share,
-        metavar="C",
-        help="the probability with which the interval contains the true value (0.95)",
-    )
-    add("--epsilon", type=_width, metavar="E", help="half the width of the interval (0.01); for "
-        "an expected reward relative to its value")  # fmt: skip
-    add("--method", action=WordAction, words=EstimationMethod,
-        help="generate traces, also if the model is small: until the interval is narrow "
-        "enough (adaptive, the default for larger models), as many as Hoeffding's bound requires (okamoto), until it "
-        "is decided whether the expectation holds (sprt), or --max-traces (fixed)")  # fmt: skip
-    add("--max-traces", type=positive, metavar="N", help="generate at most N traces")
-    add("--max-steps", type=positive, metavar="N", help="cut traces after N steps; cut traces are "
-        "undecided (1000000)")  # fmt: skip
-    add("--seed", type=natural, metavar="N", help="seed of the random numbers (0)")
-    add(
-        "--jobs",
-        type=positive,
-        default=_processors(),
-        metavar="N",
-        help="number of processes (all processors); it does not change the results",
-    )
+    add_sampling(result)
     add("--scheduler", action=WordAction, words=Scheduler,
         help="how nondeterminism is resolved: uniformly at random (uniform), or by "
         "schedulers that are sampled for the minimum and the maximum probability (lss); default: uniformly at random, "
@@ -145,6 +123,34 @@ def parser() -> ArgumentParser:
     add("--format", action=WordAction, words=(Format.TEXT, Format.JSON, Format.JUNIT), default=Format.TEXT,
         help="format of the results")  # fmt: skip
     return result
+
+
+def add_sampling(parser: ArgumentParser) -> None:
+    """Add the options of estimates from traces."""
+    add = parser.add_argument
+    add(
+        "--confidence",
+        type=_share,
+        metavar="C",
+        help="the probability with which the interval contains the true value (0.95)",
+    )
+    add("--epsilon", type=_width, metavar="E", help="half the width of the interval (0.01); for "
+        "an expected reward relative to its value")  # fmt: skip
+    add("--method", action=WordAction, words=EstimationMethod,
+        help="generate traces, also if the model is small: until the interval is narrow "
+        "enough (adaptive, the default for larger models), as many as Hoeffding's bound requires (okamoto), until it "
+        "is decided whether the expectation holds (sprt), or --max-traces (fixed)")  # fmt: skip
+    add("--max-traces", type=positive, metavar="N", help="generate at most N traces")
+    add("--max-steps", type=positive, metavar="N", help="cut traces after N steps; cut traces are "
+        "undecided (1000000)")  # fmt: skip
+    add("--seed", type=natural, metavar="N", help="seed of the random numbers (0)")
+    add(
+        "--jobs",
+        type=positive,
+        default=_processors(),
+        metavar="N",
+        help="number of processes (all processors); it does not change the results",
+    )
 
 
 def _processors() -> int:

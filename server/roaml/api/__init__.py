@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from roaml.api.checking import CheckResult, check, fix
     from roaml.api.drawing import DrawingError, DrawnPicture, draw
+    from roaml.api.experimenting import experiment, grid_of
     from roaml.api.jani_files import JaniError, PathError, read_jani
     from roaml.api.migrating import SharedFileError, migrate
     from roaml.api.simulating import session
@@ -32,6 +33,10 @@ if TYPE_CHECKING:
     from roaml.api.verifying import ConstantError, as_target, checker, target, verifier, verify
     from roaml.comparison import Comparison
     from roaml.diagnostics import Diagnostic, Severity
+    from roaml.experiments.grid import ExperimentOptions, Grid
+    from roaml.experiments.points import ExperimentPoint, PointKind, Schedulers
+    from roaml.experiments.results import ExperimentResult
+    from roaml.experiments.sweeps import Sweep, SweepError
     from roaml.explicit.space import ExplorationProgress, ExplorationWatch, StateLimits
     from roaml.figures.layout import LayoutDirection
     from roaml.ide.diagrams import DiagramKind
@@ -101,6 +106,7 @@ else:
         "roaml.comparison": ("Comparison",),
         "roaml.api.checking": ("CheckResult", "check", "fix"),
         "roaml.api.drawing": ("DrawingError", "DrawnPicture", "draw"),
+        "roaml.api.experimenting": ("experiment", "grid_of"),
         "roaml.api.jani_files": ("JaniError", "PathError", "read_jani"),
         "roaml.api.migrating": ("SharedFileError", "migrate"),
         "roaml.api.simulating": ("session",),
@@ -108,6 +114,10 @@ else:
         "roaml.api.trees": ("propose_mocks",),
         "roaml.api.verifying": ("ConstantError", "as_target", "checker", "target", "verifier", "verify"),
         "roaml.diagnostics": ("Diagnostic", "Severity"),
+        "roaml.experiments.grid": ("ExperimentOptions", "Grid"),
+        "roaml.experiments.points": ("ExperimentPoint", "PointKind", "Schedulers"),
+        "roaml.experiments.results": ("ExperimentResult",),
+        "roaml.experiments.sweeps": ("Sweep", "SweepError"),
         "roaml.figures.layout": ("LayoutDirection",),
         "roaml.ide.diagrams": ("DiagramKind",),
         "roaml.jani.model": ("Model",),
@@ -208,12 +218,16 @@ __all__ = [
     "EventState",
     "Exact",
     "Expectation",
+    "ExperimentOptions",
+    "ExperimentPoint",
+    "ExperimentResult",
     "ExplorationProgress",
     "ExplorationWatch",
     "Explorations",
     "Extreme",
     "ExtremeMethod",
     "FaultError",
+    "Grid",
     "GrowingVariable",
     "InitialFold",
     "JaniError",
@@ -240,6 +254,7 @@ __all__ = [
     "Outcome",
     "Overrides",
     "PathError",
+    "PointKind",
     "Pool",
     "Proof",
     "Property",
@@ -256,6 +271,7 @@ __all__ = [
     "Sampled",
     "SampledResult",
     "SavedSession",
+    "Schedulers",
     "Search",
     "Searches",
     "Session",
@@ -274,6 +290,8 @@ __all__ = [
     "Stuck",
     "StuckLevel",
     "StuckResult",
+    "Sweep",
+    "SweepError",
     "SystemState",
     "Tally",
     "Threshold",
@@ -294,7 +312,9 @@ __all__ = [
     "columns",
     "counterexample",
     "draw",
+    "experiment",
     "fix",
+    "grid_of",
     "load",
     "loaded",
     "migrate",

@@ -52,7 +52,7 @@ def target(
     Args:
         path: the system file, a JANI model, or a tree.
         ros_paths, settings, texts, overrides: as for `load`.
-        constants: `NAME=VALUE`, for constants that a JANI model declares without a value.
+        constants: `NAME=VALUE`, for constants of a JANI model; a value replaces the declared one.
         mocks: node of the tree -> its mock, such as `{"Grasp": "0.9 in 2 s", "*": "1"}` (docs/spec/mocks.md). By
             default, the mocks are those of the file `TREE.mocks` beside `TREE.xml`.
         entries: entry of the root blackboard of the tree -> its text at the start.

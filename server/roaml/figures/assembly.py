@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from roaml.exhaustive import assert_never
-from roaml.figures.drawing import Glyph, Group, Item, Polyline, Shape, TextItem
+from roaml.figures.drawing import Area, Glyph, Group, Item, Polyline, Shape, TextItem
 from roaml.figures.geometry import Point
 from roaml.record import replace
 
@@ -20,7 +20,7 @@ def _moved(item: Item, dx: float, dy: float) -> Item:
             return moved(item, dx, dy)
         case Shape() | Glyph():
             return replace(item, box=item.box.moved(dx, dy))
-        case Polyline():
+        case Polyline() | Area():
             return replace(item, points=tuple(Point(x + dx, y + dy) for x, y in item.points))
         case TextItem():
             return replace(item, x=item.x + dx, y=item.y + dy)

@@ -38,6 +38,12 @@ class Tone(enum.Enum):
     RUNNING = "running"
     SUCCESS = "success"
     FAILURE = "failure"
+    SERIES_1 = "series-1"
+    SERIES_2 = "series-2"
+    SERIES_3 = "series-3"
+    SERIES_4 = "series-4"
+    SERIES_5 = "series-5"
+    SERIES_6 = "series-6"
 
 
 class Outline(enum.Enum):
@@ -104,6 +110,13 @@ class Polyline(Record, frozen=True):
     is_round: bool = True
 
 
+class Area(Record, frozen=True):
+    """A filled area with straight borders; `points` are its corners."""
+
+    points: tuple[Point, ...]
+    role: str
+
+
 class Glyph(Record, frozen=True):
     """A small symbol of strokes; `strokes` are polylines in the unit square."""
 
@@ -133,7 +146,7 @@ class Group(Record, frozen=True):
     step: int | None = None
 
 
-Leaf: TypeAlias = Shape | TextItem | Polyline | Glyph
+Leaf: TypeAlias = Shape | TextItem | Polyline | Area | Glyph
 Item: TypeAlias = Leaf | Group
 
 

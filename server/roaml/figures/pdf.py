@@ -41,7 +41,7 @@ def pdf_file(svg: str) -> bytes:
     """
     root = ET.fromstring(svg)
     left, top, width, height = map(float, root.attrib["viewBox"].split())
-    page = _Page(_rules(next(root.iter(_SVG + "style")).text or ""))
+    page = _Page(_rules(_printed(next(root.iter(_SVG + "style")).text or "")))
     page.add(root, ())
     begin = f"{_POINTS} 0 0 {-_POINTS} {_n(-left * _POINTS)} {_n((top + height) * _POINTS)} cm"
     content = zlib.compress("\n".join([begin, *page.operators]).encode("latin-1"))
@@ -61,6 +61,11 @@ def pdf_file(svg: str) -> bytes:
         ),
     ]
     return _assembled(objects)
+
+
+def _printed(css: str) -> str:
+    """The rules for a light page, without those for readers who prefer dark colors, which are the last ones."""
+    return css.partition("@media")[0]
 
 
 _ENCODING = " /Encoding /WinAnsiEncoding"
@@ -149,7 +154,7 @@ class _Page:
     def add(self, element: ET.Element, around: tuple[_Styled, ...]) -> None:
         """Draw an element and those inside it."""
         name = element.tag.removeprefix(_SVG)
-        if name in ("title", "style"):
+        if name in ("title", "desc", "style"):
             return
         styled = _Styled(frozenset({name, *(f".{word}" for word in element.get("class", "").split())}))
         if name in ("svg", "g"):

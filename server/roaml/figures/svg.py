@@ -8,9 +8,9 @@ from collections.abc import Iterator, Sequence
 from html import escape
 
 from roaml.exhaustive import assert_never
-from roaml.figures.drawing import Drawing, Glyph, Group, Outline, Polyline, Shape, TextItem
+from roaml.figures.drawing import Area, Drawing, Glyph, Group, Leaf, Outline, Polyline, Shape, TextItem
 from roaml.figures.geometry import Box, Point
-from roaml.figures.themes import THEMES, style_sheet
+from roaml.figures.themes import AUTOMATIC, THEMES, file_style
 
 MARGIN = 16.0
 _CORNER = 6.0
@@ -19,14 +19,22 @@ _HEAD = (9.0, 4.5)
 
 
 PICTURE_STYLES, TIMELINE_STYLES = ("figure.css",), ("figure.css", "timeline.css")
+PLOT_STYLES = ("figure.css", "plot.css")
 
 
-def svg_file(drawing: Drawing, title: str, theme: str = "light", styles: tuple[str, ...] = PICTURE_STYLES) -> str:
+def svg_file(
+    drawing: Drawing,
+    title: str,
+    theme: str = "light",
+    styles: tuple[str, ...] = PICTURE_STYLES,
+    description: str = "",
+) -> str:
     """The text of an SVG file.
 
     Args:
-        theme: one of `THEMES`.
+        theme: one of `THEMES`, or `AUTOMATIC`: light, or dark if the reader prefers dark colors.
         styles: the names of the style sheets.
+        description: what the drawing shows, for readers who do not see it.
     """
     width, height = drawing.size.width + 2 * MARGIN, drawing.size.height + 2 * MARGIN
     area = f'x="{_n(-MARGIN)}" y="{_n(-MARGIN)}" width="{_n(width)}" height="{_n(height)}"'
@@ -34,8 +42,9 @@ def svg_file(drawing: Drawing, title: str, theme: str = "light", styles: tuple[s
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{_n(-MARGIN)} {_n(-MARGIN)} {_n(width)} {_n(height)}" '
         f'width="{_n(width)}" height="{_n(height)}" role="img">\n'
         f"<title>{escape(title)}</title>\n"
-        f"<style>\n{style_sheet(theme, styles)}</style>\n"
-        f'<rect {area} fill="{THEMES[theme]["background"]}"/>\n'
+        f"{f'<desc>{escape(description)}</desc>{chr(10)}' if description else ''}"
+        f"<style>\n{file_style(theme, styles)}</style>\n"
+        f'<rect class="paper" {area} fill="{THEMES["light" if theme == AUTOMATIC else theme]["background"]}"/>\n'
         f"{svg_scene(drawing)}</svg>\n"
     )
 
@@ -55,7 +64,7 @@ def _group(group: Group) -> str:
     return f'<g class="{" ".join(classes)}"{data}>{hint}{items}</g>\n'
 
 
-def _item(item: Shape | TextItem | Polyline | Glyph) -> Iterator[str]:
+def _item(item: Leaf) -> Iterator[str]:
     match item:
         case Shape():
             yield from _shape(item)
@@ -67,6 +76,8 @@ def _item(item: Shape | TextItem | Polyline | Glyph) -> Iterator[str]:
             yield f'<path class="{item.role}" d="{path(_shortened(item), _CORNER if item.is_round else 0.0)}"/>'
             if item.has_arrow:
                 yield f'<polygon class="head" points="{_points(_head(item.points))}"/>'
+        case Area():
+            yield f'<polygon class="{item.role}" points="{_points(item.points)}"/>'
         case Glyph():
             x, y, width, height = item.box
             for stroke in item.strokes:

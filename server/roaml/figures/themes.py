@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The style sheet of pictures in files: `figure.css`, for timelines also `timeline.css`, with the colors of a theme.
+"""The style sheet of pictures in files: `figure.css`, for timelines also `timeline.css`, for plots also `plot.css`,
+with the colors of a theme.
 
 Many programs that show SVG do not support CSS variables, so files contain the colors themselves.
 """
@@ -72,6 +73,18 @@ THEMES: Mapping[str, Mapping[str, str]] = {
     },
 }
 """The colors of each theme, by the names of the CSS variables `--figure-NAME` without the prefix."""
+
+
+AUTOMATIC = "auto"
+"""The theme of a file that is light, or dark if the reader prefers dark colors."""
+
+
+def file_style(theme: str, names: tuple[str, ...]) -> str:
+    """The style sheet of a file, for a theme or for `AUTOMATIC`."""
+    if theme != AUTOMATIC:
+        return style_sheet(theme, names)
+    dark = f"{style_sheet('dark', names)}.paper {{ fill: {THEMES['dark']['background']}; }}\n"
+    return f"{style_sheet('light', names)}@media (prefers-color-scheme: dark) {{\n{dark}}}\n"
 
 
 @cache

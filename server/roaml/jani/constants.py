@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sets the constants of a model that have no value to values that the user chooses."""
+"""Sets the constants of a model to values that the user chooses."""
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterable
+from contextlib import suppress
 
+from roaml.exact_number import exact_fraction
 from roaml.jani.expressions import Boolean, Expression, Integer, Real
 from roaml.jani.model import Constant, Model
 from roaml.jani.semantics import EvaluationError, Value, evaluate
@@ -15,8 +16,11 @@ from roaml.record import replace
 from roaml.suggest import nearest_name
 
 _INTEGER = re.compile(r"[+-]?[0-9]{1,19}")
-_REAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,3})?")
-_TYPE_PHRASES: dict[BasicType, str] = {BOOL: "true or false", INT: "a whole number of 64 bits", REAL: "a finite number"}
+_TYPE_PHRASES: dict[BasicType, str] = {
+    BOOL: "true or false",
+    INT: "a whole number of 64 bits",
+    REAL: "a number or a fraction",
+}
 
 
 def with_constants(model: Model, texts: Iterable[str]) -> Model:
@@ -26,8 +30,10 @@ def with_constants(model: Model, texts: Iterable[str]) -> Model:
         texts: assignments of the form `NAME=VALUE`.
 
     Raises:
-        ValueError: a text does not have this form, the constant does not exist or already has a value, or the value
-            does not have the type of the constant. The message states the reason.
+        ValueError: a text does not have this form, the constant does not exist, or the value does not have the type of
+            the constant. The message states the reason.
+
+    A value replaces the one that the model declares.
     """
     given: dict[str, str] = {}
     for text in texts:
@@ -36,6 +42,11 @@ def with_constants(model: Model, texts: Iterable[str]) -> Model:
             raise ValueError(f"a constant must have the form `NAME=VALUE`, such as `N=20`, not `{text}`")
         if name in given:
             raise ValueError(f"the constant `{name}` is given twice")
+        if ":" in value or "," in value:
+            raise ValueError(
+                f"`{text}` gives the constant `{name}` several values; use `as2fm-lsp experiment`, which computes "
+                "them all"
+            )
         given[name] = value
     if not given:
         return model
@@ -47,22 +58,29 @@ def with_constants(model: Model, texts: Iterable[str]) -> Model:
                 f"did you mean `{close}`?" if close else f"the constants of the model are: {', '.join(known) or 'none'}"
             )
             raise ValueError(f"there is no constant `{name}`; {hint}")
-        if known[name].value is not None:
-            raise ValueError(f"the constant `{name}` has a value in the model, which `--constant` cannot change")
     values: dict[str, Value] = {}
     constants = []
     for constant in model.constants:
         if constant.name in given:
             constant = replace(constant, value=_value(constant, given[constant.name], values))  # noqa: PLW2901
         constants.append(constant)
-        if constant.value is not None:
-            try:
-                values[constant.name] = evaluate(constant.value, values, {})
-            except EvaluationError:
-                # The value depends on a constant without a value, or calls a function. Bounds that depend on it are not
-                # checked.
-                continue
+        _add_value(values, constant)
     return replace(model, constants=tuple(constants))
+
+
+def constant_values(model: Model) -> dict[str, Value]:
+    """The values of the constants of a model. A constant whose value depends on one without a value, or calls a
+    function, is left out."""
+    values: dict[str, Value] = {}
+    for constant in model.constants:
+        _add_value(values, constant)
+    return values
+
+
+def _add_value(values: dict[str, Value], constant: Constant) -> None:
+    if constant.value is not None:
+        with suppress(EvaluationError):  # bounds that depend on it are not checked
+            values[constant.name] = evaluate(constant.value, values, {})
 
 
 def _value(constant: Constant, text: str, known: dict[str, Value]) -> Expression:
@@ -73,8 +91,8 @@ def _value(constant: Constant, text: str, known: dict[str, Value]) -> Expression
         value = Boolean(text == "true")
     elif base is INT and _INTEGER.fullmatch(text) and abs(int(text)) < 1 << 63:
         value = Integer(int(text))
-    elif base is REAL and _REAL.fullmatch(text) and math.isfinite(float(text)):
-        value = Real(float(text))
+    elif base is REAL and (number := exact_fraction(text)) is not None:
+        value = Real(float(number))
     if value is None:
         type_phrase = _TYPE_PHRASES.get(base) if isinstance(base, BasicType) else None
         if type_phrase is None:

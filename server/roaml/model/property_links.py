@@ -10,6 +10,7 @@ from fractions import Fraction
 
 from roaml.comparison import read_comparison
 from roaml.durations import NANOSECONDS
+from roaml.exact_number import exact_number
 from roaml.expr.infer import (
     ADVICE,
     BadComparison,
@@ -24,7 +25,6 @@ from roaml.expr.infer import (
 from roaml.expr.operators import Operator
 from roaml.expr.tree import Binary, Name, walk
 from roaml.expr.types import BOOL, UNKNOWN, ScalarKind, Type, is_kind
-from roaml.model.exact_number import exact_number
 from roaml.model.globals import GlobalVariable
 from roaml.model.initial import check_initial
 from roaml.model.property_file import (

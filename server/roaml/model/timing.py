@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from roaml.durations import NANOSECONDS
-from roaml.model.exact_number import exact_number
+from roaml.exact_number import exact_number
 from roaml.model.expand import PortConstant
 from roaml.model.parameters import Parameters
 from roaml.model.system import System, SystemAutomaton

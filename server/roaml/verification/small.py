@@ -11,7 +11,7 @@ import itertools
 from typing import Any
 
 from roaml.explicit.independence import can_be_reduced
-from roaml.explicit.space import ExplorationWatch, LimitError, StateLimits, explore, search_tables
+from roaml.explicit.space import ExplorationWatch, LimitError, Space, StateLimits, explore, search_tables
 from roaml.record import Record, replace
 from roaml.smc.choices import Choices, Extreme, ExtremeMethod
 from roaml.smc.fault import FaultError
@@ -48,11 +48,13 @@ class Attempt(Record, frozen=True):
         exact: the values; `None` if there are none.
         transitions: the part of the limit on transitions that was used.
         reason: why there are no values, for users; "" if only traces can answer the property.
+        space: the states from which the values were computed.
     """
 
     exact: Exact | None
     transitions: int = 0
     reason: str = ""
+    space: Space | None = None
 
 
 def attempt(
@@ -78,7 +80,7 @@ def attempt(
     passes = (False, True) if leaves_out and can_be_reduced(checker.program, property_.goal) else (False,)
     for upper, is_reduced in itertools.product(_steps_to(limits), passes):
         search: Any = None
-        exact = None
+        space, exact = None, None
         transitions = upper.transitions
         if is_reduced and transitions is not None:
             transitions //= REDUCED_SHARE
@@ -97,7 +99,7 @@ def attempt(
             weight = _COST_OF_REDUCED if is_reduced else _COST_OF_ALL
             cost += weight * (search.transitions + search.passed) // _COST_OF_BOTH
         if exact is not None:
-            return Attempt(exact if exact.is_precise else None, cost)
+            return Attempt(exact if exact.is_precise else None, cost, space=space)
     return Attempt(None, cost, reason)
 
 

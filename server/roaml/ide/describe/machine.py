@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Symbol
+from roaml.exact_number import exact_number
 from roaml.expr.tree import access_path
 from roaml.expr.types import UNKNOWN, EmptyArray, Type, join, leaves, unwrap
 from roaml.ide.describe.comment import remark
@@ -17,7 +18,6 @@ from roaml.ide.names.in_machine import interface_symbol
 from roaml.ide.names.occurrence import Access
 from roaml.ide.names.occurrences import uses
 from roaml.language import ElementType
-from roaml.model.exact_number import exact_number
 from roaml.model.expand import PortConstant
 from roaml.model.machine import Chart, Data, Declaration, Handler
 from roaml.model.outline import MachineOutline

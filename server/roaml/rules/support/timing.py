@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from fractions import Fraction
 
 from roaml.durations import NANOSECONDS, duration_text
-from roaml.model.exact_number import exact_number
+from roaml.exact_number import exact_number
 from roaml.model.machine import Declaration
 from roaml.model.syntax import Name
 from roaml.model.timing import NANOSECONDS_PER_SECOND, TimerRate, period

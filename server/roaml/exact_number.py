@@ -25,3 +25,11 @@ def exact_number(text: str) -> Fraction | None:
 def _is_zero(text: str) -> bool:
     """Whether a number is exactly 0. A float is also 0 if the number is too small for it."""
     return not any(digit in "123456789" for digit in text.lower().partition("e")[0])
+
+
+def exact_fraction(text: str) -> Fraction | None:
+    """The value of `text`, a decimal number or a fraction of two, such as `1/3`; `None` if it is neither; see
+    `exact_number`."""
+    numerator, slash, denominator = text.partition("/")
+    above, below = exact_number(numerator), exact_number(denominator) if slash else Fraction(1)
+    return above / below if above is not None and below else None

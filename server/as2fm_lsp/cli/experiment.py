@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`as2fm-lsp experiment MAIN.xml|MODEL.jani|FILE.experiment.toml`: compute properties for many values of parameters."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+from collections.abc import Sequence
+
+from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
+from as2fm_lsp.cli.experiment_arguments import TableFormat, computed_options, parsed, parser, units_in
+from as2fm_lsp.cli.formats import Format, render
+from as2fm_lsp.cli.formats.report import shown_path
+from as2fm_lsp.cli.interrupts import Interrupts
+from as2fm_lsp.cli.kernel_note import slow_kernel_note
+from as2fm_lsp.cli.model_arguments import UsageError, error_report
+from as2fm_lsp.cli.output import complain, print_text
+from as2fm_lsp.cli.plot_files import write_plots
+from as2fm_lsp.cli.status_line import StatusLine
+from as2fm_lsp.cli.workers import cluster
+from as2fm_lsp.kept_points import KeptPoints, KeptPointsError
+from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, outputs_of
+from roaml import api
+from roaml.exhaustive import assert_never
+from roaml.experiments.results import ExperimentResult
+from roaml.experiments.sweeps import SweepError
+
+__all__ = ["parser", "run"]
+
+
+def run(arguments: Sequence[str]) -> int:
+    print_text(slow_kernel_note(), stream=sys.stderr)
+    with Interrupts() as interrupts:
+        try:
+            return _run(parsed(arguments), interrupts)
+        except (UsageError, SweepError, KeptPointsError, api.ConstantError, api.PathError, api.PropertyError) as error:
+            complain(str(error))
+        except (api.ModelError, api.JaniError) as error:
+            print_text(render(error_report(error), Format.TEXT), stream=sys.stderr)
+            return FOUND
+        except BrokenPipeError:
+            raise
+        except OSError as error:
+            complain(f"{shown_path(str(error.filename or ''))}: {error.strerror or error}")
+        except KeyboardInterrupt:  # before there are results
+            return interrupts.status
+    return USAGE
+
+
+def _run(options: argparse.Namespace, interrupts: Interrupts) -> int:
+    units = units_in(options)
+    computed = computed_options(options)
+    is_interrupted = False
+    with StatusLine() as status, cluster(options.dask) as (executor, workers):
+        status.stage("reading and translating")
+        grid = api.grid_of(options.main, options.set, options.property or None, computed)
+        outputs = outputs_of(options, grid.files)
+        kept = KeptPoints(options.resume, grid.digest)
+        keys = grid.keys
+        points = {key: kept.points[key] for key in keys if key in kept.points}
+        status.stage("computing the points")
+        try:
+            for point in grid.points(points, workers or options.jobs, executor):
+                points[point.setting, point.name] = point
+                kept.keep(point)
+                if status.is_due:
+                    status.show(f"{len(points):,} of {len(keys):,} points")
+        except KeyboardInterrupt:
+            interrupts.ignore()
+            is_interrupted = True
+        kept.write()
+    known = tuple(points[key] for key in keys if key in points)
+    result = ExperimentResult(os.path.basename(options.main), grid.sweeps, grid.properties, known, grid.options)
+    table = _table(result, options.format)
+    if options.output is None or options.output == STANDARD_OUTPUT_PATH:
+        print_text(table)
+    else:
+        outputs.write(options.output, table)
+    for path in options.plot:
+        write_plots(outputs, path, result.plots(units), options.theme, result.page_title, result.to_html_table())
+    if is_interrupted:
+        complain(f"interrupted: {len(known):,} of {len(keys):,} points are known")
+        return interrupts.status
+    return CLEAN if all(point.has_value for point in known) else FOUND
+
+
+def _table(result: ExperimentResult, format_: TableFormat) -> str:
+    match format_:
+        case TableFormat.TEXT:
+            return result.to_text()
+        case TableFormat.CSV:
+            return result.to_csv()
+        case TableFormat.JSON:
+            return json.dumps(result.as_json(), ensure_ascii=False, indent=2) + "\n"
+        case TableFormat.MARKDOWN:
+            return result.to_markdown()
+        case _:
+            return assert_never(format_)

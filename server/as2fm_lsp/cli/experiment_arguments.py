@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The arguments of `as2fm-lsp experiment`, on the command line or in a file `NAME.experiment.toml`.
+
+The keys of such a file are the long options of the command, without hyphens in front. Paths are relative to the file.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from as2fm_lsp.cli.arguments import ArgumentParser, WordAction
+from as2fm_lsp.cli.model_arguments import UsageError
+from as2fm_lsp.cli.numbers import positive
+from as2fm_lsp.cli.verify_arguments import add_sampling, limits_in
+from as2fm_lsp.outputs import InputPath, OutputPath
+from roaml.disk import MEGABYTE, required
+from roaml.exhaustive import Vocabulary
+from roaml.experiments.grid import ExperimentOptions
+from roaml.figures.themes import AUTOMATIC, THEMES
+from roaml.suggest import close_names, did_you_mean
+from roaml.toml import TomlError, loads
+
+SUFFIX = ".experiment.toml"
+PLOT_SUFFIXES = (".svg", ".html", ".pdf")
+EXAMPLES = """\
+examples:
+  as2fm-lsp experiment main.xml --set capacity=20:200:20 --property delivered
+  as2fm-lsp experiment main.xml --set capacity=20:200:20 --set loss=0,0.01,0.05 --plot battery.svg
+  as2fm-lsp experiment model.jani --constant p=0.1:0.1:0.9 --format csv -o p.csv
+  as2fm-lsp experiment main.xml --set loss=0:1/2:1/20 --exhaustive --plot loss.html
+  as2fm-lsp experiment battery.experiment.toml
+
+A parameter has a list of values (0,0.01,1/20) or a range: 20:200:20 and 20:20:200 are the numbers from 20 to 200 in
+steps of 20. Each point is exact if the model has few states, otherwise an estimate under uniform choices; the table
+states which.
+
+exit status: 0 success; 1 a point has no value, or the model has errors; 2 usage error; 3 internal error; 130
+interrupted (143 by SIGTERM)
+"""
+_LISTS = ("set", "property", "plot", "unit")
+"""The options that may be repeated, and are lists or tables in a file."""
+
+
+class TableFormat(Vocabulary):
+    """The formats of the points."""
+
+    TEXT = "text"
+    CSV = "csv"
+    JSON = "json"
+    MARKDOWN = "markdown"
+
+
+def parser() -> ArgumentParser:
+    result = ArgumentParser(
+        prog="as2fm-lsp experiment",
+        description="Compute properties for all combinations of the values of parameters, as a table and as plots.",
+        epilog=EXAMPLES,
+    )
+    add = result.add_argument
+    add(
+        "main",
+        type=InputPath,
+        metavar=f"MAIN.xml|MODEL.jani|FILE{SUFFIX}",
+        help="a system, a JANI model, whose constants are its parameters, or a file with all arguments",
+    )
+    add(
+        "--set",
+        "--constant",
+        action="append",
+        default=[],
+        metavar="NAME=VALUES",
+        help="the values of a parameter or constant: 0,0.01,1/20 or 20:200:20; may be repeated",
+    )
+    add("--property", action="append", default=[], metavar="NAME", help="compute only this property; may be repeated")
+    add("--scheduler", choices=("uniform",), help="the values under uniform choices, instead of the minimum or "
+        "maximum over all schedulers")  # fmt: skip
+    add("--exhaustive", "--exact", action="store_true", help="only exact values, however many states there are")
+    add("--max-states", type=positive, metavar="N", help="explore at most N states for each point")
+    add("--max-transitions", type=positive, metavar="N", help="without --exhaustive: explore at most N transitions for "
+        "each point (6000000 divided by the number of points, but at least 200000)")  # fmt: skip
+    add_sampling(result)
+    add("--dask", metavar="ADDRESS", help="run on the Dask cluster with the scheduler at this address (needs the "
+        "Python package distributed)")  # fmt: skip
+    add("--resume", type=InputPath, metavar="FILE", help="save the points in FILE, and do not compute those that are "
+        "already there")  # fmt: skip
+    add("--format", action=WordAction, words=TableFormat, default=TableFormat.TEXT, help="format of the table")
+    add("-o", "--output", type=OutputPath, metavar="FILE", help="write the table into a file")
+    add("--plot", type=_plot_file, action="append", default=[], metavar="FILE", help="draw the points, as .svg, .html "
+        "or .pdf; with several plots, the names get numbers; may be repeated")  # fmt: skip
+    add("--theme", choices=(AUTOMATIC, *THEMES), default=AUTOMATIC, help="the colors of SVG files; "
+        f"{AUTOMATIC}: light, or dark if the reader prefers dark colors (default)")  # fmt: skip
+    add("--unit", action="append", default=[], metavar="NAME=UNIT", help="the unit of a parameter, for plots; may be "
+        "repeated")  # fmt: skip
+    return result
+
+
+def _plot_file(text: str) -> OutputPath:
+    if not text.endswith(PLOT_SUFFIXES):
+        raise argparse.ArgumentTypeError(f"`{text}` does not end in .svg, .html or .pdf")
+    return OutputPath(text)
+
+
+def parsed(arguments: Sequence[str]) -> argparse.Namespace:
+    """The arguments. If `main` is a file of arguments, those on the command line take precedence, and `main` is the
+    model that the file names.
+
+    Raises:
+        UsageError: the file is not valid.
+    """
+    options = parser().parse_args(arguments)
+    if not options.main.endswith(SUFFIX):
+        return options
+    path = str(options.main)
+    rest = list(arguments)
+    rest.remove(path)
+    options = parser().parse_args([*_arguments_in(path), *rest])
+    options.file = InputPath(path)
+    return options
+
+
+def _arguments_in(path: str) -> list[str]:
+    try:
+        values = loads(required(path, MEGABYTE).decode("utf-8"))
+    except (TomlError, UnicodeDecodeError) as error:
+        raise UsageError(f"{path}: {error}") from None
+    model = values.pop("model", None)
+    if not isinstance(model, str):
+        raise UsageError(f'{path}: the file names no model; add `model = "main.xml"`')
+    folder = os.path.dirname(path)
+    actions = {action.dest: action for action in parser()._actions if action.option_strings}
+    arguments = [os.path.join(folder, model)]
+    for key, value in values.items():
+        action = actions.get(key.replace("-", "_"))
+        if action is None or key == "help":
+            raise UsageError(f"{path}: there is no option `{key}`{did_you_mean(close_names(key, actions))}")
+        option = action.option_strings[-1] if len(key) == 1 else f"--{key.replace('_', '-')}"
+        for text in _texts(path, key, value):
+            is_path = isinstance(action.type, type) and issubclass(action.type, (InputPath, OutputPath))
+            is_path |= action.type is _plot_file
+            if text is True:
+                arguments.append(option)
+            elif text is not False:
+                arguments.append(f"{option}={os.path.join(folder, str(text)) if is_path else text}")
+    return arguments
+
+
+def _texts(path: str, key: str, value: Any) -> Iterator[str | bool]:
+    """The values of an option."""
+    match value:
+        case dict() if key in _LISTS:
+            for name, entry in value.items():
+                entries = entry if isinstance(entry, list) else [entry]
+                yield f"{name}={','.join(_text(path, key, item) for item in entries)}"
+        case list() if key in _LISTS:
+            yield from (_text(path, key, item) for item in value)
+        case bool():
+            yield value
+        case _:
+            yield _text(path, key, value)
+
+
+def _text(path: str, key: str, value: Any) -> str:
+    match value:
+        case bool():
+            return "true" if value else "false"
+        case str():
+            return value
+        case int() | float():
+            return repr(value)
+    raise UsageError(f"{path}: `{key}` has a value of a wrong type")
+
+
+def computed_options(options: argparse.Namespace) -> ExperimentOptions:
+    """How the values are computed.
+
+    Raises:
+        UsageError: options exclude each other, or have impossible values.
+    """
+    sampling = ("confidence", "epsilon", "method", "max_traces", "max_steps")
+    asks_for_traces = any(getattr(options, name) is not None for name in sampling)
+    if options.exhaustive and asks_for_traces:
+        raise UsageError("--exhaustive computes exact values, so options of traces have no effect; leave one out")
+    return ExperimentOptions(
+        limits_in(options),
+        only_uniform=options.scheduler is not None,
+        exact=not asks_for_traces,
+        is_exhaustive=options.exhaustive,
+        max_transitions=options.max_transitions,
+        max_states=options.max_states,
+    )
+
+
+def units_in(options: argparse.Namespace) -> dict[str, str]:
+    """The units of parameters.
+
+    Raises:
+        UsageError: a text has not the form `NAME=UNIT`.
+    """
+    units = {}
+    for text in options.unit:
+        name, equals, unit = text.partition("=")
+        if not equals or not name.strip() or not unit.strip():
+            raise UsageError(f"write `--unit NAME=UNIT`, such as `--unit capacity=%`, instead of `{text}`")
+        units[name.strip()] = unit.strip()
+    return units

@@ -1,0 +1,291 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The values of properties at all points of a grid of settings.
+
+- The value of a point does not depend on the other points, on the number of processes, or on interruptions.
+- Where only probabilities depend on the parameters, the states are explored once (`parametric`); all points then have
+  the same states with other numbers.
+- Estimates of all points use the same random numbers: trace n of one point draws the same numbers as trace n of the
+  others. So differences between neighbours are less noisy than the intervals suggest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from typing import Protocol, TypeAlias
+
+from roaml.experiments.parametric import Chances, ParametricSpace, parametric_space
+from roaml.experiments.points import ExperimentPoint, estimated_point, exact_point, unknown_point
+from roaml.experiments.sweeps import Setting, Sweep, settings_of
+from roaml.explicit.space import StateLimits
+from roaml.explicit.values import NoValueError, values_of
+from roaml.record import Record, replace
+from roaml.smc.fault import FaultError
+from roaml.smc.goal import CompiledProperty
+from roaml.smc.model import ModelChecker
+from roaml.smc.pool import Pool, process_context
+from roaml.smc.run import Options
+from roaml.verification.exhaustive import UndecidedError, exact_values
+from roaml.verification.results import Exact, Refused
+from roaml.verification.small import LIMITS, SHARED_LIMITS, attempt
+from roaml.verification.target import VerificationTarget
+from roaml.verification.verifier import checker_of, verifier_of
+
+Key: TypeAlias = tuple[Setting, str]
+"""A setting and the name of a property."""
+
+
+class ParametricModel(Protocol):
+    """What an experiment is about: a model with parameters. It can be sent to other processes."""
+
+    def target(self, setting: Setting) -> VerificationTarget:
+        """The model with the parameters of a setting.
+
+        Raises:
+            ValueError: a parameter does not exist, or cannot have its value; or the model has errors.
+        """
+
+    def chances(self, names: Collection[str], fixed: Setting) -> Chances | None:
+        """The probabilities of the model that depend on parameters, if nothing else does; otherwise `None`."""
+
+
+class ExperimentOptions(Record, frozen=True):
+    """How the values of an experiment are computed.
+
+    Attributes:
+        sampling: the options of estimates.
+        only_uniform: whether the value under uniform choices is requested, not the minimum or maximum.
+        exact: whether exact values are computed where the model is small.
+        is_exhaustive: whether only exact values are computed, without limits on states.
+        max_transitions: the limit on the transitions of each point; `None` for the limit of `verify`, divided by the
+            number of points, but at least `small.LIMITS`.
+        max_states: the limit on the states of each point; `None` for that of `verify`.
+    """
+
+    sampling: Options = Options()
+    only_uniform: bool = False
+    exact: bool = True
+    is_exhaustive: bool = False
+    max_transitions: int | None = None
+    max_states: int | None = None
+
+    def limits(self, points: int) -> StateLimits:
+        """The limits of the search for one of several points."""
+        if self.is_exhaustive:
+            return StateLimits() if self.max_states is None else StateLimits(self.max_states)
+        shared = max(LIMITS.transitions or 0, (SHARED_LIMITS.transitions or 0) // max(1, points))
+        return replace(
+            SHARED_LIMITS,
+            transitions=self.max_transitions or shared,
+            states=self.max_states or SHARED_LIMITS.states,
+        )
+
+
+class Grid(Record, frozen=True):
+    """The points of an experiment that are to be computed.
+
+    Attributes:
+        properties: the names of the properties.
+        files: the files that were read.
+        digest: the digest of the files and options, on which the values of points depend.
+    """
+
+    subject: ParametricModel
+    sweeps: tuple[Sweep, ...]
+    properties: tuple[str, ...]
+    options: ExperimentOptions
+    files: tuple[str, ...] = ()
+    digest: str = ""
+
+    @property
+    def settings(self) -> list[Setting]:
+        return settings_of(self.sweeps)
+
+    @property
+    def keys(self) -> list[Key]:
+        """All points in the order of the results: by setting, then by property."""
+        return [(setting, name) for setting in self.settings for name in self.properties]
+
+    def points(
+        self, known: Collection[Key] = (), jobs: int = 1, executor: Executor | None = None
+    ) -> Iterator[ExperimentPoint]:
+        """The points, as they become known.
+
+        Args:
+            known: points that are left out because their values are known.
+            jobs: the number of processes.
+            executor: runs the points instead of processes of this computer.
+
+        Raises:
+            ValueError: see `ParametricModel.target`.
+        """
+        left = [key for key in self.keys if key not in set(known)]
+        for name in self.properties:
+            settings = [setting for setting, property_ in left if property_ == name]
+            space = self._parametric(name, settings)
+            if space is not None:
+                for point in shared_points(space, settings, self.options):
+                    left.remove((point.setting, name))
+                    yield point
+        by_setting: dict[Setting, list[str]] = {}
+        for setting, name in left:
+            by_setting.setdefault(setting, []).append(name)
+        limits = self.options.limits(len(self.settings))
+        tasks = [_Task(self.subject, setting, tuple(n), self.options, limits) for setting, n in by_setting.items()]
+        yield from _computed(tasks, jobs, executor)
+
+    def _parametric(self, name: str, settings: Sequence[Setting]) -> ParametricSpace | None:
+        """The states that the points of a property share; `None` if they share none."""
+        ranges = {sweep.name: _range(sweep) for sweep in self.sweeps if len(sweep.values) > 1}
+        options = self.options
+        if len(settings) < 3 or not (options.exact or options.is_exhaustive):
+            return None
+        numeric = {name: ends for name, ends in ranges.items() if ends is not None}
+        if len(numeric) < len(ranges):
+            return None
+        fixed = tuple((sweep.name, sweep.values[0]) for sweep in self.sweeps if len(sweep.values) == 1)
+        chances = self.subject.chances(numeric, fixed)
+        if chances is None:
+            return None
+        return parametric_space(self.subject.target, chances, name, numeric, fixed, options.limits(1))
+
+
+def _range(sweep: Sweep) -> tuple[float, float] | None:
+    numbers = sweep.numbers
+    return None if numbers is None else (min(numbers), max(numbers))
+
+
+def shared_points(
+    space: ParametricSpace, settings: Sequence[Setting], options: ExperimentOptions
+) -> Iterator[ExperimentPoint]:
+    """The exact points that share the states of a space. Those that do not are left out."""
+    question = space.space.compiled_property.question
+    can_get_stuck = space.space.can_get_stuck
+    work = None if options.is_exhaustive else options.limits(1).work
+    for setting in settings:
+        if not space.is_at(setting):
+            continue
+        try:
+            values = values_of(space.space, work=work)
+        except NoValueError:
+            continue
+        is_answered = values.uniform is not None or not options.only_uniform or values.minimum == values.maximum
+        if values.is_precise and is_answered:
+            yield exact_point(
+                setting,
+                question,
+                values,
+                states=space.space.states,
+                can_get_stuck=can_get_stuck,
+                only_uniform=options.only_uniform,
+            )
+
+
+class _Task(Record, frozen=True):
+    """The properties of one setting that are computed together."""
+
+    subject: ParametricModel
+    setting: Setting
+    names: tuple[str, ...]
+    options: ExperimentOptions
+    limits: StateLimits
+
+
+def _computed(tasks: Sequence[_Task], jobs: int, executor: Executor | None) -> Iterator[ExperimentPoint]:
+    if executor is None and (jobs < 2 or len(tasks) < 2):
+        for task in tasks:
+            yield from _measure(task)
+        return
+    if executor is not None:
+        yield from _distributed(tasks, 2 * max(1, jobs), executor)
+        return
+    from concurrent.futures import ProcessPoolExecutor  # noqa: PLC0415 - most experiments need no processes
+
+    with ProcessPoolExecutor(min(jobs, len(tasks)), process_context()) as own:
+        yield from _distributed(tasks, 2 * jobs, own)
+
+
+def _distributed(tasks: Sequence[_Task], count: int, executor: Executor) -> Iterator[ExperimentPoint]:
+    waiting = iter(tasks)
+    running: set[Future[list[ExperimentPoint]]] = set()
+    try:
+        while True:
+            for task in waiting:
+                running.add(executor.submit(_measure, task))
+                if len(running) == count:
+                    break
+            if not running:
+                return
+            done, running = wait(running, return_when=FIRST_COMPLETED)
+            for future in done:
+                yield from future.result()
+    finally:
+        for future in running:
+            future.cancel()
+
+
+def _measure(task: _Task) -> list[ExperimentPoint]:
+    """The points of one setting."""
+    try:
+        target = task.subject.target(task.setting)
+        checker = checker_of(target, task.names)
+    except FaultError as fault:
+        return [unknown_point(task.setting, name, fault.message) for name in task.names]
+    points: dict[str, ExperimentPoint] = {}
+    for name, refused in checker.refused.items():
+        points[name] = unknown_point(task.setting, name, refused.message)
+    for property_ in checker.compiled_properties:
+        point = _exact(task, checker, property_)
+        if point is not None:
+            points[property_.question.name] = point
+    rest = [name for name in task.names if name not in points]
+    if rest:
+        points |= _estimated(task, target, rest)
+    return [points[name] for name in task.names]
+
+
+def _exact(task: _Task, checker: ModelChecker, property_: CompiledProperty) -> ExperimentPoint | None:
+    """The point with exact values; `None` if traces are needed."""
+    options, question = task.options, property_.question
+    try:
+        if options.is_exhaustive:
+            exact: Exact | None = exact_values(checker, property_, task.limits)
+        elif options.exact:
+            exact = attempt(checker, property_, task.limits).exact
+        else:
+            exact = None
+    except UndecidedError as error:
+        return unknown_point(task.setting, question.name, str(error))
+    except FaultError as fault:
+        return unknown_point(task.setting, question.name, fault.message)
+    if exact is None:
+        return None
+    if options.only_uniform and exact.uniform is None:
+        reason = "choices were left out, so the value under uniform choices is not known; leave out --exhaustive"
+        return unknown_point(task.setting, question.name, reason) if options.is_exhaustive else None
+    return exact_point(
+        task.setting,
+        question,
+        exact,
+        states=exact.states,
+        can_get_stuck=exact.can_get_stuck,
+        only_uniform=options.only_uniform,
+    )
+
+
+def _estimated(task: _Task, target: VerificationTarget, names: Sequence[str]) -> dict[str, ExperimentPoint]:
+    """The points of properties with estimates from traces with uniform choices."""
+    points = {}
+    verifier = verifier_of(target, names, task.options.sampling, only_uniform=True)
+    with Pool(1) as pool:
+        for result in verifier.verify_all(pool):
+            if result.name not in names:
+                continue
+            if isinstance(result.outcome, Refused):
+                points[result.name] = unknown_point(task.setting, result.name, result.outcome.reason.message)
+            elif result.answer is not None:
+                stuck = 0 if result.stuck is None else result.stuck.count
+                points[result.name] = estimated_point(task.setting, result.answer, stuck)
+    for name in names:
+        points.setdefault(name, unknown_point(task.setting, name, "no result"))
+    return points

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Scales, and what plots contain."""
+
+from __future__ import annotations
+
+import math
+import re
+import xml.etree.ElementTree as ET
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from roaml.figures.drawing import Area, Polyline, TextItem
+from roaml.figures.plot import (
+    HeatMap,
+    LinePlot,
+    PlotAxis,
+    PlotPoint,
+    Series,
+    description,
+    drawing_of,
+    plot_pdf,
+    plot_svg,
+)
+from roaml.figures.scales import ScaleKind, scale_of
+from roaml.figures.themes import THEMES
+
+NUMBERS = st.floats(-1e9, 1e9, allow_nan=False).filter(lambda number: number == 0 or abs(number) > 1e-6)
+
+
+@given(st.lists(NUMBERS, min_size=1, max_size=20))
+def test_linear_scales_contain_all_numbers_and_few_ticks(numbers: list[float]) -> None:
+    scale = scale_of(numbers)
+    assert scale.low < scale.high
+    slack = 1e-9 * max(abs(scale.low), abs(scale.high))
+    assert all(scale.low - slack <= number <= scale.high + slack for number in numbers)
+    assert 2 <= len(scale.ticks) <= 8
+    assert all(scale.low - slack <= tick <= scale.high + slack for tick in scale.ticks)
+
+
+@given(st.lists(st.floats(1e-6, 1e9), min_size=1, max_size=20))
+def test_logarithmic_scales_contain_all_numbers(numbers: list[float]) -> None:
+    scale = scale_of(numbers, ScaleKind.LOGARITHMIC)
+    assert all(-1e-6 <= scale.place(number) <= 1 + 1e-6 for number in numbers)
+    assert len(scale.ticks) >= 2
+
+
+def test_nice_scales() -> None:
+    assert scale_of([0.31, 0.97], limits=(0, 1)).ticks == (0.2, 0.4, 0.6, 0.8, 1.0)
+    assert scale_of([1, 1], limits=(0, 1)).high == 1
+    assert scale_of([20, 200]).ticks == (0, 50, 100, 150, 200)
+    assert scale_of([math.nan, math.inf]).ticks[0] == 0
+    assert scale_of([3, 4000], ScaleKind.LOGARITHMIC).ticks == (1, 10, 100, 1000, 10000)
+
+
+def line(*points: tuple[float, float], **more: bool) -> Series:
+    return Series("line", tuple(PlotPoint(x, y, y - 0.1, y + 0.1) for x, y in points), **more)
+
+
+def test_a_missing_value_is_a_gap() -> None:
+    plot = LinePlot("t", PlotAxis("x (s)"), PlotAxis("y"), (line((0, 0.5), (1, math.nan), (2, 0.5), (3, 0.6)),))
+    items = [item for _, item in drawing_of(plot).walk()]
+    assert len([item for item in items if isinstance(item, Polyline) and item.role == "curve"]) == 2  # with the legend
+    assert "no value at 1" in description(plot)
+
+
+def test_the_description_and_the_names() -> None:
+    plot = LinePlot("title", PlotAxis("x (s)"), PlotAxis("probability"), (line((0, 0.5), (2, 0.6)),), ("a note",))
+    assert description(plot) == (
+        "Plot of probability by x (s). line: 0.5 in [0.4, 0.6] at 0, 0.6 in [0.5, 0.7] at 2. a note."
+    )
+    texts = {item.text for _, item in drawing_of(plot).walk() if isinstance(item, TextItem)}
+    assert {"title", "x (s)", "probability", "line", "a note"} <= texts
+    assert any(isinstance(item, Area) and item.role == "band" for _, item in drawing_of(plot).walk())
+
+
+def test_all_themes_and_formats() -> None:
+    plot = LinePlot(
+        "t", PlotAxis("mode", words=("fast", "slow")), PlotAxis("y"), (line((0, 0.5), (1, 0.6), has_line=False),)
+    )
+    heat = HeatMap("t", "a", "b", ("1", "2"), ("x",), ((0.5, math.nan),), "probability")
+    for picture in (plot, heat):
+        for theme in (*THEMES, "auto"):
+            root = ET.fromstring(plot_svg(picture, theme))
+            assert root.find("{http://www.w3.org/2000/svg}desc") is not None
+            assert not re.search(r"var\(|nan|inf", plot_svg(picture, theme).replace("notation", ""))
+        assert plot_pdf(picture) == plot_pdf(picture)
+
+
+def test_points_lie_inside_the_drawing() -> None:
+    for plot in (
+        LinePlot(
+            "t", PlotAxis("x", low=0, high=1), PlotAxis("y", low=0, high=1), (line((0.5, 3), (2, 0.5), (0.2, 0.95)),)
+        ),
+        HeatMap("t", "a", "b", tuple("123"), tuple("ab"), ((0.1, 0.2, 0.3), (1, math.inf, math.nan)), "value"),
+    ):
+        drawing = drawing_of(plot)
+        for _, item in drawing.walk():
+            for point in getattr(item, "points", ()):
+                assert -1 <= point.x <= drawing.size.width + 1
+                assert -1 <= point.y <= drawing.size.height + 1
