@@ -21,6 +21,7 @@ FILES = {
     "simulate": "--save --csv --json --mermaid --svg --html",
     "translate": "--output --map",
     "verify": "--explain",
+    "experiment": "--output --plot",
 }
 """The options that name a file to write."""
 
@@ -32,6 +33,7 @@ IN_PLACE = {
     "format": "paths",
     "migrate": "paths",
     "verify": "--resume",
+    "experiment": "--resume",
     "init": "folder",
     "serve": "--socket",
 }
@@ -45,6 +47,9 @@ NOTHING = {
     "--stdin-filename",
     "debug": "",
     "draw": "file --machine --tree --graph --machines --theme --direction --mock --mocks",
+    "experiment": "main --set --property --scheduler --exhaustive --max-states --max-transitions "
+    "--confidence --epsilon --method --max-traces --max-steps --seed --jobs --dask --format --theme --unit "
+    "--max-time --reaction-time --ros-path --tree-semantics",
     "explain": "code",
     "format": "--check --diff",
     "init": "",
@@ -100,9 +105,11 @@ def test_the_parsers_know_which_options_write() -> None:
 
 
 def arguments(command: str, option: str, output: str) -> list[str]:
-    call = {"check": ["."], "verify": ["--max-traces=10", "--traces-limit=1", "--property=all_delivered"]}.get(
-        command, []
-    )
+    call = {
+        "check": ["."],
+        "verify": ["--max-traces=10", "--traces-limit=1", "--property=all_delivered"],
+        "experiment": ["--max-traces=10", "--property=all_delivered"],
+    }.get(command, [])
     return [command, *(["main.xml"] if command != "check" else []), *call, f"{option}={output}"]
 
 
@@ -128,12 +135,12 @@ def contents(folder: Path) -> dict[Path, bytes]:
 
 @pytest.mark.parametrize(("command_name", "option"), sorted(pairs(FILES)))
 def test_files_that_are_kept(command: Command, robot: Path, command_name: str, option: str) -> None:
-    if option == "--explain":  # its files have other names
+    if option in ("--explain", "--plot"):  # their files have other names
         for path in [path for path in robot.rglob("*") if path.suffix in (".xml", ".ascxml", ".svg")]:
             path.with_suffix(f"{path.suffix}.html").symlink_to(path)
     kept = contents(robot)
     for path in sorted(kept):
-        if option == "--explain" and path.suffix != ".html":
+        if option in ("--explain", "--plot") and path.suffix != ".html":
             continue
         done = command(*arguments(command_name, option, os.path.relpath(path, robot)))
         assert done.status == 2, (path, done.err)
@@ -232,4 +239,4 @@ def test_only_these_modules_write_without_the_check() -> None:
         if "import write_file" in path.read_text(encoding="utf-8")
     }
     own = {f"cli/{name}.py" for name in ("check", "format", "migrate", "init", "baseline", "build_kernel")}
-    assert writers == {*own, "outputs.py", "handlers/translate.py", "verification/saved_state.py"}
+    assert writers == {*own, "outputs.py", "handlers/translate.py", "verification/saved_state.py", "kept_points.py"}

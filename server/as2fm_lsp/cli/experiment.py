@@ -15,10 +15,11 @@ from as2fm_lsp.cli.formats import Format, render
 from as2fm_lsp.cli.formats.report import shown_path
 from as2fm_lsp.cli.interrupts import Interrupts
 from as2fm_lsp.cli.kernel_note import slow_kernel_note
-from as2fm_lsp.cli.model_arguments import UsageError, error_report
+from as2fm_lsp.cli.model_arguments import UsageError, error_report, settings_of
 from as2fm_lsp.cli.output import complain, print_text
 from as2fm_lsp.cli.plot_files import write_plots
 from as2fm_lsp.cli.status_line import StatusLine
+from as2fm_lsp.cli.tree_semantics import semantics_of
 from as2fm_lsp.cli.workers import cluster
 from as2fm_lsp.kept_points import KeptPoints, KeptPointsError
 from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, outputs_of
@@ -26,6 +27,7 @@ from roaml import api
 from roaml.exhaustive import assert_never
 from roaml.experiments.results import ExperimentResult
 from roaml.experiments.sweeps import SweepError
+from roaml.model.parameters import Overrides
 
 __all__ = ["parser", "run"]
 
@@ -55,7 +57,16 @@ def _run(options: argparse.Namespace, interrupts: Interrupts) -> int:
     is_interrupted = False
     with StatusLine() as status, cluster(options.dask) as (executor, workers):
         status.stage("reading and translating")
-        grid = api.grid_of(options.main, options.set, options.property or None, computed)
+        overrides = Overrides(options.max_time, None, options.reaction_time, semantics=semantics_of(options))
+        grid = api.grid_of(
+            options.main,
+            options.set,
+            options.property or None,
+            computed,
+            ros_paths=options.ros_path,
+            settings=settings_of(options.main),
+            overrides=overrides,
+        )
         outputs = outputs_of(options, grid.files)
         kept = KeptPoints(options.resume, grid.digest)
         keys = grid.keys

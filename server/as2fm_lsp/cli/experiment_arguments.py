@@ -14,6 +14,8 @@ from typing import Any
 from as2fm_lsp.cli.arguments import ArgumentParser, WordAction
 from as2fm_lsp.cli.model_arguments import UsageError
 from as2fm_lsp.cli.numbers import positive
+from as2fm_lsp.cli.times import add_reaction_time, time_of
+from as2fm_lsp.cli.tree_semantics import add_semantics
 from as2fm_lsp.cli.verify_arguments import add_sampling, limits_in
 from as2fm_lsp.outputs import InputPath, OutputPath
 from roaml.disk import MEGABYTE, required
@@ -40,7 +42,7 @@ states which.
 exit status: 0 success; 1 a point has no value, or the model has errors; 2 usage error; 3 internal error; 130
 interrupted (143 by SIGTERM)
 """
-_LISTS = ("set", "property", "plot", "unit")
+_LISTS = ("set", "property", "plot", "unit", "ros-path")
 """The options that may be repeated, and are lists or tables in a file."""
 
 
@@ -74,6 +76,10 @@ def parser() -> ArgumentParser:
         metavar="NAME=VALUES",
         help="the values of a parameter or constant: 0,0.01,1/20 or 20:200:20; may be repeated",
     )
+    add("--max-time", type=time_of, metavar="TIME", help='overrides <max_time> of MAIN.xml, for example "100 s"')
+    add_reaction_time(result)
+    add("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages")
+    add_semantics(result)
     add("--property", action="append", default=[], metavar="NAME", help="compute only this property; may be repeated")
     add("--scheduler", choices=("uniform",), help="the values under uniform choices, instead of the minimum or "
         "maximum over all schedulers")  # fmt: skip

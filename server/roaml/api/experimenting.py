@@ -8,8 +8,8 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from roaml.api.jani_files import read_jani
-from roaml.api.verifying import ConstantError
-from roaml.experiments.grid import ExperimentOptions, Grid
+from roaml.api.verifying import ConstantError, target
+from roaml.experiments.grid import ExperimentOptions, Grid, ParametricModel
 from roaml.experiments.parametric import Chances, constant_chances
 from roaml.experiments.points import ExperimentPoint
 from roaml.experiments.results import ExperimentResult
@@ -17,6 +17,8 @@ from roaml.experiments.sweeps import Setting, Sweep, SweepError, sweeps_of
 from roaml.jani.constants import with_constants
 from roaml.jani.model import Model
 from roaml.jani.selection import select
+from roaml.model.parameters import NO_OVERRIDES, Overrides
+from roaml.project.settings import Settings
 from roaml.record import Record
 from roaml.verification.target import VerificationTarget, target_of
 
@@ -41,12 +43,32 @@ class ParametricJani(Record, frozen=True):
         return constant_chances(self.target(fixed).model, names)
 
 
+class ParametricSystem(Record, frozen=True):
+    """A system. `overrides` are those of all points."""
+
+    path: str
+    ros_paths: tuple[str, ...] = ()
+    settings: Settings | None = None
+    overrides: Overrides = NO_OVERRIDES
+
+    def target(self, setting: Setting) -> VerificationTarget:
+        if setting:
+            raise ConstantError(f"a system has no constants such as `{setting[0][0]}`; only JANI models have them")
+        return target(self.path, self.ros_paths, self.settings, overrides=self.overrides)
+
+    def chances(self, names: Collection[str], fixed: Setting) -> Chances | None:
+        return None
+
+
 def experiment(
     path: str,
     sweeps: Mapping[str, Iterable[object]] | Sequence[str],
     properties: Sequence[str] | None = None,
     options: ExperimentOptions | None = None,
     *,
+    ros_paths: Iterable[str] = (),
+    settings: Settings | None = None,
+    overrides: Overrides = NO_OVERRIDES,
     known: Iterable[ExperimentPoint] = (),
     jobs: int = 1,
     executor: Executor | None = None,
@@ -59,6 +81,7 @@ def experiment(
         sweeps: parameter -> its values; or texts such as `capacity=20:200:20`.
         properties: the names of the properties; all if not given.
         options: how the values are computed.
+        ros_paths, settings, overrides: as for `target`.
         known: points of an earlier run, which are not computed again.
         jobs: the number of processes.
         executor: computes the points instead of processes of this computer.
@@ -70,7 +93,7 @@ def experiment(
         PropertyError: a property does not exist.
         PathError, ModelError, JaniError: the model cannot be read, or has errors.
     """
-    grid = grid_of(path, sweeps, properties, options)
+    grid = grid_of(path, sweeps, properties, options, ros_paths=ros_paths, settings=settings, overrides=overrides)
     points = {(point.setting, point.name): point for point in known}
     keys = grid.keys
     points = {key: points[key] for key in keys if key in points}
@@ -86,6 +109,10 @@ def grid_of(
     sweeps: Mapping[str, Iterable[object]] | Sequence[str],
     properties: Sequence[str] | None = None,
     options: ExperimentOptions | None = None,
+    *,
+    ros_paths: Iterable[str] = (),
+    settings: Settings | None = None,
+    overrides: Overrides = NO_OVERRIDES,
 ) -> Grid:
     """The grid of an experiment, before its points are computed. Arguments and errors are those of `experiment`."""
     if isinstance(sweeps, Mapping):
@@ -94,23 +121,30 @@ def grid_of(
         given = sweeps_of(sweeps)
     if any(not sweep.values for sweep in given):
         raise SweepError("a parameter without values has no points")
-    subject = subject_of(path)
-    target = subject.target(tuple((sweep.name, sweep.values[0]) for sweep in given))
-    known = target.properties
+    model = parametric_model(path, ros_paths, settings, overrides)
+    first = model.target(tuple((sweep.name, sweep.values[0]) for sweep in given))
+    known = first.properties
     names = tuple(p.name for p in (known if properties is None else select(known, properties, "model")))
     computed = options or ExperimentOptions()
-    return Grid(subject, given, names, computed, target.files, _digest(target.files, computed))
+    return Grid(model, given, names, computed, first.files, _digest(first.files, computed, overrides))
 
 
-def _digest(files: Sequence[str], options: ExperimentOptions) -> str:
+def _digest(files: Sequence[str], options: ExperimentOptions, overrides: Overrides) -> str:
     """The digest of the contents of files and of options."""
-    digest = hashlib.sha256(repr(options).encode())
+    digest = hashlib.sha256(repr((options, overrides)).encode())
     for file in files:
         with open(file, "rb") as content:
             digest.update(hashlib.sha256(content.read()).digest())
     return digest.hexdigest()
 
 
-def subject_of(path: str) -> ParametricJani:
-    model, _ = read_jani(path)
-    return ParametricJani(model, path)
+def parametric_model(
+    path: str,
+    ros_paths: Iterable[str] = (),
+    settings: Settings | None = None,
+    overrides: Overrides = NO_OVERRIDES,
+) -> ParametricModel:
+    """A model with parameters. Arguments and errors are those of `target`."""
+    if not path.endswith(".jani"):
+        return ParametricSystem(path, tuple(ros_paths), settings, overrides)
+    return ParametricJani(read_jani(path)[0], path)
