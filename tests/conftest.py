@@ -6,12 +6,14 @@ from __future__ import annotations
 import gc
 import os
 import sys
+import threading
 from functools import cache
 from pathlib import Path
 
 import pytest
 
 import conformance
+from as2fm_lsp.cli import status_line
 from examples import TIMES, examples
 
 # In containers that forbid writing the cache, each process that a test starts would compile all modules again, which
@@ -21,6 +23,10 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 # As in the program (as2fm_lsp.__main__): parsed files and models live long, so frequent collections find little.
 gc.set_threshold(50_000)
+
+
+# The progress of a command that waits for a busy machine is not part of its expected output.
+status_line.LOG_DELAY_S = threading.TIMEOUT_MAX / 2
 
 
 def pytest_ignore_collect(collection_path: Path) -> bool | None:

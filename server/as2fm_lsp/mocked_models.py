@@ -8,6 +8,7 @@ import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from roaml.disk import UnreadableReason, read, required
@@ -23,8 +24,7 @@ if TYPE_CHECKING:
 
 MAX_RATE = 10_000
 """The maximum tick rate, in Hz."""
-MAX_NAMES = 8
-"""The maximum number of types of leaves in a message."""
+NO_TEXTS: Mapping[str, bytes] = MappingProxyType({})
 
 
 class MockDeclarations(Record, frozen=True):
@@ -84,17 +84,17 @@ def read_rate(text: str) -> Fraction | None:
     return rate if 0 < rate <= MAX_RATE else None
 
 
-def names_tree(path: str) -> bool:
-    """Whether a path names a file with behavior trees."""
+def names_tree(path: str, texts: Mapping[str, bytes] = NO_TEXTS) -> bool:
+    """Whether a path names a file with behavior trees. `texts` replaces the content of files."""
     if path.endswith(".jani"):
         return False
-    data = read(path)
+    data = texts.get(os.path.abspath(path)) or read(path)
     if isinstance(data, UnreadableReason):
         return False  # reported where the file is read
     return kind_of(path, decode(path, data).text) is FileKind.TREE
 
 
-def check_declarations(path: str, declared: MockDeclarations) -> None:
+def check_declarations(path: str, declared: MockDeclarations, texts: Mapping[str, bytes] = NO_TEXTS) -> None:
     """Check that declarations fit the kind of a model.
 
     Raises:
@@ -102,7 +102,7 @@ def check_declarations(path: str, declared: MockDeclarations) -> None:
     """
     if path.endswith(".jani") and not declared.is_empty:
         raise MockError("mocks, entries and a tick rate are for behavior trees; a JANI model has none")
-    if (declared.entries or declared.rate) and not names_tree(path):
+    if (declared.entries or declared.rate) and not names_tree(path, texts):
         raise MockError("entries and a tick rate are for files of behavior trees; a system declares them in its files")
 
 
@@ -115,6 +115,7 @@ def load_mocked_tree(
     *,
     counts: bool,
     uses_proposal: bool = False,
+    texts: Mapping[str, bytes] = NO_TEXTS,
 ) -> LoadedTree:
     """A tree without a system, with the declared mocks; if there are none, with those in the file beside the tree. The
     file with mocks is one of the files of the target.
@@ -126,6 +127,7 @@ def load_mocked_tree(
         counts: whether mocks count their answers, for measurements.
         uses_proposal: whether proposed mocks are used at once. They are also added to the file if it lacks some, and
             used if it cannot be written. Otherwise, a `MockError` asks the user to review them.
+        texts: absolute path -> bytes that replace the content of the file.
 
     Raises:
         MockError: a mock is not valid, leaves have no mock, or mocks were proposed and are not used.
@@ -149,9 +151,9 @@ def load_mocked_tree(
     rate, limit = declared.rate or DEFAULT_RATE, max_time or DEFAULT_MAX_TIME
     run = MockOptions(mocks, declared.entries, rate, limit, counts, settings.reaction_time)
     try:
-        tree = load_tree(path, run, settings)
+        tree = load_tree(path, run, settings, texts)
     except MissingMocksError as missing:
-        if declared.has_mocks and declared.file != beside:
+        if texts or (declared.has_mocks and declared.file != beside):  # nothing is written beside standard input
             raise _missing_mocks(path, [leaf.type for leaf in missing.leaves], messages) from None
         leaves = missing.mockable
         if not uses_proposal:
@@ -159,7 +161,7 @@ def load_mocked_tree(
         _keep_proposal(path, beside, leaves, messages)
         declared = replace(declared, file=beside if Path(beside).is_file() else None)
         proposed = tuple(leaf.proposed for leaf in leaves if leaf.mock is None)
-        tree = load_tree(path, replace(run, mocks=mocks + proposed), settings)
+        tree = load_tree(path, replace(run, mocks=mocks + proposed), settings, texts)
     _report_unused(unused(mocks, [(node.name, node.type) for node in tree.mocked.tree.nodes]), messages)
     if declared.file is None:
         return tree
@@ -222,8 +224,13 @@ def _review(
 
 
 def mocked_system_texts(
-    path: str, declared: MockDeclarations, ros_paths: Iterable[str], settings: Settings, messages: MockMessages
-) -> Mapping[str, str]:
+    path: str,
+    declared: MockDeclarations,
+    ros_paths: Iterable[str],
+    settings: Settings,
+    messages: MockMessages,
+    texts: Mapping[str, bytes] = NO_TEXTS,
+) -> Mapping[str, str | bytes]:
     """The texts of a system's files with the declared mocks.
 
     Raises:
@@ -233,7 +240,7 @@ def mocked_system_texts(
     """
     from roaml.api.mocked_systems import mock_system  # noqa: PLC0415 - systems without mocks start faster
 
-    mocked = mock_system(path, declared.mocks(), ros_paths, settings)
+    mocked = mock_system(path, declared.mocks(), ros_paths, settings, texts)
     if mocked.missing:
         raise _missing_mocks(path, mocked.missing, messages)
     _report_unused(mocked.unused, messages)
@@ -243,7 +250,7 @@ def mocked_system_texts(
         nodes = "1 node that depends" if mocked.events == 1 else f"{mocked.events} nodes that depend"
         parts.append(f"{nodes} on random events")
     messages.write(f"uses mocks for {' and '.join(parts)}")
-    return mocked.texts
+    return {**texts, **mocked.texts}
 
 
 def _mocks_of(path: str) -> tuple[Mock, ...]:
@@ -254,8 +261,7 @@ def _mocks_of(path: str) -> tuple[Mock, ...]:
 
 
 def _missing_mocks(path: str, types: Iterable[str], messages: MockMessages) -> MockError:
-    names = list(dict.fromkeys(types))
-    listed = ", ".join(names[:MAX_NAMES]) + (", …" if len(names) > MAX_NAMES else "")
+    listed = ", ".join(dict.fromkeys(types))
     return MockError(f"{messages.shown(path)}: these leaves need mocks: {listed}; for example {messages.example}")
 
 

@@ -35,22 +35,24 @@ MAX_LISTED = 6
 """The maximum number of known names that a message lists."""
 
 
-def alternatives(close: tuple[str, ...], known: Iterable[str], noun: str) -> str:
+def alternatives(close: tuple[str, ...], known: Iterable[str], noun: str, most: float = MAX_LISTED) -> str:
     """What a message about an unknown name suggests: the most similar name; or all known names, if none is similar.
 
     Args:
         close: the similar names, the most similar first.
         noun: a noun in the singular for what the names denote, such as `state`.
+        most: the maximum number of names that are listed.
 
     Returns:
-        A clause such as ``; the states are `a` and `b` ``; "" if there are no names, or more than `MAX_LISTED`.
+        A clause such as ``; the states are `a` and `b` ``; "" if there are no names, or more than `most`.
     """
     if close:
         return did_you_mean(close)
     names = tuple(dict.fromkeys(known))
-    if not 0 < len(names) <= MAX_LISTED:
+    if not 0 < len(names) <= most:
         return ""
-    return f"; the only {noun} is `{names[0]}`" if len(names) == 1 else f"; the {noun}s are {listing(names)}"
+    plural = f"{noun[:-1]}ies" if noun.endswith("y") else f"{noun}s"
+    return f"; the only {noun} is `{names[0]}`" if len(names) == 1 else f"; the {plural} are {listing(names)}"
 
 
 def listing(names: Iterable[str]) -> str:

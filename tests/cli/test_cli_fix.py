@@ -89,7 +89,7 @@ def test_files_that_are_no_text_stay(check: Command, tmp_path: Path) -> None:
 
 def test_not_with_standard_input(check: Command) -> None:
     done = check("--fix", "--stdin-filename", "a.ascxml", stdin=b"")
-    assert (done.status, done.err) == (2, "as2fm-lsp: --fix changes files; it cannot be used with --stdin-filename\n")
+    assert (done.status, done.err) == (2, "as2fm-lsp: --fix changes files; it cannot be used with standard input\n")
 
 
 def test_not_without_checking(command: Command) -> None:

@@ -74,7 +74,6 @@ def test_less_than_errors_is_clean_unless_asked_for(command: Command, tmp_path: 
         (["chekc", "main.xml"], "there is no command `chekc`; did you mean `check`?"),
         (["check"], "check needs at least one PATH"),
         (["check", ".", "--frobnicate"], "unrecognized arguments: --frobnicate"),
-        (["explain"], "the following arguments are required: CODE"),
         (["explain", "unknwon-element"], "there is no rule `unknwon-element`; did you mean `unknown-element`?"),
         (["serve", "main.xml"], "unrecognized arguments: main.xml"),
         (["serve", "--tcp", "nonsense"], "--tcp needs HOST:PORT"),

@@ -41,15 +41,16 @@ IN_PLACE = {
 `--resume` only replaces the state of a verification, `--socket` only a socket."""
 
 MODEL = "--tree-semantics --max-time --reaction-time --constant --ros-path --mock --mocks --entry --tick-rate"
+MODEL += " --stdin-filename"
 NOTHING = {
     "check": "paths --tree-semantics --format --ros-path --select --ignore --severity "
     "--warnings-as-errors --statistics "
     "--stdin-filename",
     "debug": "",
-    "draw": "file --machine --tree --graph --machines --theme --direction --mock --mocks",
     "experiment": "main --set --property --scheduler --exhaustive --max-states --max-transitions "
     "--confidence --epsilon --method --max-traces --max-steps --seed --jobs --dask --format --theme --unit "
     "--max-time --reaction-time --ros-path --tree-semantics",
+    "draw": "file --machine --tree --graph --machines --theme --direction --mock --mocks --stdin-filename",
     "explain": "code",
     "format": "--check --diff",
     "init": "",
@@ -57,7 +58,7 @@ NOTHING = {
     "serve": "--stdio --tcp --allow-remote",
     "simulate": f"main --property --seed --trace --for --until --max-steps --script --interactive --theme {MODEL}",
     "translate": "main --tree-semantics --indent --property --max-array-size --max-time "
-    "--reaction-time --ros-path --format",
+    "--reaction-time --ros-path --format --stdin-filename",
     "verify": "main --max-transitions --property --expect --confidence --epsilon --method "
     "--max-traces --max-steps --seed --jobs "
     "--scheduler --exhaustive --max-states --max-memory --no-reductions --stuck --separate --traces-limit --dask "
@@ -71,7 +72,7 @@ def actions() -> Iterator[tuple[str, str, argparse.Action]]:
     for command in main.COMMANDS:
         parser = importlib.import_module(f"as2fm_lsp.cli.{command}").parser()
         for action in parser._actions:
-            if action.dest != "help":
+            if action.dest not in ("help", "verbosity"):
                 yield command, next((o for o in action.option_strings if o.startswith("--")), action.dest), action
 
 
@@ -89,7 +90,7 @@ def test_every_option_is_classified() -> None:
 
 def test_the_options_of_the_main_program_are_those_of_check_and_serve() -> None:
     known = {option for command, option, _ in actions() if command in ("check", "serve")}
-    own = {action.dest for action in main.parser()._actions} - {"help", "version", "explain", "check"}
+    own = {action.dest for action in main.parser()._actions} - {"help", "version", "explain", "check", "verbosity"}
     assert own == {option.removeprefix("--").replace("-", "_") for option in known}
 
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import json
 import os
 import pty
@@ -17,6 +18,7 @@ from lxml import etree
 
 import as2fm_lsp.cli.status_line
 import as2fm_lsp.cli.translate
+from as2fm_lsp.cli.output import Verbosity, set_verbosity
 from roaml import api
 from roaml.jani.reader import read_model
 from roaml.json_syntax import parse
@@ -337,7 +339,7 @@ def test_same_bytes_whatever_the_hashes(robot: Path) -> None:
 
 
 def test_progress_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The stages are shown after the delay and removed at the end; a pipe does not receive them."""
+    """The stages are shown after the delay and removed at the end."""
     leader, follower = pty.openpty()
     monkeypatch.setattr(as2fm_lsp.cli.status_line, "SHOW_DELAY_S", 0.0)
     with os.fdopen(follower, "w") as terminal:
@@ -355,8 +357,40 @@ def test_progress_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "translating …".encode() in said
 
 
-def test_no_progress_elsewhere(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.setattr(as2fm_lsp.cli.status_line, "SHOW_DELAY_S", 0.0)
+def test_progress_in_a_log(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """A line appears after a delay, and further lines after delays that grow. The line is not removed at the end."""
+    monkeypatch.setattr(as2fm_lsp.cli.status_line, "LOG_DELAY_S", 10.0)
+    times = iter(range(1000))
+    monkeypatch.setattr(as2fm_lsp.cli.status_line.time, "monotonic", lambda: float(next(times)))
+    with as2fm_lsp.cli.status_line.StatusLine() as status:
+        status.stage("reading")
+        written = []
+        for _ in range(300):
+            if status.is_due:
+                status.show("half of it")
+                written.append(next(times))
+    assert capsys.readouterr().err == "as2fm-lsp: half of it\n" * len(written)
+    waits = [later - earlier for earlier, later in itertools.pairwise(written)]
+    assert waits == sorted(waits)
+    assert 10 < waits[0] < waits[-1]
+    assert len(written) < 10
+
+
+def test_no_progress_of_short_work(capsys: pytest.CaptureFixture[str]) -> None:
     with as2fm_lsp.cli.status_line.StatusLine() as status:
         status.stage("reading")
     assert capsys.readouterr().err == ""
+
+
+def test_no_progress_if_nothing_is_to_be_written(capsys: pytest.CaptureFixture[str]) -> None:
+    set_verbosity(Verbosity.QUIET)
+    with as2fm_lsp.cli.status_line.StatusLine() as status:
+        status.stage("reading")
+        assert not status.is_due
+    set_verbosity(Verbosity.VERBOSE)
+    with as2fm_lsp.cli.status_line.StatusLine() as status:
+        status.stage("reading")
+        status.stage("translating")
+    set_verbosity(Verbosity.NORMAL)
+    said = capsys.readouterr().err
+    assert [line.rpartition(":")[0] for line in said.splitlines()] == ["as2fm-lsp: reading", "as2fm-lsp: translating"]

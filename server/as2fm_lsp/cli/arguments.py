@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from as2fm_lsp.cli.output import print_text
+from as2fm_lsp.cli.output import Verbosity, print_text, set_verbosity
 from roaml.exhaustive import Vocabulary
 from roaml.suggest import close_names, did_you_mean
 
@@ -41,10 +41,19 @@ def _columns() -> int:
 
 class ArgumentParser(argparse.ArgumentParser):
     """An `argparse.ArgumentParser` whose errors for unknown arguments contain suggestions. Descriptions keep their
-    lines."""
+    lines. Every command has the options `--quiet` and `--verbose`."""
 
-    def __init__(self, *, prog: str, description: str, epilog: str) -> None:
-        super().__init__(prog=prog, description=description, epilog=epilog, formatter_class=_HelpFormatter)
+    def __init__(self, *, prog: str, description: str, epilog: str, usage: str | None = None) -> None:
+        super().__init__(prog=prog, description=description, epilog=epilog, usage=usage, formatter_class=_HelpFormatter)
+        amount = self.add_mutually_exclusive_group()
+        for short, name, verbosity, help_ in (
+            ("-q", "--quiet", Verbosity.QUIET, "write only results and errors: no notes, summary and progress"),
+            ("-v", "--verbose", Verbosity.VERBOSE, "also write on standard error what is read and how long it takes"),
+        ):
+            amount.add_argument(
+                short, name, dest="verbosity", action="store_const", const=verbosity, default=Verbosity.NORMAL,
+                help=help_,
+            )  # fmt: skip
 
     def parse_args(  # type: ignore[override]
         self, args: Sequence[str] | None = None, namespace: None = None
@@ -52,6 +61,7 @@ class ArgumentParser(argparse.ArgumentParser):
         options, unknown = self.parse_known_args(args, namespace)
         if unknown:
             self.error(f"unrecognized arguments: {' '.join(unknown)}{self._hint(unknown)}")
+        set_verbosity(options.verbosity)
         return options
 
     def _hint(self, unknown: Sequence[str]) -> str:
@@ -101,4 +111,5 @@ def unknown_rule(code: str) -> str:
     """The error message for an unknown rule code."""
     from roaml.rules import BY_CODE  # noqa: PLC0415 - other commands start faster without the rules
 
-    return f"there is no rule `{code}`{did_you_mean(close_names(code, BY_CODE))}"
+    hint = did_you_mean(close_names(code, BY_CODE)) or "; `as2fm-lsp explain` lists all rules"
+    return f"there is no rule `{code}`{hint}"

@@ -15,7 +15,7 @@ from collections.abc import Sequence
 
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.formats.report import Entry
-from as2fm_lsp.cli.output import complain
+from as2fm_lsp.cli.output import note
 from roaml.disk import MAX_DATA, required
 from roaml.project.paths import seen_from
 
@@ -35,7 +35,7 @@ def apply(path: str, entries: Sequence[Entry]) -> list[Entry]:
     """
     if not os.path.exists(path):
         _write(path, entries)
-        complain(f"wrote {path} with {len(entries)} known diagnostics")
+        note(f"wrote {path} with {len(entries)} known diagnostics")
         return []
     known = _read(path)
     fresh = []

@@ -7,8 +7,9 @@ import argparse
 import logging
 import os
 import sys
+import time
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli import baseline
@@ -17,13 +18,14 @@ from as2fm_lsp.cli.exit_status import CLEAN, FAILURE, FOUND, USAGE
 from as2fm_lsp.cli.formats import CheckReport, render
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
 from as2fm_lsp.cli.options import check_options
-from as2fm_lsp.cli.output import complain, print_text, takes_color
+from as2fm_lsp.cli.output import complain, detail, is_quiet, note, print_text, takes_color
+from as2fm_lsp.cli.standard_input import STANDARD_INPUT_PATH, named_input
 from as2fm_lsp.cli.tree_semantics import semantics_of
 from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, OutputFiles, outputs_of
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.project.configuration import find_settings
-from roaml.project.settings import SEVERITIES, ament_prefixes
+from roaml.project.settings import SEVERITIES, Settings, ament_prefixes
 from roaml.record import replace
 from roaml.rules import BY_CODE
 from roaml.rules.files import internal_error
@@ -35,6 +37,7 @@ examples:
   as2fm-lsp check main.xml                 check a system and all of its files
   as2fm-lsp check models --ros-path msgs --format github
   as2fm-lsp check . --warnings-as-errors --baseline .as2fm-baseline.json
+  as2fm-lsp check - < main.xml             check a text; --stdin-filename gives it a name
   as2fm-lsp check models --fix             make all safe fixes, report the remaining findings
 
 exit status: 0 no errors, 1 errors found, 2 usage error, 3 internal error
@@ -62,15 +65,20 @@ def check(options: argparse.Namespace, name: str = "--check") -> int:
     stdin = options.stdin_filename
     if not options.paths and stdin is None:
         return _usage(f"{name} needs at least one PATH")
+    reads_input = stdin is not None or STANDARD_INPUT_PATH in options.paths
     if stdin is not None and os.path.isdir(stdin):
         return _usage(f"{stdin}: --stdin-filename needs the name of a file")
-    if options.fix and stdin is not None:
-        return _usage("--fix changes files; it cannot be used with --stdin-filename")
+    if options.fix and reads_input:
+        return _usage("--fix changes files; it cannot be used with standard input")
     unknown = sorted({*options.select, *options.ignore} - BY_CODE.keys())
     if unknown:
         return _usage(*map(unknown_rule, unknown))
-    paths = [*options.paths, *([] if stdin is None else [stdin])]
-    settings, problems = find_settings(os.path.abspath(paths[0] if stdin is None else stdin))
+    paths = [path for path in options.paths if path != STANDARD_INPUT_PATH]
+    texts: Mapping[str, bytes] | None = None
+    if reads_input:
+        stdin, texts = named_input(STANDARD_INPUT_PATH, options)
+        paths.append(stdin)
+    settings, problems = find_settings(os.path.abspath(stdin or paths[0]))
     if problems and not settings.origin:  # errors in a configuration file are reported as diagnostics
         for problem in problems:
             complain(problem)
@@ -82,24 +90,25 @@ def check(options: argparse.Namespace, name: str = "--check") -> int:
         select=frozenset(options.select) or settings.select,
         ignore=(settings.ignore - set(options.select)) | set(options.ignore),
     )
-    texts = None if stdin is None else {stdin: sys.stdin.buffer.read()}
+    began = time.monotonic()
     try:
         result = api.check(paths, options.ros_path, settings, texts)
         outputs = outputs_of(options, result.files)
         if options.fix and (fixed := api.fix(result)):
             for path, data in fixed.items():
                 write_file(path, data)
-                complain(f"fixed {shown_path(path)}")
+                note(f"fixed {shown_path(path)}")
             result = api.check(paths, options.ros_path, settings)
     except api.PathError as error:
         return _usage(str(error))
     except OSError as error:
         return _usage(f"{shown_path(str(error.filename))}: {error.strerror or error}")
+    _write_details(result, settings, time.monotonic() - began)
     lowest = SEVERITIES[options.severity]
     failed = any(d.code == _CRASH for d in result.diagnostics)
     shown = [d for d in result.diagnostics if d.severity >= lowest or d.code == _CRASH]
     if options.fix and (more := _unsafe(shown)):
-        complain(more)
+        note(more)
     entries = [entry(d, result.source, shown_path) for d in shown]
     if options.baseline is not None:
         try:
@@ -108,7 +117,8 @@ def check(options: argparse.Namespace, name: str = "--check") -> int:
             return _usage(str(error))
     strict = options.warnings_as_errors or settings.warnings_as_errors
     color = options.output is None and takes_color(sys.stdout)
-    report = CheckReport(entries, len(result.files), Severity.WARNING if strict else Severity.ERROR, color)
+    limit = Severity.WARNING if strict else Severity.ERROR
+    report = CheckReport(entries, len(result.files), limit, color, has_summary=not is_quiet())
     try:
         _write(options, outputs, report)
     except OSError as error:
@@ -118,6 +128,14 @@ def check(options: argparse.Namespace, name: str = "--check") -> int:
     if failed:
         return FAILURE
     return FOUND if any(e.diagnostic.severity >= report.limit for e in entries) else CLEAN
+
+
+def _write_details(result: api.CheckResult, settings: Settings, seconds: float) -> None:
+    """What `--verbose` shows: the settings, the checked files, and how long it took."""
+    detail(f"settings: {shown_path(settings.origin) if settings.origin else 'the defaults'}")
+    for path in result.files:
+        detail(f"checked {shown_path(path)}")
+    detail(f"{len(result.files)} files in {seconds:.2f} s")
 
 
 def _unsafe(diagnostics: Sequence[Diagnostic]) -> str:

@@ -11,7 +11,8 @@ from collections.abc import Sequence
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.exit_status import CLEAN, USAGE
 from as2fm_lsp.cli.mock_options import add_mocks, declared_mocks
-from as2fm_lsp.cli.output import complain, print_text
+from as2fm_lsp.cli.output import complain, is_quiet, print_text
+from as2fm_lsp.cli.standard_input import STANDARD_INPUT_PATH, add_stdin_filename, named_input
 from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, InputPath, OutputPath, outputs_of
 from roaml import api
 from roaml.figures.layout import LayoutDirection
@@ -33,6 +34,7 @@ examples:
   as2fm-lsp draw main.xml --tree --theme dark -o tree.svg
   as2fm-lsp draw tree.xml --mock "*: 0.9 in 1 s"     with the mocks of the leaves
   as2fm-lsp draw tree.xml --direction down -o - | rsvg-convert -o tree.png
+  as2fm-lsp draw - < tree.xml > tree.svg
 
 exit status: 0 drawn, 2 usage error, 3 internal error
 """
@@ -40,6 +42,9 @@ exit status: 0 drawn, 2 usage error, 3 internal error
 
 def run(arguments: Sequence[str]) -> int:
     options = parser().parse_args(arguments)
+    if options.file == STANDARD_INPUT_PATH:
+        options.output = options.output or OutputPath(STANDARD_OUTPUT_PATH)
+    options.file, texts = named_input(options.file, options)
     settings, problems = find_settings(os.path.abspath(options.file))
     if problems:
         return _fail(problems[0])
@@ -53,6 +58,7 @@ def run(arguments: Sequence[str]) -> int:
             theme=options.theme,
             direction=options.direction,
             settings=replace(settings, ament_prefixes=ament_prefixes()),
+            texts=texts,
         )
     except (api.DrawingError, api.PathError, MockError, OSError) as error:
         return _fail(str(error))
@@ -64,7 +70,8 @@ def run(arguments: Sequence[str]) -> int:
         outputs_of(options, picture.files).write(output, picture.pdf() if output.lower().endswith(PDF) else picture.svg)
     except OSError as error:
         return _fail(f"{output}: {error.strerror or error}")
-    print_text(f"{output}: {picture.width:.0f} x {picture.height:.0f} pixels\n")
+    if not is_quiet():
+        print_text(f"{output}: {picture.width:.0f} x {picture.height:.0f} pixels\n")
     return CLEAN
 
 
@@ -90,7 +97,13 @@ def parser() -> ArgumentParser:
         "Models with errors are drawn as far as possible.",
         epilog=EXAMPLES,
     )
-    result.add_argument("file", type=InputPath, metavar="FILE", help="a system, a state machine or a behavior tree")
+    result.add_argument(
+        "file",
+        type=InputPath,
+        metavar="FILE",
+        help="a system, a state machine or a behavior tree; - is standard input",
+    )
+    add_stdin_filename(result)
     what = result.add_mutually_exclusive_group()
     what.add_argument("--machine", metavar="NAME", help="draw this state machine of the system")
     what.add_argument("--tree", action="store_true", help="draw the behavior tree")

@@ -23,7 +23,7 @@ def version_line() -> str:
 
 def slow_kernel_note() -> str:
     """What `verify` says once about a kernel that is not compiled; empty if it is compiled."""
-    return "" if is_compiled() else f"note: the model checker runs as plain Python, {SLOWER}; {_remedy()}\n"
+    return "" if is_compiled() else f"note: the model checker runs as plain Python, {SLOWER}; {_remedy()}"
 
 
 def _remedy() -> str:

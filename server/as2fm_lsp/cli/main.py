@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.exit_status import CLEAN, FAILURE, USAGE
 from as2fm_lsp.cli.output import STANDARD_OUTPUT, complain, flush, print_text
-from as2fm_lsp.cli.tree_semantics import behind
+from as2fm_lsp.cli.tree_semantics import OPTION as TREE_SEMANTICS
 from roaml import __version__
 
 COMMANDS = {
@@ -35,6 +35,10 @@ COMMANDS = {
 }
 """Each command with its description. It is implemented by the function `run` of the module of the same name in
 `as2fm_lsp.cli`, which is imported only if the command is called."""
+
+USAGE_LINE = f"""as2fm-lsp {{{",".join(COMMANDS)}}} ...
+       as2fm-lsp --check PATH ... | --explain CODE | --version | --help
+       as2fm-lsp [--stdio | --tcp HOST:PORT | --socket FILE]"""
 
 EXAMPLES = """\
 examples:
@@ -96,7 +100,7 @@ def _failed(error: Exception) -> int:
 
 
 def _dispatch(arguments: Sequence[str]) -> int:
-    arguments = behind(arguments)
+    arguments = _behind(arguments)
     command = arguments[0] if arguments else ""
     asks_for_check = any(len(a) > 2 and "--check".startswith(a) for a in arguments)
     is_path = asks_for_check and command in _ALSO_OPTIONS and os.path.exists(command)
@@ -124,6 +128,22 @@ def _dispatch(arguments: Sequence[str]) -> int:
     from as2fm_lsp.cli import serve  # noqa: PLC0415
 
     return serve.serve(options.tcp, options.socket, options.allow_remote)
+
+
+_FIRST = {TREE_SEMANTICS: 2, "-q": 1, "--quiet": 1, "-v": 1, "--verbose": 1}
+"""Options of the commands that may also precede the command -> the number of their arguments, with themselves."""
+
+
+def _behind(arguments: Sequence[str]) -> list[str]:
+    """The arguments, with the options that precede the command behind them."""
+    start = 0
+    while start < len(arguments):
+        first = arguments[start]
+        count = 1 if first.startswith(f"{TREE_SEMANTICS}=") else _FIRST.get(first, 0)
+        if count == 0:
+            break
+        start += count
+    return [*arguments[start:], *arguments[:start]]
 
 
 _ALSO_OPTIONS = ("check", "explain", "serve")
@@ -164,6 +184,7 @@ def parser() -> ArgumentParser:
 
     result = ArgumentParser(
         prog="as2fm-lsp",
+        usage=USAGE_LINE,
         description="Check HL-SCXML models of ROS 2 robots, or serve an editor.",
         epilog=f"{_listed()}\n{EXAMPLES}",
     )

@@ -86,11 +86,12 @@ def _write(migrations: Sequence[Migration]) -> None:
 
 def _shared(error: api.SharedFileError) -> str:
     """The shared files that prevent a migration of only some systems, and what to do."""
-    path, systems = next(iter(error.shared.items()))
-    more = f", and {len(error.shared) - 1} more" if len(error.shared) > 1 else ""
-    owners = ", ".join(map(shown_path, systems))
+    changes = (
+        f"{shown_path(path)} would change, which breaks {', '.join(map(shown_path, systems))}"
+        for path, systems in error.shared.items()
+    )
     return (
-        f"{shown_path(path)}{more} would change, which breaks {owners}; nothing was changed; add --with-related to "
+        f"{'; '.join(changes)}; nothing was changed; add --with-related to "
         f"migrate {', '.join(map(shown_path, error.systems))}, too"
     )
 

@@ -8,12 +8,12 @@ import argparse
 from fractions import Fraction
 
 from as2fm_lsp.cli.formats.report import shown_path
-from as2fm_lsp.cli.output import complain
+from as2fm_lsp.cli.output import note
 from as2fm_lsp.mocked_models import MAX_RATE, MockDeclarations, MockMessages, read_rate
 from as2fm_lsp.outputs import InputPath
 from roaml.mocks.mock import MockError
 
-MESSAGES = MockMessages(complain, shown_path, '--mock "*: 0.9 in 1 s"')
+MESSAGES = MockMessages(note, shown_path, '--mock "*: 0.9 in 1 s"')
 """Messages about mocks are written to standard error."""
 
 

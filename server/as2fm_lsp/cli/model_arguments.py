@@ -6,13 +6,14 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.formats import CheckReport
 from as2fm_lsp.cli.formats.report import entry, shown_path
 from as2fm_lsp.cli.mock_options import MESSAGES, add_mock_options, declarations_in
 from as2fm_lsp.cli.output import takes_color
+from as2fm_lsp.cli.standard_input import add_stdin_filename, named_input
 from as2fm_lsp.cli.times import add_reaction_time, time_of
 from as2fm_lsp.cli.tree_semantics import add_semantics, semantics_of
 from as2fm_lsp.mocked_models import check_declarations, load_mocked_tree, mocked_system_texts, names_tree
@@ -42,7 +43,13 @@ def add_model_arguments(parser: ArgumentParser) -> None:
         "MODEL.jani, also one that has a value there; may be repeated")  # fmt: skip
     add("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages")
     add_semantics(parser)
+    add_stdin_filename(parser)
     add_mock_options(parser)
+
+
+def read_standard_input(options: argparse.Namespace) -> None:
+    """If the model is `-`, read it, and set `main` to the name by which it is known. `texts` then contains its text."""
+    options.main, options.texts = named_input(options.main, options)
 
 
 def settings_of(path: str) -> Settings:
@@ -69,7 +76,7 @@ def check_model_arguments(options: argparse.Namespace) -> None:
     elif options.constant:
         raise UsageError("--constant needs a JANI model; a system has no constants")
     try:
-        check_declarations(options.main, declarations_in(options))
+        check_declarations(options.main, declarations_in(options), options.texts)
     except MockError as error:
         raise UsageError(str(error)) from None
 
@@ -81,14 +88,16 @@ def read_target(options: argparse.Namespace, settings: Settings) -> Verification
         api.PathError, api.ConstantError, api.ModelError, api.JaniError: as `api.target`.
         UsageError: leaves of a tree have no mock, or mocks are not valid.
     """
-    texts = None
+    texts: Mapping[str, str | bytes] = options.texts
     try:
         declared = declarations_in(options)
-        if names_tree(options.main):
+        if names_tree(options.main, options.texts):
             settings = with_reaction_time(settings, options)
-            return load_mocked_tree(options.main, declared, options.max_time, settings, MESSAGES, counts=False).target
+            return load_mocked_tree(
+                options.main, declared, options.max_time, settings, MESSAGES, counts=False, texts=options.texts
+            ).target
         if not declared.is_empty:
-            texts = mocked_system_texts(options.main, declared, options.ros_path, settings, MESSAGES)
+            texts = mocked_system_texts(options.main, declared, options.ros_path, settings, MESSAGES, options.texts)
     except MockError as error:
         raise UsageError(str(error)) from None
     overrides = Overrides(options.max_time, None, options.reaction_time, semantics=semantics_of(options))

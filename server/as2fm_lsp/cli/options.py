@@ -7,6 +7,7 @@ import argparse
 
 from as2fm_lsp.cli.arguments import WordAction
 from as2fm_lsp.cli.formats import Format
+from as2fm_lsp.cli.standard_input import add_stdin_filename
 from as2fm_lsp.cli.tree_semantics import add_semantics
 from as2fm_lsp.outputs import InputPath, OutputPath
 from roaml.project.settings import SEVERITIES
@@ -19,7 +20,13 @@ def check_options(check: argparse._ActionsContainer) -> None:
         action="store_true",
         help="first apply all safe fixes: those that do not guess and do not change the behaviour of a model",
     )
-    check.add_argument("paths", nargs="*", type=InputPath, metavar="PATH", help="system files, other files or folders")
+    check.add_argument(
+        "paths",
+        nargs="*",
+        type=InputPath,
+        metavar="PATH",
+        help="system files, other files or folders; - is standard input",
+    )
     check.add_argument(
         "--format", action=WordAction, words=Format, default=Format.TEXT, help="format of the diagnostics"
     )
@@ -39,9 +46,7 @@ def check_options(check: argparse._ActionsContainer) -> None:
         metavar="FILE",
         help="do not report the findings in FILE; create it if it does not exist",
     )
-    check.add_argument(
-        "--stdin-filename", type=InputPath, metavar="FILE", help="read the text of FILE from standard input"
-    )
+    add_stdin_filename(check)
 
 
 def serve_options(serve: argparse._ActionsContainer) -> None:

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Output to a terminal or pipe with any encoding."""
+"""Output to a terminal or pipe with any encoding, and how much of it the user wants."""
 
 from __future__ import annotations
 
+import enum
 import io
 import os
 import sys
@@ -14,6 +15,33 @@ from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, OutputFiles
 
 STANDARD_OUTPUT = "standard output"
 """The `filename` of an `OSError` raised for standard output."""
+
+
+class Verbosity(enum.IntEnum):
+    """How much a command writes besides its results and errors."""
+
+    QUIET = 0
+    NORMAL = 1
+    VERBOSE = 2
+
+
+_verbosity = Verbosity.NORMAL
+
+
+def set_verbosity(verbosity: Verbosity) -> None:
+    """Set how much the commands of this process write from now on."""
+    global _verbosity  # noqa: PLW0603 - as for the levels of `logging`, there is one for the process
+    _verbosity = verbosity
+
+
+def is_quiet() -> bool:
+    """Whether only results and errors are written: no notes, summaries and progress."""
+    return _verbosity is Verbosity.QUIET
+
+
+def is_verbose() -> bool:
+    """Whether everything is written, also long lists."""
+    return _verbosity is Verbosity.VERBOSE
 
 
 def print_text(text: str, encoding: str | None = None, stream: TextIO | None = None) -> None:
@@ -34,6 +62,18 @@ def print_text(text: str, encoding: str | None = None, stream: TextIO | None = N
 def complain(message: str) -> None:
     """Report an error on standard error. If that cannot be written to, only the exit status reports it."""
     print_text(f"as2fm-lsp: {message}\n", stream=sys.stderr)
+
+
+def note(message: str) -> None:
+    """Write a note on standard error, except with `--quiet`."""
+    if not is_quiet():
+        complain(message)
+
+
+def detail(message: str) -> None:
+    """Write on standard error what only `--verbose` shows."""
+    if is_verbose():
+        complain(message)
 
 
 def flush() -> None:

@@ -18,6 +18,7 @@ from as2fm_lsp.cli.model_arguments import (
     error_report,
     fault_text,
     line_of,
+    read_standard_input,
     read_target,
     settings_of,
 )
@@ -67,6 +68,7 @@ def run(arguments: Sequence[str]) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
+    read_standard_input(options)
     check_model_arguments(options)
     settings = settings_of(options.main)
     status = CLEAN

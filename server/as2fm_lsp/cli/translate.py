@@ -15,6 +15,7 @@ from as2fm_lsp.cli.formats import CheckReport, Format, render
 from as2fm_lsp.cli.formats.report import entry, shown_path
 from as2fm_lsp.cli.numbers import positive
 from as2fm_lsp.cli.output import complain, print_text, takes_color, write_output
+from as2fm_lsp.cli.standard_input import STANDARD_INPUT_PATH, add_stdin_filename, named_input
 from as2fm_lsp.cli.status_line import StatusLine
 from as2fm_lsp.cli.times import add_reaction_time, time_of
 from as2fm_lsp.cli.tree_semantics import add_semantics, semantics_of
@@ -65,6 +66,9 @@ def run(arguments: Sequence[str]) -> int:
     overrides = Overrides(
         options.max_time, options.max_array_size, options.reaction_time, semantics=semantics_of(options)
     )
+    if options.main == STANDARD_INPUT_PATH:
+        options.output = options.output or TranslationPath(STANDARD_OUTPUT_PATH)
+    options.main, texts = named_input(options.main, options)
     options.output = options.output or TranslationPath(jani_path(options.main))
     output = options.output
     settings, problems = find_settings(os.path.abspath(options.main))
@@ -76,7 +80,7 @@ def run(arguments: Sequence[str]) -> int:
     with StatusLine() as status:
         try:
             status.stage("reading")
-            system = api.load(options.main, options.ros_path, settings, overrides=overrides)
+            system = api.load(options.main, options.ros_path, settings, texts, overrides)
             outputs = outputs_of(options, system.files)
             status.stage("translating")
             network = api.to_scxml(system)
@@ -118,7 +122,8 @@ def parser() -> ArgumentParser:
         description="Translate a system to JANI, and to plain SCXML on request.",
         epilog=EXAMPLES,
     )
-    result.add_argument("main", type=InputPath, metavar="MAIN.xml", help="the system file")
+    result.add_argument("main", type=InputPath, metavar="MAIN.xml", help="the system file; - is standard input")
+    add_stdin_filename(result)
     result.add_argument(
         "-o", "--output", type=TranslationPath, metavar="FILE", help="the JANI file (MAIN.jani); - for standard output"
     )

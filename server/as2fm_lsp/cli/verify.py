@@ -22,12 +22,13 @@ from as2fm_lsp.cli.model_arguments import (
     UsageError,
     check_model_arguments,
     error_report,
+    read_standard_input,
     read_target,
     report_of,
     settings_of,
     with_reaction_time,
 )
-from as2fm_lsp.cli.output import complain, flush, print_text, takes_color
+from as2fm_lsp.cli.output import complain, flush, is_quiet, is_verbose, note, print_text, takes_color
 from as2fm_lsp.cli.progress_bar import ProgressBar
 from as2fm_lsp.cli.status_line import StatusLine
 from as2fm_lsp.cli.verify_arguments import (
@@ -44,7 +45,7 @@ from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, outputs_of
 from as2fm_lsp.verification import stuck_report
 from as2fm_lsp.verification.doubts import can_get_stuck
 from as2fm_lsp.verification.node_names import explained
-from as2fm_lsp.verification.report import as_json, as_text
+from as2fm_lsp.verification.report import as_brief_text, as_json, as_text
 from as2fm_lsp.verification.saved_state import SavedState, StateError
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
@@ -88,7 +89,8 @@ longer than it saves."""
 
 def run(arguments: Sequence[str]) -> int:
     options = parser().parse_args(arguments)
-    print_text(slow_kernel_note(), stream=sys.stderr)
+    if slow := slow_kernel_note():
+        note(slow)
     with Interrupts() as interrupts:
         try:
             return _checked(options, interrupts)
@@ -112,9 +114,10 @@ def _checked(options: argparse.Namespace, interrupts: Interrupts) -> int:
 def _run(options: argparse.Namespace, interrupts: Interrupts) -> int:
     expectations = expectations_in(options.expect)
     limits = limits_in(options)
+    read_standard_input(options)
     check_model_arguments(options)
     settings = settings_of(options.main)
-    if names_tree(options.main):
+    if names_tree(options.main, options.texts):
         return _run_tree(options, expectations, limits, settings, interrupts)
     only_uniform = settings.only_uniform if options.scheduler is None else options.scheduler is Scheduler.UNIFORM
     names = options.property or None
@@ -167,7 +170,9 @@ def _run_tree(
             counts = not options.exhaustive
             declared = declarations_in(options)
             settings = with_reaction_time(settings, options)
-            tree = load_mocked_tree(options.main, declared, options.max_time, settings, MESSAGES, counts=counts)
+            tree = load_mocked_tree(
+                options.main, declared, options.max_time, settings, MESSAGES, counts=counts, texts=options.texts
+            )
             status.stage("compiling")
             names = options.property or [SUCCEEDS]
             verifier = api.verifier(tree.target, names, limits, expectations, only_uniform=True)
@@ -376,6 +381,8 @@ class _Verification:
             from as2fm_lsp.verification.junit_report import as_junit  # noqa: PLC0415 - needs a library for XML
 
             return as_junit(self.results, shown_path(self.options.main), self._place, self.stuck_result)
+        if is_quiet():
+            return as_brief_text(self.results, self._place, self.options.stuck)
         # A story of a stuck trace ends with the waiting automata.
         has_story = STANDARD_OUTPUT_PATH in self.options.explain and any(r.answer or r.exact for r in self.results)
         has_story = has_story and not any(result.is_interrupted for result in self.results)
@@ -401,12 +408,12 @@ class _Verification:
         assert self.tree is not None
         mocked, outcome = self.tree
         if outcome is not None:
-            text += tree_report.as_text(mocked, outcome, self._place)
+            text += tree_report.as_text(mocked, outcome, self._place, is_whole=is_verbose())
             succeeds = next((r for r in self.results if r.name == "succeeds" and r.traces is not None), None)
             failing = None if succeeds is None or has_story else unwanted_trace(succeeds)
             if succeeds is not None and succeeds.traces is not None and failing is not None:
                 story = succeeds.traces.story(failing.trace)
-                text += tree_report.story_as_text(mocked, story, self._place)
+                text += tree_report.story_as_text(mocked, story, self._place, is_whole=is_verbose())
         return f"{text}{tree_report.assumptions(mocked)}\n"
 
     def _where_shown(self, has_story: bool) -> str:

@@ -76,7 +76,7 @@ def parser() -> ArgumentParser:
         "main",
         type=InputPath,
         metavar="MAIN.xml|MODEL.jani|TREE.xml",
-        help="the system file, a JANI model, or a tree without a system",
+        help="the system file, a JANI model, or a tree without a system; - is standard input",
     )
     add = result.add_argument
     add("--property", action="append", default=[], metavar="NAME", help="verify only this property; may be repeated")

@@ -62,6 +62,19 @@ def as_text(
     return "".join(f"{line}\n" for line in (*blocks, *_without_expectation(results), *scheduler_report.note(open_)))
 
 
+def as_brief_text(results: Sequence[Result], place_of: PlaceOf, level: StuckLevel = StuckLevel.WARNING) -> str:
+    """The value, the verdicts and the warnings of each result, without remarks."""
+    lines = []
+    for result in results:
+        first, *more = one_as_text(result, place_of, level).splitlines()
+        lines += [first, *(line for line in more if line.lstrip().startswith(_ESSENTIAL))]
+    return "".join(f"{line}\n" for line in lines)
+
+
+_ESSENTIAL = ("expected ", "warning: ")
+"""How the lines begin that `as_brief_text` keeps."""
+
+
 def _without_expectation(results: Sequence[Result]) -> list[str]:
     """A line with the names of the properties for which nothing is expected; empty if there are none."""
     names = [result.name for result in results if result.has_no_expectation]

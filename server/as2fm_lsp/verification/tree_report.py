@@ -27,10 +27,10 @@ MAX_LINES = 40
 PlaceOf = Callable[[Location], str]
 
 
-def as_text(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf) -> str:
+def as_text(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf, *, is_whole: bool = False) -> str:
     """The measurements of a tree for users. The probability of success is not among them, because it is reported as the
-    result of a property."""
-    return "".join(f"{line}\n" for line in _lines(mocked, outcome, place_of))
+    result of a property. `is_whole` selects all leaves; otherwise, at most `MAX_LEAVES` are listed."""
+    return "".join(f"{line}\n" for line in _lines(mocked, outcome, place_of, is_whole))
 
 
 def assumptions(mocked: MockedTree) -> str:
@@ -50,7 +50,7 @@ def assumptions(mocked: MockedTree) -> str:
     return text
 
 
-def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf) -> Iterator[str]:
+def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf, is_whole: bool) -> Iterator[str]:
     failure = outcome.failure
     yield f"  the tree fails: {_interval(failure.value, failure.bounds)}"
     if outcome.unfinished:
@@ -81,13 +81,13 @@ def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf) -> Itera
             "  change of the tree's probability of success for each leaf, if the probability of the leaf's mock "
             f"changes by 1{note}:"
         )
-        for influence in outcome.influences[:MAX_LEAVES]:
+        for influence in outcome.influences[: None if is_whole else MAX_LEAVES]:
             node = influence.leaf.node
             place = place_of(node.origin)
             yield f"    {_interval(influence.value, influence.bounds, sign='+')}  {node.name} ({place})"
         more = len(outcome.influences) - MAX_LEAVES
-        if more > 0:
-            yield f"    … {more} more leaves with less influence …"
+        if more > 0 and not is_whole:
+            yield f"    … {more} more leaves with less influence (--verbose) …"
 
 
 def _interval(value: float, bounds: Bounds, sign: str = "") -> str:
@@ -97,9 +97,9 @@ def _interval(value: float, bounds: Bounds, sign: str = "") -> str:
     return f"{value:{sign}.4g} in [{bounds.lower:{sign}.4g}, {upper}]"
 
 
-def story_as_text(mocked: MockedTree, story: Story, place_of: PlaceOf) -> str:
+def story_as_text(mocked: MockedTree, story: Story, place_of: PlaceOf, *, is_whole: bool = False) -> str:
     """The statuses that leaves return in a trace, with their times, in the order of the trace. Leaves that always
-    succeed are omitted. Of more than `MAX_LINES` statuses, the middle ones are omitted."""
+    succeed are omitted. Of more than `MAX_LINES` statuses, the middle ones are omitted unless `is_whole`."""
     leaves = {leaf.node.automaton: leaf.node for leaf in mocked.leaves if leaf.probability < 1}
     leaf_turns = [turn for turn in turns(story) if turn.automaton in leaves and _has_ended(turn)]
     ticks = [
@@ -116,9 +116,9 @@ def story_as_text(mocked: MockedTree, story: Story, place_of: PlaceOf) -> str:
     lines = [
         f"  {row[0]:>{widths[0]}}  {row[1]:<{widths[1]}}  {row[2]:<{widths[2]}}  {row[3]}".rstrip() for row in rows
     ]
-    if len(lines) > MAX_LINES:
+    if len(lines) > MAX_LINES and not is_whole:
         folded = len(lines) - MAX_LINES
-        lines[MAX_LINES // 2 : -MAX_LINES // 2] = [f"  … {folded} more statuses …"]
+        lines[MAX_LINES // 2 : -MAX_LINES // 2] = [f"  … {folded} more statuses (--verbose) …"]
     outcome = "with" if story.recording.verdict == TRUE else "without"
     head = f"the shortest trace {outcome} success (trace {story.recording.trace}):"
     return "".join(f"{line}\n" for line in (head, *lines))

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.disk import MAX_DATA, NotReadableError, required
@@ -27,16 +28,21 @@ class JaniError(ValueError):
         self.source = source
 
 
-def read_jani(path: str) -> tuple[Model, SourceFile]:
+def read_jani(path: str, texts: Mapping[str, str | bytes] | None = None) -> tuple[Model, SourceFile]:
     """Read a JANI model; its positions are those in the file.
+
+    Args:
+        path: the file.
+        texts: path -> text or bytes that replace the content of the file.
 
     Raises:
         PathError: the file cannot be read.
         JaniError: the file is not a JANI model, or has errors.
     """
     path = os.path.abspath(path)
+    given = {os.path.abspath(name): text for name, text in (texts or {}).items()}.get(path)
     try:
-        source = decode(path, required(path, MAX_DATA))
+        source = decode(path, _encoded(required(path, MAX_DATA) if given is None else given))
     except NotReadableError as error:
         raise PathError(str(error)) from None
     if source.undecodable is not None:
@@ -51,3 +57,7 @@ def read_jani(path: str) -> tuple[Model, SourceFile]:
     if errors or model is None:
         raise JaniError(errors or diagnostics, source)
     return model, source
+
+
+def _encoded(text: str | bytes) -> bytes:
+    return text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text

@@ -38,12 +38,16 @@ class SystemMocks(Record, frozen=True):
 
 
 def mock_system(
-    path: str, mocks: Sequence[Mock], ros_paths: Iterable[str] = (), settings: Settings | None = None
+    path: str,
+    mocks: Sequence[Mock],
+    ros_paths: Iterable[str] = (),
+    settings: Settings | None = None,
+    texts: Mapping[str, str | bytes] | None = None,
 ) -> SystemMocks:
     """Create mocks for the leaves of a system that have no plugin. No file is written.
 
     Args:
-        settings, ros_paths: as for `check`.
+        settings, ros_paths, texts: as for `check`.
 
     Raises:
         PathError: the path cannot be read, or is not a system file.
@@ -53,7 +57,7 @@ def mock_system(
     from roaml.project.system_leaves import missing_leaves, plugin_paths  # noqa: PLC0415
     from roaml.text import apply_edits  # noqa: PLC0415
 
-    analysis = check([path], ros_paths, settings).snapshot.analysis
+    analysis = check([path], ros_paths, settings, texts).snapshot.analysis
     main = os.path.abspath(path)
     system, document = analysis.system(main), analysis.document(main)
     if analysis.kind(main) is not FileKind.SYSTEM or system is None or document is None or document.root is None:
@@ -61,7 +65,7 @@ def mock_system(
     leaves = missing_leaves(analysis, system)
     paths = plugin_paths(analysis, main, [leaf.type for leaf in leaves])
     planned, missing = plan(leaves, mocks, Fraction(str(system.parameters.tick_rate)), paths)
-    texts = {mock.path: mock.text for mock in planned}
+    changed = {mock.path: mock.text for mock in planned}
     edits = event_edits(system, {p: tree for p in system.tree_paths if (tree := analysis.tree(p))}, mocks)
     events = sum(map(len, edits.values()))
     section = document.root.find("behavior_tree")
@@ -74,7 +78,7 @@ def mock_system(
     for file, changes in edits.items():
         source = analysis.source(file)
         assert source is not None
-        texts[file] = apply_edits(source.text, tuple(changes))
+        changed[file] = apply_edits(source.text, tuple(changes))
     nodes = [(name, leaf.type) for leaf in leaves for name in leaf.names]
     nodes += [(instance.name, instance.plugin) for instance in system.instances]
-    return SystemMocks(texts, tuple(planned), tuple(leaf.type for leaf in missing), events, unused(mocks, nodes))
+    return SystemMocks(changed, tuple(planned), tuple(leaf.type for leaf in missing), events, unused(mocks, nodes))

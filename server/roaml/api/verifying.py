@@ -94,7 +94,7 @@ def target(
         raise ConstantError("a JANI model has no parameters to override; only systems have them")
     from roaml.jani.constants import with_constants  # noqa: PLC0415
 
-    model, source = read_jani(path)
+    model, source = read_jani(path, texts)
     try:
         model = with_constants(model, constants)
         if overrides.reaction_time is not None:

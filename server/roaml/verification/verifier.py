@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 
@@ -130,7 +131,9 @@ def verifier_of(
         names = [*known, STUCK_PROPERTY]
     for name in expected:
         if name not in (*known, STUCK_PROPERTY):
-            hint = alternatives(close_names(name, known), known, "property") or "; the target has no properties"
+            hint = (
+                alternatives(close_names(name, known), known, "property", math.inf) or "; the target has no properties"
+            )
             raise PropertyError(f"there is no property `{name}`, for which a result is expected{hint}")
     checker = checker_of(target, names)
     for property_ in checker.compiled_properties:

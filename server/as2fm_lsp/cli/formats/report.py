@@ -89,12 +89,14 @@ class CheckReport(Record, frozen=True):
         checked: the number of checked files.
         limit: the least severity that makes the check fail.
         color: whether the output goes to a terminal with colors.
+        has_summary: whether text ends with the numbers of findings and files.
     """
 
     entries: Sequence[Entry]
     checked: int
     limit: Severity = Severity.ERROR
     color: bool = False
+    has_summary: bool = True
 
 
 def entry(diagnostic: Diagnostic, source_of: Callable[[str], SourceFile], shown: Callable[[str], str]) -> Entry:

@@ -15,7 +15,8 @@ _MAX_COLUMNS = 160
 def render(report: CheckReport) -> str:
     paint = _paint if report.color else _plain
     blocks = [_block(entry, paint) for entry in report.entries]
-    return "".join(block + "\n" for block in blocks) + summary(report) + "\n"
+    end = f"{summary(report)}\n" if report.has_summary else ""
+    return "".join(block + "\n" for block in blocks) + end
 
 
 def summary(report: CheckReport) -> str:
