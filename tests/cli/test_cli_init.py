@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm-lsp init DIR`"""
+"""`as2fm-lsp init DIR`, and `as2fm-lsp init --mocks TREE.xml`"""
 
 from __future__ import annotations
 
@@ -55,3 +55,31 @@ def test_where_nothing_can_be_written(command: Command, tmp_path: Path) -> None:
         assert (done.status, done.out) == (2, "")
         assert done.err.startswith(f"as2fm-lsp: {name}: ")
     assert files(tmp_path) == {"file": "mine"}
+
+
+TREE = """\
+<root BTCPP_format="4"><BehaviorTree ID="Main"><Sequence><Find /><Grasp /></Sequence></BehaviorTree></root>
+"""
+
+
+def test_mocks_of_a_tree(command: Command, tmp_path: Path) -> None:
+    """The proposal makes the tree verifiable. A second call adds what is missing and keeps what is there."""
+    (tmp_path / "tree.xml").write_text(TREE)
+    done = command("init", "--mocks", "tree.xml")
+    assert done.out.splitlines()[0] == "wrote tree.mocks with proposed mocks for 2 leaves"
+    assert command("verify", "tree.xml", "--max-traces", "5").status == 0
+    (tmp_path / "tree.mocks").write_text("Find: 0.25 in 3 s\n")
+    assert command("init", "--mocks", "tree.xml").out.startswith("wrote tree.mocks with proposed mocks for 1 leaf\n")
+    written = (tmp_path / "tree.mocks").read_text()
+    assert written.startswith("Find: 0.25 in 3 s\n")
+    assert "\nGrasp: " in written
+    assert command("init", "--mocks", "tree.xml") == (0, "", "as2fm-lsp: tree.mocks: every leaf has a mock already\n")
+
+
+def test_mocks_of_what_is_not_a_tree(command: Command, tmp_path: Path) -> None:
+    assert command("init", "--mocks", "missing.xml").status == 2
+    (tmp_path / "wrong.xml").write_text(TREE.replace("<Find />", "<SubTree ID='No' />"))
+    done = command("init", "--mocks", "wrong.xml")
+    assert done.status == 1
+    assert "wrong.xml:1:" in done.err
+    assert not (tmp_path / "wrong.mocks").exists()

@@ -34,7 +34,7 @@ IN_PLACE = {
     "migrate": "paths",
     "verify": "--resume",
     "experiment": "--resume",
-    "init": "folder",
+    "init": "folder --mocks",
     "serve": "--socket",
 }
 """The options that change files on purpose, each with a check of its own: `--baseline` and `init` only create files,
