@@ -89,7 +89,7 @@ def test_less_than_errors_is_clean_unless_asked_for(command: Command, tmp_path: 
         (["--tcp", "nonsense"], "--tcp needs HOST:PORT"),
         (["--tcp", "localhost:99999"], "--tcp needs HOST:PORT"),
         (["--tcp", "localhost:²"], "--tcp needs HOST:PORT"),
-        (["init"], "the following arguments are required: DIR"),
+        (["init"], "one of the arguments DIR --mocks is required"),
         (["migrate"], "the following arguments are required: PATH"),
         (["migrate", "nowhere"], "there is no such file or folder"),
         (["translate", "main.xml", "--indent", "two"], "expected a number of spaces from 0 to 16"),
