@@ -240,5 +240,11 @@ def test_only_these_modules_write_without_the_check() -> None:
         if "import write_file" in path.read_text(encoding="utf-8")
     }
     own = {f"cli/{name}.py" for name in ("check", "format", "migrate", "init", "baseline", "build_kernel")}
-    others = ("handlers/translate.py", "kept_points.py", "mocked_models.py", "outputs.py", "verification/saved_state.py")
+    others = (
+        "handlers/translate.py",
+        "kept_points.py",
+        "mocked_models.py",
+        "outputs.py",
+        "verification/saved_state.py",
+    )
     assert writers == {*own, *others}
