@@ -20,7 +20,7 @@ FILES = {
     "draw": "--output",
     "simulate": "--save --csv --json --mermaid --svg --html",
     "translate": "--output --map",
-    "verify": "--explain",
+    "verify": "--explain --plot",
     "experiment": "--output --plot",
 }
 """The options that name a file to write."""
@@ -62,6 +62,7 @@ NOTHING = {
     "verify": "main --max-transitions --property --expect --confidence --epsilon --method "
     "--max-traces --max-steps --seed --jobs "
     "--scheduler --exhaustive --max-states --max-memory --no-reductions --stuck --separate --traces-limit --dask "
+    "--over-time --band "
     f"--format {MODEL}",
 }
 """The options that write no file."""

@@ -16,7 +16,7 @@ from as2fm_lsp.cli.model_arguments import UsageError
 from as2fm_lsp.cli.numbers import positive
 from as2fm_lsp.cli.times import add_reaction_time, time_of
 from as2fm_lsp.cli.tree_semantics import add_semantics
-from as2fm_lsp.cli.verify_arguments import add_sampling, limits_in
+from as2fm_lsp.cli.verify_arguments import add_sampling, limits_in, plot_file
 from as2fm_lsp.outputs import InputPath, OutputPath
 from roaml.disk import MEGABYTE, required
 from roaml.exhaustive import Vocabulary
@@ -26,7 +26,6 @@ from roaml.suggest import close_names, did_you_mean
 from roaml.toml import TomlError, loads
 
 SUFFIX = ".experiment.toml"
-PLOT_SUFFIXES = (".svg", ".html", ".pdf")
 EXAMPLES = """\
 examples:
   as2fm-lsp experiment main.xml --set capacity=20:200:20 --property delivered
@@ -94,19 +93,13 @@ def parser() -> ArgumentParser:
         "already there")  # fmt: skip
     add("--format", action=WordAction, words=TableFormat, default=TableFormat.TEXT, help="format of the table")
     add("-o", "--output", type=OutputPath, metavar="FILE", help="write the table into a file")
-    add("--plot", type=_plot_file, action="append", default=[], metavar="FILE", help="draw the points, as .svg, .html "
+    add("--plot", type=plot_file, action="append", default=[], metavar="FILE", help="draw the points, as .svg, .html "
         "or .pdf; with several plots, the names get numbers; may be repeated")  # fmt: skip
     add("--theme", choices=(AUTOMATIC, *THEMES), default=AUTOMATIC, help="the colors of SVG files; "
         f"{AUTOMATIC}: light, or dark if the reader prefers dark colors (default)")  # fmt: skip
     add("--unit", action="append", default=[], metavar="NAME=UNIT", help="the unit of a parameter, for plots; may be "
         "repeated")  # fmt: skip
     return result
-
-
-def _plot_file(text: str) -> OutputPath:
-    if not text.endswith(PLOT_SUFFIXES):
-        raise argparse.ArgumentTypeError(f"`{text}` does not end in .svg, .html or .pdf")
-    return OutputPath(text)
 
 
 def parsed(arguments: Sequence[str]) -> argparse.Namespace:
@@ -145,7 +138,7 @@ def _arguments_in(path: str) -> list[str]:
         option = action.option_strings[-1] if len(key) == 1 else f"--{key.replace('_', '-')}"
         for text in _texts(path, key, value):
             is_path = isinstance(action.type, type) and issubclass(action.type, (InputPath, OutputPath))
-            is_path |= action.type is _plot_file
+            is_path |= action.type is plot_file
             if text is True:
                 arguments.append(option)
             elif text is not False:

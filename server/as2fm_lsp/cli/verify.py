@@ -51,6 +51,7 @@ from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.durations import INSTANT
 from roaml.explicit.space import MAX_STATES, StateLimits
+from roaml.figures.themes import AUTOMATIC
 from roaml.mocks.mock import MockError
 from roaml.record import replace
 from roaml.smc.fault import FaultError
@@ -247,7 +248,25 @@ class _Verification:
         status = self.interrupts.status if interrupted else CLEAN if is_met else FOUND
         if not interrupted and (self.options.traces is not None or self.options.explain):
             self._write_traces()
+        if not interrupted and self.options.plot:
+            self._write_plots()
         return status
+
+    def _write_plots(self) -> None:
+        from as2fm_lsp.cli.plot_files import write_plots  # noqa: PLC0415 - most verifications draw nothing
+        from as2fm_lsp.verification.curve_files import curve_plots  # noqa: PLC0415
+
+        with StatusLine() as status:
+            status.stage("making traces for the plot")
+            try:
+                plots = list(curve_plots(self.verifier, self.options.over_time, self.options.band))
+            except FaultError as fault:
+                raise UsageError(f"the curves cannot be drawn: {fault.message}") from None
+            except ValueError as error:
+                raise UsageError(str(error)) from None
+        title = f"Curves of {os.path.basename(self.options.main)}"
+        for path in self.options.plot:
+            write_plots(self.outputs, path, plots, AUTOMATIC, title)
 
     def _answer_shared(self, pool: Pool, bar: ProgressBar) -> dict[str, Result]:
         """The results of the properties that share traces; empty if fewer than two properties can share them, or if the

@@ -14,9 +14,11 @@ from as2fm_lsp.cli.model_arguments import UsageError, add_model_arguments
 from as2fm_lsp.cli.numbers import natural, positive, size
 from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, InputPath, OutputFolder, OutputPath
 from roaml.exhaustive import Vocabulary
+from roaml.experiments.curves import BandKind
 from roaml.explicit.space import StateLimits
 from roaml.record import replace
 from roaml.smc.run import MIN_EPSILON, EstimationMethod, Options
+from roaml.suggest import listing
 from roaml.verification.expectations import Expectation, parse
 from roaml.verification.small import SHARED_LIMITS
 from roaml.verification.stuck import StuckLevel
@@ -42,6 +44,7 @@ advance; a warning with an example reports this.
 exit status: 0 success; 1 an expectation is not met, a property cannot be answered, the model has errors, or a trace got
 stuck (with --stuck error); 2 usage error; 3 internal error; 130 interrupted (143 by SIGTERM)
 """
+PLOT_SUFFIXES = (".svg", ".html", ".pdf")
 TRACE_OPTIONS = (
     "confidence",
     "epsilon",
@@ -118,6 +121,7 @@ def parser() -> ArgumentParser:
         metavar="FILE", help="show the shortest trace in which the property fails (if only upper limits are "
         "expected: in which it holds), as text or in FILE.txt, FILE.mmd (Mermaid) or FILE.html; may be "
         "repeated")  # fmt: skip
+    add_curves(result)
     add("--dask", metavar="ADDRESS", help="run on the Dask cluster with the scheduler at this address (needs the "
         "Python package distributed)")  # fmt: skip
     add("--format", action=WordAction, words=(Format.TEXT, Format.JSON, Format.JUNIT), default=Format.TEXT,
@@ -151,6 +155,25 @@ def add_sampling(parser: ArgumentParser) -> None:
         metavar="N",
         help="number of processes (all processors); it does not change the results",
     )
+
+
+def add_curves(parser: ArgumentParser) -> None:
+    """Add the options of curves over time."""
+    add = parser.add_argument
+    add("--plot", type=plot_file, action="append", default=[], metavar="FILE", help="draw the probability over time "
+        "that each property holds and fails, from further traces with uniform choices, as .svg, .html or .pdf; may be "
+        "repeated")  # fmt: skip
+    add("--over-time", action="append", default=[], metavar="VARIABLE", help="with --plot: draw the median of this "
+        "variable over time (Machine.variable, or a name of the JANI model); may be repeated")  # fmt: skip
+    add("--band", action=WordAction, words=BandKind, default=BandKind.SIMULTANEOUS, help="with --plot: the bands "
+        "contain the whole curve (simultaneous, default), or each value by itself (pointwise), with the probability of "
+        "--confidence")  # fmt: skip
+
+
+def plot_file(text: str) -> OutputPath:
+    if not text.endswith(PLOT_SUFFIXES):
+        raise argparse.ArgumentTypeError(f"`{text}` does not end in {listing(PLOT_SUFFIXES)}")
+    return OutputPath(text)
 
 
 def _processors() -> int:
