@@ -27,6 +27,7 @@ from roaml import api
 from roaml.exhaustive import assert_never
 from roaml.experiments.results import ExperimentResult
 from roaml.experiments.sweeps import SweepError
+from roaml.jani.property_text import PropertyTextError
 from roaml.model.parameters import Overrides
 
 __all__ = ["parser", "run"]
@@ -37,7 +38,9 @@ def run(arguments: Sequence[str]) -> int:
     with Interrupts() as interrupts:
         try:
             return _run(parsed(arguments), interrupts)
-        except (UsageError, SweepError, KeptPointsError, api.ConstantError, api.PathError, api.PropertyError) as error:
+        except (UsageError, SweepError, KeptPointsError, PropertyTextError, api.ConstantError) as error:
+            complain(str(error))
+        except (api.PathError, api.PropertyError) as error:
             complain(str(error))
         except (api.ModelError, api.JaniError) as error:
             print_text(render(error_report(error), Format.TEXT), stream=sys.stderr)

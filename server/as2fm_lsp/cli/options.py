@@ -12,6 +12,8 @@ from as2fm_lsp.cli.tree_semantics import add_semantics
 from as2fm_lsp.outputs import InputPath, OutputPath
 from roaml.project.settings import SEVERITIES
 
+DIAGNOSTIC_FORMATS = tuple(format_ for format_ in Format if format_ is not Format.CSV)
+
 
 def check_options(check: argparse._ActionsContainer) -> None:
     """Add the options of a check."""
@@ -28,7 +30,7 @@ def check_options(check: argparse._ActionsContainer) -> None:
         help="system files, other files or folders; - is standard input",
     )
     check.add_argument(
-        "--format", action=WordAction, words=Format, default=Format.TEXT, help="format of the diagnostics"
+        "--format", action=WordAction, words=DIAGNOSTIC_FORMATS, default=Format.TEXT, help="format of the diagnostics"
     )
     check.add_argument("--output", type=OutputPath, metavar="FILE", help="write to FILE instead of standard output")
     check.add_argument(

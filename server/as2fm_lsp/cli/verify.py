@@ -52,6 +52,7 @@ from roaml.diagnostics import Diagnostic, Severity
 from roaml.durations import INSTANT
 from roaml.explicit.space import MAX_STATES, StateLimits
 from roaml.figures.themes import AUTOMATIC
+from roaml.jani.property_text import PropertyTextError
 from roaml.mocks.mock import MockError
 from roaml.record import replace
 from roaml.smc.fault import FaultError
@@ -102,7 +103,7 @@ def run(arguments: Sequence[str]) -> int:
 def _checked(options: argparse.Namespace, interrupts: Interrupts) -> int:
     try:
         return _run(options, interrupts)
-    except (UsageError, RangeError, api.ConstantError, StateError) as error:
+    except (UsageError, RangeError, PropertyTextError, api.ConstantError, StateError) as error:
         return _fail(str(error))
     except (api.PathError, api.PropertyError, WorkersLostError) as error:
         return _fail(str(error))
@@ -400,6 +401,10 @@ class _Verification:
             from as2fm_lsp.verification.junit_report import as_junit  # noqa: PLC0415 - needs a library for XML
 
             return as_junit(self.results, shown_path(self.options.main), self._place, self.stuck_result)
+        if self.options.format is Format.CSV:
+            from as2fm_lsp.verification.csv_report import as_csv  # noqa: PLC0415
+
+            return as_csv(self.results)
         if is_quiet():
             return as_brief_text(self.results, self._place, self.options.stuck)
         # A story of a stuck trace ends with the waiting automata.

@@ -33,6 +33,7 @@ examples:
   as2fm-lsp verify main.xml --scheduler lss              the least and the greatest probability of sampled schedulers
   as2fm-lsp verify main.xml --property stuck --explain   the probability of getting stuck, and the automata that wait
   as2fm-lsp verify tree.xml --mock "*: 0.9 in 1 s"       a tree without a system: success, time, recoveries
+  as2fm-lsp verify model.jani --property "Pmax=? [ F<=100 done ]" --format csv
   as2fm-lsp verify main.xml --exhaustive                 all states: exact minimum, maximum and uniform value
 
 In a trace, nondeterminism is resolved uniformly at random: at each step, each edge without action and each
@@ -82,7 +83,8 @@ def parser() -> ArgumentParser:
         help="the system file, a JANI model, or a tree without a system; - is standard input",
     )
     add = result.add_argument
-    add("--property", action="append", default=[], metavar="NAME", help="verify only this property; may be repeated")
+    add("--property", action="append", default=[], metavar="NAME", help="verify only this property; may be "
+        "repeated. It can be written as in PRISM: 'Pmax=? [ F<=100 done ]'")  # fmt: skip
     add("--expect", action="append", default=[], metavar="'NAME >= P'", help="expect this of the "
         "property NAME, with >=, <=, >, < or ==, and exit with 1 if it does not hold; may be repeated")  # fmt: skip
     add_sampling(result)
@@ -124,7 +126,7 @@ def parser() -> ArgumentParser:
     add_curves(result)
     add("--dask", metavar="ADDRESS", help="run on the Dask cluster with the scheduler at this address (needs the "
         "Python package distributed)")  # fmt: skip
-    add("--format", action=WordAction, words=(Format.TEXT, Format.JSON, Format.JUNIT), default=Format.TEXT,
+    add("--format", action=WordAction, words=(Format.TEXT, Format.JSON, Format.JUNIT, Format.CSV), default=Format.TEXT,
         help="format of the results")  # fmt: skip
     return result
 

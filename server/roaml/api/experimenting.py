@@ -20,7 +20,7 @@ from roaml.jani.selection import select
 from roaml.model.parameters import NO_OVERRIDES, Overrides
 from roaml.project.settings import Settings
 from roaml.record import Record
-from roaml.verification.target import VerificationTarget, target_of
+from roaml.verification.target import VerificationTarget, asking, target_of
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -122,7 +122,7 @@ def grid_of(
     if any(not sweep.values for sweep in given):
         raise SweepError("a parameter without values has no points")
     model = parametric_model(path, ros_paths, settings, overrides)
-    first = model.target(tuple((sweep.name, sweep.values[0]) for sweep in given))
+    first = asking(model.target(tuple((sweep.name, sweep.values[0]) for sweep in given)), properties or ())
     known = first.properties
     names = tuple(p.name for p in (known if properties is None else select(known, properties, "model")))
     computed = options or ExperimentOptions()

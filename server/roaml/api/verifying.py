@@ -183,11 +183,12 @@ def verifier(
         PropertyError, FaultError, ValueError: as for `verify`.
     """
     from roaml.verification import expectations as _expectations  # noqa: PLC0415
+    from roaml.verification.target import asking  # noqa: PLC0415
     from roaml.verification.verifier import verifier_of  # noqa: PLC0415
 
     parsed = [_expectations.parse(e) if isinstance(e, str) else e for e in expectations]
     return verifier_of(
-        as_target(subject),
+        asking(as_target(subject), properties or ()),
         properties,
         options,
         parsed,

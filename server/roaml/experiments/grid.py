@@ -28,7 +28,7 @@ from roaml.smc.run import Options
 from roaml.verification.exhaustive import UndecidedError, exact_values
 from roaml.verification.results import Exact, Refused
 from roaml.verification.small import LIMITS, SHARED_LIMITS, attempt
-from roaml.verification.target import VerificationTarget
+from roaml.verification.target import VerificationTarget, asking
 from roaml.verification.verifier import checker_of, verifier_of
 
 Key: TypeAlias = tuple[Setting, str]
@@ -90,7 +90,7 @@ class Grid(Record, frozen=True):
         digest: the digest of the files and options, on which the values of points depend.
     """
 
-    subject: ParametricModel
+    model: ParametricModel
     sweeps: tuple[Sweep, ...]
     properties: tuple[str, ...]
     options: ExperimentOptions
@@ -131,7 +131,7 @@ class Grid(Record, frozen=True):
         for setting, name in left:
             by_setting.setdefault(setting, []).append(name)
         limits = self.options.limits(len(self.settings))
-        tasks = [_Task(self.subject, setting, tuple(n), self.options, limits) for setting, n in by_setting.items()]
+        tasks = [_Task(self.model, setting, tuple(n), self.options, limits) for setting, n in by_setting.items()]
         yield from _computed(tasks, jobs, executor)
 
     def _parametric(self, name: str, settings: Sequence[Setting]) -> ParametricSpace | None:
@@ -144,10 +144,10 @@ class Grid(Record, frozen=True):
         if len(numeric) < len(ranges):
             return None
         fixed = tuple((sweep.name, sweep.values[0]) for sweep in self.sweeps if len(sweep.values) == 1)
-        chances = self.subject.chances(numeric, fixed)
+        chances = self.model.chances(numeric, fixed)
         if chances is None:
             return None
-        return parametric_space(self.subject.target, chances, name, numeric, fixed, options.limits(1))
+        return parametric_space(self.model.target, chances, name, numeric, fixed, options.limits(1))
 
 
 def _range(sweep: Sweep) -> tuple[float, float] | None:
@@ -184,7 +184,7 @@ def shared_points(
 class _Task(Record, frozen=True):
     """The properties of one setting that are computed together."""
 
-    subject: ParametricModel
+    model: ParametricModel
     setting: Setting
     names: tuple[str, ...]
     options: ExperimentOptions
@@ -227,7 +227,7 @@ def _distributed(tasks: Sequence[_Task], count: int, executor: Executor) -> Iter
 def _measure(task: _Task) -> list[ExperimentPoint]:
     """The points of one setting."""
     try:
-        target = task.subject.target(task.setting)
+        target = asking(task.model.target(task.setting), task.names)
         checker = checker_of(target, task.names)
     except FaultError as fault:
         return [unknown_point(task.setting, name, fault.message) for name in task.names]

@@ -27,7 +27,7 @@ from roaml.jani.types import REAL, BoundedType
 from roaml.record import Record, replace
 from roaml.smc.fault import FaultError
 from roaml.verification.small import attempt
-from roaml.verification.target import VerificationTarget
+from roaml.verification.target import VerificationTarget, asking
 from roaml.verification.verifier import checker_of
 
 MAX_FACTORS = 3
@@ -142,7 +142,7 @@ def parametric_space(
 
 
 def _space(target: VerificationTarget, name: str, limits: StateLimits) -> Space | None:
-    checker = checker_of(target, [name])
+    checker = checker_of(asking(target, [name]), [name])
     property_ = next(iter(checker.compiled_properties), None)
     return None if property_ is None else attempt(checker, property_, limits).space
 

@@ -93,3 +93,41 @@ def target_of(
     return VerificationTarget(
         path, files, model, source_of, CLOCK_VARIABLES if names.issuperset(CLOCK_VARIABLES) else None, assumptions
     )
+
+
+def asking(target: VerificationTarget, names: Iterable[str]) -> VerificationTarget:
+    """The same target with further properties: those among `names` that are not names but properties, which are written
+    as in PRISM (`roaml.jani.property_text`). Their names are their texts.
+
+    Raises:
+        PropertyTextError: a text is not a property, names something that the model does not declare, or has a wrong
+            type.
+    """
+    texts = [name for name in names if "[" in name]
+    if not texts:
+        return target
+    import json  # noqa: PLC0415 - most verifications need no parser of properties
+
+    from roaml.jani.property_text import PropertyTextError, is_property_text, property_json  # noqa: PLC0415
+    from roaml.jani.reader import read_properties  # noqa: PLC0415
+    from roaml.jani.typecheck import check_property, model_scope  # noqa: PLC0415
+    from roaml.json_syntax import parse  # noqa: PLC0415
+
+    scope = model_scope(target.model)
+    known = {property_.name for property_ in target.model.properties}
+    added: list[Property] = []
+    for text in dict.fromkeys(texts):
+        if text in known or not is_property_text(text):
+            continue
+        value, _ = parse(json.dumps({"properties": [property_json(text, target.clock)]}))
+        properties, findings = read_properties(value)
+        findings += tuple(finding for property_ in properties for finding in check_property(property_, scope))
+        if findings:
+            raise PropertyTextError(f"`{text}`: {findings[0].message}")
+        added += properties
+    model = replace(target.model, properties=(*target.model.properties, *added))
+    if any(is_nested(formula) for property_ in added for formula in walk(property_.expression)):
+        from roaml.to_jani.state_observers import with_state_observers  # noqa: PLC0415
+
+        model = with_state_observers(model)
+    return replace(target, model=model)

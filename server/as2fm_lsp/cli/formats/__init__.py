@@ -11,7 +11,8 @@ from roaml.exhaustive import Vocabulary
 
 
 class Format(Vocabulary):
-    """A format of reports. Its value is the name of the module that writes it."""
+    """A format of reports. For diagnostics, its value is the name of the module that writes it; CSV is only for
+    values."""
 
     TEXT = "text"
     JSON = "json"
@@ -19,6 +20,7 @@ class Format(Vocabulary):
     GITLAB = "gitlab"
     SARIF = "sarif"
     JUNIT = "junit"
+    CSV = "csv"
 
     @property
     def encoding(self) -> str | None:

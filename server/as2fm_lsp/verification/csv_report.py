@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Results as CSV, for spreadsheets and scripts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Any
+
+from roaml.experiments.results import csv_text
+from roaml.verification.results import Refused, Result, Undecided
+
+COLUMNS = (
+    "property", "kind", "value", "low", "high", "minimum", "maximum", "uniform", "traces", "passed", "failed",
+    "undecided", "stuck", "states", "expected", "met", "seconds", "note",
+)  # fmt: skip
+
+
+def as_csv(results: Iterable[Result]) -> str:
+    """A row for each property. `value` is the one for which the property asks, or the estimate under uniform choices;
+    `low` and `high` are the bounds of an exact value, or the interval of an estimate."""
+    return csv_text(COLUMNS, map(_row, results))
+
+
+def _row(result: Result) -> dict[str, Any]:
+    row: dict[str, Any] = {"property": result.name, "kind": "unknown", "seconds": round(result.seconds, 3)}
+    if result.verdicts:
+        row["expected"] = "; ".join(verdict.expectation.text for verdict in result.verdicts)
+        row["met"] = "true" if result.is_met else "false"
+    answer, exact = result.answer, result.exact
+    if answer is not None:
+        tally = answer.tally
+        row |= {"traces": tally.traces, "passed": tally.successes, "undecided": tally.undecided}
+        row["failed"] = tally.traces - tally.successes - tally.undecided
+        row["stuck"] = 0 if result.stuck is None else result.stuck.count
+        if not answer.is_unknown and not math.isnan(answer.value):
+            row |= {"kind": "estimate", "value": answer.value, "low": answer.bounds.lower, "high": answer.bounds.upper}
+    asked = result.asked_value()
+    if exact is not None and asked is not None:
+        bounds, value = asked
+        row |= {"kind": "exact", "value": value, "low": bounds.lower, "high": bounds.upper, "states": exact.states}
+        row |= {"minimum": exact.least, "maximum": exact.greatest, "uniform": exact.average}
+    match result.outcome:
+        case Refused(reason=reason):
+            row["note"] = reason.message
+        case Undecided(reason=reason):
+            row["note"] = reason
+    return row
