@@ -12,7 +12,8 @@ import pytest
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
 from as2fm_lsp.cli.main import run as call
-from roaml.experiments.curves import BandKind, Curve, curve_plot, median_curves, traces_for, verdict_curves
+from roaml.experiments.bands import BandKind
+from roaml.experiments.curves import Curve, curve_plot, median_curves, traces_for, verdict_curves
 from roaml.smc.model import ModelChecker
 from roaml.smc.run import Options
 

@@ -14,7 +14,7 @@ from as2fm_lsp.cli.model_arguments import UsageError, add_model_arguments
 from as2fm_lsp.cli.numbers import natural, positive, size
 from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, InputPath, OutputFolder, OutputPath
 from roaml.exhaustive import Vocabulary
-from roaml.experiments.curves import BandKind
+from roaml.experiments.bands import BandKind
 from roaml.explicit.space import StateLimits
 from roaml.record import replace
 from roaml.smc.run import MIN_EPSILON, EstimationMethod, Options

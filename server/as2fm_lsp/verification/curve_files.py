@@ -5,7 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from roaml.experiments.curves import BandKind, Curve, curve_plot, median_curves, verdict_curves
+from roaml.experiments.bands import BandKind
+from roaml.experiments.curves import Curve, curve_plot, median_curves, verdict_curves
 from roaml.figures.plot import LinePlot
 from roaml.verification.verifier import Verifier
 

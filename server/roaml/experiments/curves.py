@@ -16,7 +16,7 @@ import math
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Sequence
 
-from roaml.exhaustive import Vocabulary
+from roaml.experiments.bands import BandKind
 from roaml.experiments.traces import TraceEnd, trajectories, variable_named
 from roaml.figures.plot import LinePlot, PlotAxis, PlotPoint, Series
 from roaml.record import Record
@@ -34,13 +34,6 @@ DEFAULT_EPSILON = 0.02
 """Half the width of a simultaneous band, if it is not given."""
 MEDIAN_TRACES = 1000
 """The number of traces for the median of a variable, if it is not given."""
-
-
-class BandKind(Vocabulary):
-    """What a band contains with the stated confidence: the whole curve, or each single value."""
-
-    SIMULTANEOUS = "simultaneous"
-    POINTWISE = "pointwise"
 
 
 class CurvePoint(Record, frozen=True):
