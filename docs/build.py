@@ -79,7 +79,8 @@ def element(type_: ElementType, grammar: Grammar, inside: str = "") -> str:
     lines = [f"## `<{type_.name}>`{where}\n", type_.documentation + "\n"]
     if type_.use:
         lines.append(f"*Older spelling; write `{type_.use}`.*\n")
-    parents = [p for p in grammar.parents(type_.name) if type_.name not in grammar.elements[p].local]
+    global_ = grammar.elements
+    parents = [p for p in grammar.parents(type_.name) if p not in global_ or type_.name not in global_[p].local]
     if parents and not inside:
         lines.append(f"Parents: {', '.join(f'`<{p}>`' for p in parents)}.\n")
     if type_.binds:

@@ -16,7 +16,7 @@ import roaml.rules
 from as2fm_lsp.cli.init import template
 from roaml import api
 from roaml.diagnostics import Severity
-from roaml.rules import RULES, parser_rules, property_rules
+from roaml.rules import RULES, expansion_rules, parser_rules, property_rules
 
 ROOT = Path(__file__).resolve().parents[1]
 SERVER = ROOT / "server"
@@ -74,7 +74,9 @@ def test_module_opens_with_licence_and_purpose(path: Path) -> None:
 def test_every_rule_module_is_registered() -> None:
     folder = Path(roaml.rules.__file__).parent
     modules = {path.stem for path in folder.rglob("*.py") if re.search(r"^RULE = ", path.read_text(), re.MULTILINE)}
-    modules |= {rule.code.replace("-", "_") for rule in (*parser_rules.RULES, *property_rules.RULES)}
+    modules |= {
+        rule.code.replace("-", "_") for rule in (*expansion_rules.RULES, *parser_rules.RULES, *property_rules.RULES)
+    }
     assert modules == {rule.code.replace("-", "_") for rule in RULES}
 
 

@@ -25,6 +25,7 @@ class SymbolKind(RoleValue):
     FIELD = "field"
     MACHINE = "machine"
     MEMBER = "member"
+    MODEL_PARAMETER = "model-parameter"
     PARAMETER = "parameter"
     PLUGIN = "plugin"
     PORT = "port"

@@ -25,7 +25,7 @@ FILES = {
 }
 """The options that name a file to write."""
 
-FOLDERS = {"translate": "--scxml-dir --dot --mermaid --plantuml", "verify": "--traces"}
+FOLDERS = {"translate": "--scxml-dir --expand --dot --mermaid --plantuml", "verify": "--traces"}
 """The options that name a folder into which files are written."""
 
 IN_PLACE = {
@@ -41,11 +41,11 @@ IN_PLACE = {
 `--resume` only replaces the state of a verification, `--socket` only a socket."""
 
 MODEL = "--tree-semantics --max-time --reaction-time --constant --ros-path --mock --mocks --entry --tick-rate"
-MODEL += " --stdin-filename"
+MODEL += " --stdin-filename --set --params-file"
 NOTHING = {
     "check": "paths --tree-semantics --format --ros-path --select --ignore --severity "
     "--warnings-as-errors --statistics "
-    "--stdin-filename",
+    "--stdin-filename --set --params-file",
     "debug": "",
     "experiment": "main --set --property --scheduler --exhaustive --max-states --max-transitions "
     "--confidence --epsilon --method --max-traces --max-steps --seed --jobs --dask --format --theme --unit "
@@ -58,7 +58,7 @@ NOTHING = {
     "serve": "--stdio --tcp --allow-remote",
     "simulate": f"main --property --seed --trace --for --until --max-steps --script --interactive --theme {MODEL}",
     "translate": "main --tree-semantics --indent --property --max-array-size --max-time "
-    "--reaction-time --ros-path --format --stdin-filename",
+    "--reaction-time --ros-path --format --stdin-filename --set --params-file",
     "verify": "main --max-transitions --property --expect --confidence --epsilon --method "
     "--max-traces --max-steps --seed --jobs "
     "--scheduler --exhaustive --max-states --max-memory --no-reductions --stuck --separate --traces-limit --dask "

@@ -19,10 +19,12 @@ from as2fm_lsp.cli.formats import CheckReport, render
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
 from as2fm_lsp.cli.options import check_options
 from as2fm_lsp.cli.output import complain, detail, is_quiet, note, print_text, takes_color
+from as2fm_lsp.cli.parameters import ParameterFileError, with_parameter_files
 from as2fm_lsp.cli.standard_input import STANDARD_INPUT_PATH, named_input
 from as2fm_lsp.cli.tree_semantics import semantics_of
 from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, OutputFiles, outputs_of
 from roaml import api
+from roaml.api.systems import unknown_parameter
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.project.configuration import find_settings
 from roaml.project.settings import SEVERITIES, Settings, ament_prefixes
@@ -86,20 +88,20 @@ def check(options: argparse.Namespace, name: str = "--check") -> int:
     settings = replace(
         settings,
         ament_prefixes=ament_prefixes(),
-        overrides=replace(settings.overrides, semantics=semantics_of(options)),
+        overrides=replace(settings.overrides, semantics=semantics_of(options), values=tuple(options.set)),
         select=frozenset(options.select) or settings.select,
         ignore=(settings.ignore - set(options.select)) | set(options.ignore),
     )
     began = time.monotonic()
     try:
-        result = api.check(paths, options.ros_path, settings, texts)
+        result = _result(paths, options, with_parameter_files(settings, options.params_file), texts)
         outputs = outputs_of(options, result.files)
         if options.fix and (fixed := api.fix(result)):
             for path, data in fixed.items():
                 write_file(path, data)
                 note(f"fixed {shown_path(path)}")
-            result = api.check(paths, options.ros_path, settings)
-    except api.PathError as error:
+            result = _result(paths, options, with_parameter_files(settings, options.params_file), None)
+    except (api.PathError, api.ParameterError, ParameterFileError) as error:
         return _usage(str(error))
     except OSError as error:
         return _usage(f"{shown_path(str(error.filename))}: {error.strerror or error}")
@@ -136,6 +138,22 @@ def _write_details(result: api.CheckResult, settings: Settings, seconds: float) 
     for path in result.files:
         detail(f"checked {shown_path(path)}")
     detail(f"{len(result.files)} files in {seconds:.2f} s")
+
+
+def _result(
+    paths: Sequence[str], options: argparse.Namespace, settings: Settings, texts: Mapping[str, bytes] | None
+) -> api.CheckResult:
+    """The result of the check.
+
+    Raises:
+        api.PathError: as `api.check`.
+        api.ParameterError: no system declares a parameter that `--set` names.
+    """
+    result = api.check(paths, options.ros_path, settings, texts)
+    analysis = result.snapshot.analysis
+    if undeclared := unknown_parameter(analysis, analysis.system_paths, settings.overrides):
+        raise api.ParameterError(f"--set: {undeclared}")
+    return result
 
 
 def _unsafe(diagnostics: Sequence[Diagnostic]) -> str:

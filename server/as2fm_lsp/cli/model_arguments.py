@@ -13,6 +13,7 @@ from as2fm_lsp.cli.formats import CheckReport
 from as2fm_lsp.cli.formats.report import entry, shown_path
 from as2fm_lsp.cli.mock_options import MESSAGES, add_mock_options, declarations_in
 from as2fm_lsp.cli.output import takes_color
+from as2fm_lsp.cli.parameters import ParameterFileError, add_set, with_parameter_files
 from as2fm_lsp.cli.standard_input import add_stdin_filename, named_input
 from as2fm_lsp.cli.times import add_reaction_time, time_of
 from as2fm_lsp.cli.tree_semantics import add_semantics, semantics_of
@@ -44,6 +45,7 @@ def add_model_arguments(parser: ArgumentParser) -> None:
     add("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages")
     add_semantics(parser)
     add_stdin_filename(parser)
+    add_set(parser)
     add_mock_options(parser)
 
 
@@ -73,6 +75,8 @@ def check_model_arguments(options: argparse.Namespace) -> None:
     if options.main.endswith(".jani"):
         if options.max_time is not None:
             raise UsageError("--max-time needs a system; a JANI model has no such parameter")
+        if options.set or options.params_file:
+            raise UsageError("--set and --params-file need a system; a JANI model has constants, which --constant sets")
     elif options.constant:
         raise UsageError("--constant needs a JANI model; a system has no constants")
     try:
@@ -92,15 +96,20 @@ def read_target(options: argparse.Namespace, settings: Settings) -> Verification
     try:
         declared = declarations_in(options)
         if names_tree(options.main, options.texts):
+            if options.set or options.params_file:
+                raise UsageError("--set and --params-file need a system; a tree without one declares no parameters")
             settings = with_reaction_time(settings, options)
             return load_mocked_tree(
                 options.main, declared, options.max_time, settings, MESSAGES, counts=False, texts=options.texts
             ).target
         if not declared.is_empty:
             texts = mocked_system_texts(options.main, declared, options.ros_path, settings, MESSAGES, options.texts)
-    except MockError as error:
+        settings = with_parameter_files(settings, options.params_file)
+    except (MockError, ParameterFileError) as error:
         raise UsageError(str(error)) from None
-    overrides = Overrides(options.max_time, None, options.reaction_time, semantics=semantics_of(options))
+    overrides = Overrides(
+        options.max_time, None, options.reaction_time, semantics=semantics_of(options), values=tuple(options.set)
+    )
     return api.target(options.main, options.ros_path, settings, texts, overrides, options.constant)
 
 

@@ -7,6 +7,7 @@ import argparse
 
 from as2fm_lsp.cli.arguments import WordAction
 from as2fm_lsp.cli.formats import Format
+from as2fm_lsp.cli.parameters import add_set
 from as2fm_lsp.cli.standard_input import add_stdin_filename
 from as2fm_lsp.cli.tree_semantics import add_semantics
 from as2fm_lsp.outputs import InputPath, OutputPath
@@ -37,6 +38,7 @@ def check_options(check: argparse._ActionsContainer) -> None:
         "--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages"
     )
     add_semantics(check)
+    add_set(check)
     check.add_argument("--select", action=_Codes, default=[], metavar="CODE,...", help="report only these rules")
     check.add_argument("--ignore", action=_Codes, default=[], metavar="CODE,...", help="do not report these rules")
     check.add_argument("--severity", default="hint", choices=tuple(SEVERITIES), help="the minimum severity to report")

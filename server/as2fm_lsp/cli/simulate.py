@@ -57,7 +57,7 @@ def run(arguments: Sequence[str]) -> int:
     options = parser().parse_args(arguments)
     try:
         return _run(options)
-    except (UsageError, RunError, api.ConstantError, api.PathError, api.PropertyError) as error:
+    except (UsageError, RunError, api.ConstantError, api.ParameterError, api.PathError, api.PropertyError) as error:
         complain(str(error))
         return USAGE
     except OSError as error:

@@ -15,6 +15,7 @@ from as2fm_lsp.cli.formats import CheckReport, Format, render
 from as2fm_lsp.cli.formats.report import entry, shown_path
 from as2fm_lsp.cli.numbers import positive
 from as2fm_lsp.cli.output import complain, print_text, takes_color, write_output
+from as2fm_lsp.cli.parameters import ParameterFileError, add_set, with_parameter_files
 from as2fm_lsp.cli.standard_input import STANDARD_INPUT_PATH, add_stdin_filename, named_input
 from as2fm_lsp.cli.status_line import StatusLine
 from as2fm_lsp.cli.times import add_reaction_time, time_of
@@ -31,6 +32,7 @@ from as2fm_lsp.outputs import (
 from as2fm_lsp.translation import jani_path, summary, without_bounded
 from roaml import api
 from roaml.diagnostics import Diagnostic
+from roaml.disk import MAX_BYTES, read
 from roaml.jani.model import Model
 from roaml.jani.reaction import ReactionError, without_hold
 from roaml.jani.writer import write as jani_text
@@ -64,7 +66,11 @@ written; 2 usage error; 3 internal error
 def run(arguments: Sequence[str]) -> int:
     options = parser().parse_args(arguments)
     overrides = Overrides(
-        options.max_time, options.max_array_size, options.reaction_time, semantics=semantics_of(options)
+        options.max_time,
+        options.max_array_size,
+        options.reaction_time,
+        semantics=semantics_of(options),
+        values=tuple(options.set),
     )
     if options.main == STANDARD_INPUT_PATH:
         options.output = options.output or TranslationPath(STANDARD_OUTPUT_PATH)
@@ -74,7 +80,10 @@ def run(arguments: Sequence[str]) -> int:
     settings, problems = find_settings(os.path.abspath(options.main))
     if problems:
         return _fail(problems[0])
-    settings = replace(settings, ament_prefixes=ament_prefixes())
+    try:
+        settings = with_parameter_files(replace(settings, ament_prefixes=ament_prefixes()), options.params_file)
+    except ParameterFileError as error:
+        return _fail(str(error))
     if output == STANDARD_OUTPUT_PATH and options.map == STANDARD_OUTPUT_PATH:
         return _fail("the model and the map cannot both go to standard output")
     with StatusLine() as status:
@@ -90,7 +99,7 @@ def run(arguments: Sequence[str]) -> int:
             if not is_refused:
                 status.stage("writing")
                 _write(options, outputs, system, network, model)
-        except (api.PathError, api.PropertyError, ReactionError) as error:
+        except (api.ParameterError, api.PathError, api.PropertyError, ReactionError) as error:
             return _fail(str(error))
         except api.ModelError as error:
             failure: api.ModelError | None = error
@@ -137,6 +146,12 @@ def parser() -> ArgumentParser:
         metavar="DIR",
         help="write a plain SCXML file for each automaton, and the properties in XML",
     )
+    result.add_argument(
+        "--expand",
+        type=OutputFolder,
+        metavar="DIR",
+        help="write the files of the system without parameters and instances, which AS2FM reads",
+    )
     for notation in NOTATIONS.values():
         help_ = f"write diagrams of the machines, the tree and the network ({notation.title})"
         result.add_argument(f"--{notation.name}", type=OutputFolder, metavar="DIR", help=help_)
@@ -150,6 +165,7 @@ def parser() -> ArgumentParser:
     add_reaction_time(result)
     result.add_argument("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interfaces")
     add_semantics(result)
+    add_set(result)
     result.add_argument(
         "--format",
         action=WordAction,
@@ -173,6 +189,8 @@ def _write(
     """Write the requested files; the JANI file is last, so that a failure leaves it unchanged."""
     if options.scxml_dir is not None:
         _write_folder(outputs, options.scxml_dir, _scxml_files(options, system, network))
+    if options.expand is not None:
+        _write_folder(outputs, options.expand, _plain_files(options.expand, system))
     for notation in NOTATIONS.values():
         folder = getattr(options, notation.name)
         if folder is not None:
@@ -199,6 +217,23 @@ def _scxml_files(options: argparse.Namespace, system: api.LoadedSystem, network:
         complain(f"the property `{property_.name}` is not written to {FILE_NAME}: {reason}")
 
 
+def _plain_files(folder: str, system: api.LoadedSystem) -> Iterator[tuple[str, str]]:
+    """File name and text of each file of the system without parameters and instances. A file in JSON cannot contain the
+    mark, so one that is there already is left out."""
+    for name, text in api.to_plain(system).items():
+        if text.lstrip("\ufeff \t\r\n").startswith("<"):
+            end = "" if text.endswith("\n") else "\n"
+            yield name, f"{text}{end}<!-- {TRANSLATION_MARK} -->\n"
+        elif not _has_text(os.path.join(folder, name), text):
+            yield name, text
+
+
+def _has_text(path: str, text: str) -> bool:
+    """Whether a file contains exactly `text`."""
+    content = read(path, MAX_BYTES)
+    return isinstance(content, bytes) and content == text.encode()
+
+
 def _diagrams(system: api.LoadedSystem, model: Model, notation: Notation) -> Iterator[tuple[str, str]]:
     """File name and text of each diagram."""
     linked = system.analysis.system(system.path)
@@ -221,6 +256,7 @@ def _write_folder(outputs: OutputFiles, folder: str, files: Iterable[tuple[str, 
     outputs.check(texts, translates=True)
     os.makedirs(folder, exist_ok=True)
     for path, text in texts.items():
+        os.makedirs(os.path.dirname(path), exist_ok=True)
         outputs.write(path, text, translates=True)
 
 

@@ -105,7 +105,7 @@ def _checked(options: argparse.Namespace, interrupts: Interrupts) -> int:
         return _run(options, interrupts)
     except (UsageError, RangeError, PropertyTextError, api.ConstantError, StateError) as error:
         return _fail(str(error))
-    except (api.PathError, api.PropertyError, WorkersLostError) as error:
+    except (api.ParameterError, api.PathError, api.PropertyError, WorkersLostError) as error:
         return _fail(str(error))
     except BrokenPipeError:
         raise
@@ -454,12 +454,17 @@ class _Verification:
         return "" if named is None else f"above, below `{named}`"
 
     def _assumptions(self) -> str:
-        """The assumptions of all results: how they were computed, and the reaction time if it is not `any`."""
+        """The assumptions of all results: how they were computed, the reaction time if it is not `any`, and the values
+        of parameters."""
         metadata = self.target.model.metadata
         reactions = "" if metadata is None else REACTIONS.get(metadata.reaction_time.text, "")
         if metadata is not None and not reactions and not metadata.reaction_time.is_any:
             reactions = f"assumed: each machine takes a possible step within {metadata.reaction_time.text}"
-        return self._computation() + (f"\n{reactions} (reaction time)" if reactions else "")
+        lines = [self._computation(), f"{reactions} (reaction time)" if reactions else ""]
+        if self.target.parameters:
+            values = ", ".join(f"{name} = {value}" for name, value in self.target.parameters.items())
+            lines.append(f"parameters: {values}")
+        return "\n".join(filter(None, lines))
 
     def _computation(self) -> str:
         """How the results were computed: one line, or two lines if some values are exact and others are estimates."""

@@ -27,6 +27,8 @@ def symbol_kind(kind: SymbolKind) -> types.SymbolKind:
             return types.SymbolKind.Property
         case SymbolKind.STRUCT | SymbolKind.ROS_TYPE | SymbolKind.BASE_TYPE:
             return types.SymbolKind.Struct
+        case SymbolKind.MODEL_PARAMETER:
+            return types.SymbolKind.Constant
         case SymbolKind.MEMBER | SymbolKind.PARAMETER | SymbolKind.FIELD:
             return types.SymbolKind.Field
         case SymbolKind.EVENT:

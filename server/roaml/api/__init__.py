@@ -28,7 +28,17 @@ if TYPE_CHECKING:
     from roaml.api.jani_files import JaniError, PathError, read_jani
     from roaml.api.migrating import SharedFileError, migrate
     from roaml.api.simulating import session
-    from roaml.api.systems import LoadedSystem, ModelError, load, loaded, source_map, to_jani, to_scxml
+    from roaml.api.systems import (
+        LoadedSystem,
+        ModelError,
+        ParameterError,
+        load,
+        loaded,
+        source_map,
+        to_jani,
+        to_plain,
+        to_scxml,
+    )
     from roaml.api.trees import propose_mocks
     from roaml.api.verifying import ConstantError, as_target, checker, target, verifier, verify
     from roaml.comparison import Comparison
@@ -110,7 +120,17 @@ else:
         "roaml.api.jani_files": ("JaniError", "PathError", "read_jani"),
         "roaml.api.migrating": ("SharedFileError", "migrate"),
         "roaml.api.simulating": ("session",),
-        "roaml.api.systems": ("LoadedSystem", "ModelError", "load", "loaded", "source_map", "to_jani", "to_scxml"),
+        "roaml.api.systems": (
+            "LoadedSystem",
+            "ModelError",
+            "ParameterError",
+            "load",
+            "loaded",
+            "source_map",
+            "to_jani",
+            "to_plain",
+            "to_scxml",
+        ),
         "roaml.api.trees": ("propose_mocks",),
         "roaml.api.verifying": ("ConstantError", "as_target", "checker", "target", "verifier", "verify"),
         "roaml.diagnostics": ("Diagnostic", "Severity"),
@@ -253,6 +273,7 @@ __all__ = [
     "Origin",
     "Outcome",
     "Overrides",
+    "ParameterError",
     "PathError",
     "PointKind",
     "Pool",
@@ -326,6 +347,7 @@ __all__ = [
     "source_map",
     "target",
     "to_jani",
+    "to_plain",
     "to_scxml",
     "verifier",
     "verify",

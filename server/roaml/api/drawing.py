@@ -116,12 +116,15 @@ def _fitting(analysis: Analysis, path: str) -> DiagramKind:
 
 
 def _machines(analysis: Analysis, path: str) -> dict[str, str]:
-    """The files of the machines of a system, or of a single machine, by the names of the machines."""
-    return {
+    """The files of the machines of a system, or of a single machine, by the names of the machines and of their
+    instances."""
+    named = {
         machine.name.value: file
         for file in dict.fromkeys((path, *analysis.files_of(path)))
         if (machine := analysis.machine(file)) and machine.name
     }
+    system = analysis.system(path)
+    return named | {a.name: a.path for a in (system.automata if system else ()) if a.path and a.instance is None}
 
 
 def _unknown_machine(name: str, machines: Mapping[str, str], path: str) -> str:

@@ -11,19 +11,20 @@ from roaml.api.jani_files import PathError
 from roaml.jani.model import Model
 from roaml.jani.properties import Property
 from roaml.jani.selection import select
-from roaml.lower import lower
 from roaml.model.kinds import FileKind
 from roaml.model.parameters import NO_OVERRIDES, Overrides
 from roaml.project.analysis import Analysis
 from roaml.project.configuration import find_settings
+from roaml.project.paths import slashed
 from roaml.project.settings import Settings, ament_prefixes
 from roaml.project.source_map import SourceMap
 from roaml.project.source_map import source_map as _source_map
-from roaml.project.translation import observed_properties_of, program_of, properties_of
+from roaml.project.translation import network_of, observed_properties_of, properties_of
 from roaml.project.workspace import Snapshot
 from roaml.record import Record, replace
 from roaml.scxml.model import Network
 from roaml.scxml.observed import ObservedProperty
+from roaml.suggest import close_names, did_you_mean, listing
 from roaml.to_jani import translate
 
 
@@ -36,6 +37,10 @@ class ModelError(ValueError):
         more = f", and {len(result.diagnostics) - 1} more" if len(result.diagnostics) > 1 else ""
         super().__init__(f"{first.path}: {first.message}{more}")
         self.result = result
+
+
+class ParameterError(ValueError):
+    """Raised if a value is given for a parameter that no file of a system declares."""
 
 
 class LoadedSystem(Record, frozen=True):
@@ -58,6 +63,12 @@ class LoadedSystem(Record, frozen=True):
         """All files of the system, the system file first."""
         return self.analysis.files_of(self.path)
 
+    @property
+    def parameters(self) -> dict[str, str]:
+        """Name of a parameter of the system -> the text of its value (docs/spec/parameters.md#values)."""
+        expanded = self.analysis.expanded(self.path)
+        return {} if expanded is None else {name: p.text for name, p in expanded.expansion.parameters.items()}
+
 
 def load(
     path: str,
@@ -75,6 +86,7 @@ def load(
 
     Raises:
         PathError: the path cannot be read, or is not a system file.
+        ParameterError: a value in `overrides` is for a parameter that the system does not declare.
         ModelError: the system has errors.
     """
     if settings is None:
@@ -92,20 +104,51 @@ def loaded(snapshot: Snapshot, path: str) -> LoadedSystem:
 
     Raises:
         PathError: the path is not a system file.
+        ParameterError: a value of the settings is for a parameter that the system does not declare.
         ModelError: the system has errors.
     """
     analysis = snapshot.analysis
     if analysis.kind(path) is not FileKind.SYSTEM or analysis.system(path) is None:
         raise PathError(f"{path}: not a system file")
+    if unknown := unknown_parameter(analysis, [path], snapshot.checker.settings.overrides):
+        raise ParameterError(unknown)
     errors = snapshot.checker.errors(path)
     if errors:
         raise ModelError(CheckResult(errors, analysis.files_of(path), (), snapshot))
     return LoadedSystem(path, properties_of(analysis, path), analysis, observed_properties_of(analysis, path))
 
 
+def unknown_parameter(analysis: Analysis, systems: Iterable[str], overrides: Overrides) -> str:
+    """A sentence about the first value in `overrides` for a parameter that none of the systems declares; "" if there is
+    none."""
+    expanded = [analysis.expanded(system) for system in systems]
+    names = {name for part in expanded if part is not None for name in part.expansion.settable}
+    for name, _ in overrides.values:
+        if name not in names:
+            close = close_names(name, names)
+            known = did_you_mean(close) if close else f"; it declares {listing(sorted(names))}" if names else ""
+            return f"the system declares no parameter `{name}`{known}"
+    return ""
+
+
 def to_scxml(system: LoadedSystem) -> Network:
     """The system as plain SCXML: flat state machines that exchange events. `roaml.scxml.write` creates the files."""
-    return lower(program_of(system.analysis, system.path))
+    return network_of(system.analysis, system.path)
+
+
+def to_plain(system: LoadedSystem) -> dict[str, str]:
+    """The files of a system without parameters and instances (docs/spec/parameters.md#expansion), which AS2FM reads.
+
+    Returns:
+        The path of each file, relative to the folder that contains all of them, with `/` -> its text. The system file
+        is the first one.
+    """
+    analysis = system.analysis
+    expanded = analysis.expanded(system.path)
+    plain = analysis if expanded is None else expanded.analysis
+    texts = {path: source.text for path in plain.files_of(system.path) if (source := plain.source(path)) is not None}
+    folder = os.path.commonpath([os.path.dirname(path) for path in texts])
+    return {slashed(os.path.relpath(path, folder)): text for path, text in texts.items()}
 
 
 def to_jani(system: LoadedSystem, properties: Iterable[str] | None = None, *, has_activity: bool = False) -> Model:

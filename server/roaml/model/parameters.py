@@ -53,6 +53,8 @@ class Overrides(Record, frozen=True):
     Attributes:
         default_reaction_time: the reaction time of systems that state none.
         default_semantics: the semantics of systems that state none.
+        values: names and texts of values for parameters that the models declare (docs/spec/parameters.md#values); of
+            equal names, the last one is used.
     """
 
     max_time: int | None = None
@@ -61,6 +63,7 @@ class Overrides(Record, frozen=True):
     default_reaction_time: ReactionTime = ANY_TIME
     semantics: TreeSemantics | None = None
     default_semantics: TreeSemantics | None = None
+    values: tuple[tuple[str, str], ...] = ()
 
     def applied(self, parameters: Parameters) -> Parameters:
         max_time = parameters.max_time if self.max_time is None else self.max_time

@@ -32,7 +32,7 @@ from roaml.model.machine import Dialect, Machine
 from roaml.model.size import Limits
 from roaml.model.system import System
 from roaml.model.tree import Include
-from roaml.project.analysis import NO_STRUCTS, Analysis
+from roaml.project.analysis import NO_STRUCTS, Analysis, Expanded
 from roaml.project.configuration import missing_folders
 from roaml.project.edits import laid_out
 from roaml.project.files import MAX_CHARACTERS
@@ -146,12 +146,49 @@ class RuleRunner:
             return ()
         if len(source.text) > MAX_CHARACTERS:
             return (_too_large(source),)
+        if (expanded := self._expanded_findings(path, system)) is not None:
+            return expanded
         try:
             run = _Run(self.analysis, path, source, self.analysis.kind_in(path, system), system, self.settings.limits)
             return self.analysis.memo.get("findings", (path, system), run.key(), run.findings)
         except Exception as error:  # an internal error in one file must not prevent the check of the others
             log.exception("%s cannot be analysed", path)
             return (internal_error("the analysis of this file", error),)
+
+    def _expanded_findings(self, path: str, system: str | None) -> tuple[Finding, ...] | None:
+        """The findings in the expanded texts of a file, at their places in the file, after those about its parameters
+        and instances; `None` if nothing is expanded.
+
+        A finding at a place that cannot be expanded is a consequence, and is left out. So is a finding that is not an
+        error and that depends on the values of parameters: it does not occur with other values.
+        """
+        expanded = self._expanded(path, system, varied=False)
+        if expanded is None:
+            return None
+        own = expanded.expansion.findings.get(path, ())
+        broken = [finding.span for finding in own if _own_severity(finding) is Severity.ERROR]
+        findings = [
+            finding
+            for finding in self._mapped_findings(expanded, path, system)
+            if not any(span.start < finding.span.end and finding.span.start < span.end for span in broken)
+        ]
+        if path in expanded.expansion.variants and any(_own_severity(f) < Severity.ERROR for f in findings):
+            varied = self._expanded(path, system, varied=True)
+            assert varied is not None
+            always = {(f.code, f.span) for f in self._mapped_findings(varied, path, system)}
+            findings = [f for f in findings if _own_severity(f) is Severity.ERROR or (f.code, f.span) in always]
+        return tuple(dict.fromkeys((*own, *findings)))
+
+    def _expanded(self, path: str, system: str | None, *, varied: bool) -> Expanded | None:
+        if system is not None:
+            return self.analysis.expanded(system, varied=varied)
+        return self.analysis.expanded_file(path, varied=varied)
+
+    def _mapped_findings(self, expanded: Expanded, path: str, system: str | None) -> Iterator[Finding]:
+        runner = RuleRunner(expanded.analysis, self.settings)
+        for variant in expanded.expansion.paths(path):
+            for finding in runner.findings(variant, system):
+                yield expanded.finding(variant, finding)
 
     def _is_selected(self, finding: Finding) -> bool:
         code, settings = finding.code, self.settings

@@ -80,6 +80,10 @@ class Files:
         paths |= {p for p in self.open_files if os.path.dirname(p) == folder and p.endswith(extension)}
         return tuple(sorted(paths - {path}))
 
+    def with_texts(self, texts: Mapping[str, SourceFile]) -> Files:
+        """These files, in which some have other texts."""
+        return Files(self._disk, {**self.open_files, **texts})
+
     def text(self, path: str) -> SourceFile | None:
         source = self.read(path)
         return source if isinstance(source, SourceFile) else None

@@ -31,6 +31,7 @@ class Memo:
     def __init__(self, checkpoint: Callable[[], None] = go_on) -> None:
         self.checkpoint = checkpoint
         self._slots: dict[tuple[str, Hashable], tuple[Hashable, Any]] = {}
+        self._inner: dict[str, Memo] = {}
 
     def get(self, computation: str, subject: Hashable, key: Hashable, compute: Callable[[], T]) -> T:
         """The result of `computation` for `subject`. If `key` differs from the key of the stored result, `compute` is
@@ -45,11 +46,19 @@ class Memo:
         self._slots[slot] = (key, result)
         return result
 
+    def inner(self, name: str) -> Memo:
+        """The cache named `name` inside of this cache, for the analysis of other texts under the same paths."""
+        if name not in self._inner:
+            self._inner[name] = Memo(self.checkpoint)
+        return self._inner[name]
+
     def copy(self) -> Memo:
         """A copy of the cache. New results of the copy are not added to this cache."""
         other = Memo()
         other._slots = dict(self._slots)
+        other._inner = {name: inner.copy() for name, inner in self._inner.items()}
         return other
 
     def clear(self) -> None:
         self._slots.clear()
+        self._inner.clear()

@@ -50,6 +50,7 @@ class Settings(Record, frozen=True):
         reaction_time: the reaction time of systems that state none.
         limits: the maximum size of a system that is translated.
         overrides: parameters that replace those in system files; they are not read from a configuration.
+        parameters: names and texts of values for parameters that models declare (docs/spec/parameters.md#values).
         trees: the settings for trees.
         origin: the path of the configuration file; "" if there is none.
     """
@@ -67,6 +68,7 @@ class Settings(Record, frozen=True):
     reaction_time: ReactionTime = ANY_TIME
     limits: Limits = DEFAULT_LIMITS
     overrides: Overrides = NO_OVERRIDES
+    parameters: tuple[tuple[str, str], ...] = ()
     trees: TreeSettings = NEWEST
     origin: str = ""
 
@@ -218,6 +220,23 @@ def _severities(path: Path, value: Any, problems: list[SettingProblem]) -> dict[
     return severities
 
 
+def _parameters(path: Path, value: Any, problems: list[SettingProblem]) -> tuple[tuple[str, str], ...] | None:
+    """Values for parameters of models: `capacity = 80`, and `[parameters.robot_1]` for those of an instance."""
+    if not isinstance(value, dict):
+        problems.append(SettingProblem(path, f"`{path[0]}` must be a table of names and values"))
+        return None
+    read: list[tuple[str, str]] = []
+    for name, content in value.items():
+        if isinstance(content, dict) and len(path) == 1:
+            read += ((f"{name}.{key}", text) for key, text in _parameters((*path, name), content, problems) or ())
+        elif isinstance(content, (bool, int, float, str)):
+            read.append((name, str(content).lower() if isinstance(content, bool) else str(content)))
+        else:
+            message = f"the parameter `{name}` must be a boolean, a number or a string"
+            problems.append(SettingProblem((*path, name), message))
+    return tuple(read)
+
+
 def _boolean(path: Path, value: Any, problems: list[SettingProblem]) -> bool | None:
     if isinstance(value, bool):
         return value
@@ -323,6 +342,7 @@ _KEYS: dict[str, _Reader] = {
     "severity": _severities,
     "warnings-as-errors": _boolean,
     "verify": _verify,
+    "parameters": _parameters,
     "reaction-time": _reaction_time,
     "max-cells": _count,
     "max-parts": _count,

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.comparison import read_comparison
 from roaml.jani.properties import Property
-from roaml.lower import TranslatableSystem
+from roaml.lower import TranslatableSystem, lower
 from roaml.lower.size import size_of
 from roaml.model.expand import nodes_of
 from roaml.model.kinds import FileKind
@@ -19,19 +19,25 @@ from roaml.model.size import Size
 from roaml.model.system import System
 from roaml.model.tree import TreeNode
 from roaml.project.analysis import Analysis
+from roaml.project.placed import placed
 from roaml.record import replace
+from roaml.scxml.model import Network
 from roaml.scxml.observed import ObservedPort, ObservedProperty, ObservedVariable
 from roaml.text import Location
 
 
 def properties_of(analysis: Analysis, path: str) -> tuple[Property, ...]:
     """The properties in the JANI property files that a system lists, in order."""
+    if (expanded := analysis.expanded(path)) is not None:
+        return placed(properties_of(expanded.analysis, path), expanded.location)
     files = (f.path for f in analysis.listed(path) if f.required_kind is FileKind.PROPERTIES and f.usable)
     return tuple(declared for file in files for declared in analysis.properties(file)[0])
 
 
 def observed_properties_of(analysis: Analysis, path: str) -> tuple[ObservedProperty, ...]:
     """The guarantees in the XML property files that a system lists, in order, each with the assumptions of its file."""
+    if (expanded := analysis.expanded(path)) is not None:
+        return placed(observed_properties_of(expanded.analysis, path), expanded.location)
     files = (f.path for f in analysis.listed(path) if f.required_kind is FileKind.XML_PROPERTIES and f.usable)
     linked = (analysis.linked_properties(file, path) for file in files)
     return tuple(guarantee for file in linked if file is not None for guarantee in _guarantees(file))
@@ -64,6 +70,13 @@ def _observed_variable(variable: LinkedVariable) -> ObservedVariable:
     initial = None if variable.kind is PortVariableKind.EVENT else variable.written.initial
     tree = None if initial is None else initial.tree
     return ObservedVariable(variable.id, variable.kind.value, variable.type, variable.parameter, tree)
+
+
+def network_of(analysis: Analysis, path: str) -> Network:
+    """The system in the file `path` as plain SCXML. The system must have no errors."""
+    if (expanded := analysis.expanded(path)) is not None:
+        return placed(network_of(expanded.analysis, path), expanded.location)
+    return lower(program_of(analysis, path))
 
 
 def program_of(analysis: Analysis, path: str) -> TranslatableSystem:

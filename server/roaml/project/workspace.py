@@ -165,6 +165,7 @@ class Workspace:
             settings.overrides,
             default_reaction_time=settings.reaction_time,
             default_semantics=settings.trees.semantics,
+            values=(*settings.parameters, *settings.overrides.values),
         )
         analysis = Analysis(files, registry, memo, systems, overrides, settings.trees, listed)
         return Snapshot(analysis, RuleRunner(analysis, self.settings), self.roots, self._listed, new, again)

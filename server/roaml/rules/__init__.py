@@ -2,7 +2,8 @@
 """All rules, grouped by subject. One rule is one module with one document beside it; both are named like the code.
 
 The rules whose findings come from parsers are in one module, `parser_rules`, and those whose findings come from linking
-properties in `property_rules`; their documents are in the groups as well. Importing a module below registers its rule.
+properties in `property_rules`, and those whose findings come from the expansion of parameters and instances in
+`expansion_rules`; their documents are in the groups as well. Importing a module below registers its rule.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ import re
 from pathlib import Path
 from types import ModuleType
 
-from roaml.rules import parser_rules, property_rules
+from roaml.rules import expansion_rules, parser_rules, property_rules
 from roaml.rules.answers import (
     answer_needs_time,
     cancel_without_goal,
@@ -215,6 +216,7 @@ GROUPS = (
     "interfaces",
     "json_syntax",
     "lone_trees",
+    "parameters",
     "properties",
     "states",
     "systems",
@@ -228,7 +230,13 @@ _MODULES = [value for value in globals().values() if isinstance(value, ModuleTyp
 
 RULES: tuple[Rule, ...] = tuple(
     sorted(
-        (*(module.RULE for module in _MODULES), *parser_rules.RULES, *property_rules.RULES), key=lambda rule: rule.code
+        (
+            *(module.RULE for module in _MODULES),
+            *expansion_rules.RULES,
+            *parser_rules.RULES,
+            *property_rules.RULES,
+        ),
+        key=lambda rule: rule.code,
     )
 )
 """All rules, sorted by code: those of the modules that are imported above."""

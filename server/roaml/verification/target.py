@@ -38,6 +38,7 @@ class VerificationTarget(Record, frozen=True):
         clock: the variables with the seconds and nanoseconds of the time; `None` if the model has none.
         assumptions: the name of a property with assumptions -> the property which states that these hold.
         expectations: the expected values of the properties, from their files and from the configuration.
+        parameters: name of a parameter of the system -> the text of its value (docs/spec/parameters.md).
     """
 
     path: str
@@ -47,6 +48,7 @@ class VerificationTarget(Record, frozen=True):
     clock: tuple[str, str] | None
     assumptions: Mapping[str, Property] = field(default_factory=dict)
     expectations: tuple[Expectation, ...] = ()
+    parameters: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def properties(self) -> tuple[Property, ...]:

@@ -33,6 +33,7 @@ from roaml.expr.zero import zero_text
 from roaml.ide.completion import property_files
 from roaml.ide.completion.compared_values import compared_values
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
+from roaml.ide.completion.model_parameters import parameters_in_scope
 from roaml.ide.completion.request import CompletionSubject, Request
 from roaml.ide.names.occurrence import variable
 from roaml.model.syntax import PortRead
@@ -137,6 +138,7 @@ def in_expression(
         items += property_files.compared_values(request, start)
     elif request.machine is not None:
         items += compared_values(request, start, scope)
+    items += parameters_in_scope(request, variables)
     items += [
         CompletionItem(
             name,

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from roaml.diagnostics import Symbol
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank
+from roaml.ide.completion.model_parameters import parameters_of_input
 from roaml.ide.completion.parameters import parameter_names
 from roaml.ide.completion.request import CompletionSubject, Request
 from roaml.ide.describe import forest as describe_forest
@@ -269,6 +270,7 @@ def _some(names: Iterable[str]) -> str:
 
 _PROVIDERS: Mapping[SymbolKind, Callable[[Request, CompletionSubject], Iterator[CompletionItem]]] = {
     SymbolKind.STATE: _states,
+    SymbolKind.MODEL_PARAMETER: parameters_of_input,
     SymbolKind.PORT: _ports,
     SymbolKind.EVENT: _events_received,
     SymbolKind.TOPIC: _of_kind(SymbolKind.TOPIC),

@@ -11,6 +11,7 @@ from roaml.ide.completion import property_files
 from roaml.ide.completion.expressions import in_expression, initial_values
 from roaml.ide.completion.fields import field_names
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank
+from roaml.ide.completion.model_parameters import in_substitution, parameters_in_scope
 from roaml.ide.completion.names import referred, undefined
 from roaml.ide.completion.paths import paths
 from roaml.ide.completion.ports import port_values
@@ -34,6 +35,8 @@ def in_attribute(
     """The span that the items replace, and the possible values of the attribute `name`; `None` if nothing is known
     about the attribute. `span` is the span of its current value."""
     known = subject.type.attributes.get(name)
+    if (substitution := in_substitution(request, span)) is not None:
+        return substitution
     if property_files.is_property_file(request) and (subject.type.name, name) == ("property", "expr"):
         in_formula = property_files.in_formula(request, span)
         return in_formula or in_expression(request, subject, name, property_files.formula_start(request, span))
@@ -94,18 +97,19 @@ def _of_value(
             if property_files.is_property_file(request):
                 yield from property_files.port_types(request, subject)
             yield from ros_types(request, value_type)
-        case ValueRole.CONSTANT if "bound" in name:
-            yield from _bounds(request, subject)
         case ValueRole.CONSTANT:
-            yield from _constants(request, subject)
+            yield from _bounds(request, subject) if "bound" in name else _constants(request, subject)
+            yield from parameters_in_scope(request)
         case ValueRole.STATUS:
             yield from (CompletionItem(name, ItemKind.VALUE) for name in STATUSES)
         case ValueRole.CHILD_INDEX:
             yield from _children(request)
         case ValueRole.PATH:
             yield from paths(request, subject)
-        case ValueRole.NUMBER if subject.type.name == "target":
-            yield from _remaining_probability(subject)
+        case ValueRole.NUMBER:
+            if subject.type.name == "target":
+                yield from _remaining_probability(subject)
+            yield from parameters_in_scope(request)
 
 
 # ------------------------------------------------------------------------ types

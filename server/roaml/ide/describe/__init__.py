@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from roaml.diagnostics import Symbol
 from roaml.ide.describe import machine as describe_machine
+from roaml.ide.describe import parameters as describe_parameters
 from roaml.ide.describe import ros as describe_ros
 from roaml.ide.describe import system as describe_system
 from roaml.ide.describe import xml_property_file as describe_xml_properties
@@ -35,6 +36,8 @@ def describe(analysis: Analysis, symbol: Symbol, written: str = "") -> str:
             return describe_machine.machine(analysis, symbol)
         case SymbolKind.EVENT:
             return describe_system.event(analysis, symbol)
+        case SymbolKind.MODEL_PARAMETER:
+            return describe_parameters.parameter(analysis, symbol)
         case SymbolKind.PARAMETER:
             return describe_system.parameter(analysis, symbol)
         case SymbolKind.TOPIC | SymbolKind.SERVICE | SymbolKind.ACTION:

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from roaml.diagnostics import Symbol
 from roaml.ide.names.frames import Piece, Trees
 from roaml.ide.names.in_machine import in_machine
+from roaml.ide.names.in_parameters import in_parameters
 from roaml.ide.names.in_properties import in_properties, names
 from roaml.ide.names.in_property_file import in_property_file
 from roaml.ide.names.in_structs import in_json, in_xml
@@ -34,7 +35,8 @@ def uses(analysis: Analysis, path: str, system: str | None) -> Uses:
     source = analysis.source(path)
     if source is None:
         return _index(())
-    key: tuple[object, ...] = (source.text, analysis.structs(system))
+    expanded = analysis.expanded(system) if system else analysis.expanded_file(path)
+    key: tuple[object, ...] = (source.text, analysis.structs(system), expanded and expanded.expansion)
     if analysis.kind_in(path, system) is FileKind.MACHINE and analysis.machine(path) is not None:
         key = (*key, analysis.typed_in(path, system))  # contains everything of the system on which the uses depend
     else:
@@ -66,6 +68,7 @@ def _index(occurrences: Iterable[Occurrence]) -> Uses:
 
 
 def _of(analysis: Analysis, path: str, system: str | None) -> Iterator[Occurrence]:
+    yield from in_parameters(analysis, path, system)
     source, owner = analysis.source(path), system or path
     kind = analysis.kind_in(path, system)
     assert source is not None

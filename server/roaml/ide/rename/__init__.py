@@ -61,7 +61,7 @@ def prepare(analysis: Analysis, path: str, offset: int) -> Prepared | RenameRefu
     group, source = symbol_group_at(analysis, path, offset), analysis.source(path)
     if group is None or source is None:
         return RenameRefusal("there is no name at this position")
-    reason = _fixed(group)
+    reason = _fixed(group) or _of_instances(analysis, group)
     if reason:
         return RenameRefusal(reason)
     span = occurrences_at(analysis, path, offset)[0].span
@@ -76,7 +76,7 @@ def rename(analysis: Analysis, path: str, offset: int, new: str) -> Renaming | R
     new = new.strip()
     if SymbolKind.TOPIC in group.kinds:
         new = new.removeprefix("/")
-    reason = _fixed(group) or problem(analysis, group, new)
+    reason = _fixed(group) or _of_instances(analysis, group) or problem(analysis, group, new)
     if reason:
         return RenameRefusal(reason)
     edits: dict[str, list[TextEdit]] = {}
@@ -97,6 +97,29 @@ def _spelled(new: str, use: SymbolUse) -> str:
             return re.sub(r"\W", "_", new, flags=re.ASCII)
         case Form.FLAT:
             return new.replace(".", "__")
+
+
+_OF_INTERFACES = (SymbolKind.TOPIC, SymbolKind.SERVICE, SymbolKind.ACTION, SymbolKind.EVENT)
+
+
+def _of_instances(analysis: Analysis, group: SymbolGroup) -> str:
+    """Why a name cannot be renamed because parameters are a part of it, or because instances have other names for the
+    interface or event; "" if it can."""
+    for use in group.uses:
+        symbol = use.occurrence.symbol
+        if "$(" in symbol.name:
+            return f"a parameter is a part of `{symbol.name}`"
+        if symbol.kind not in _OF_INTERFACES:
+            continue
+        for system in analysis.systems_of(use.path):
+            expanded = analysis.expanded(system) if system else None
+            names = expanded.expansion.renamed.get(use.path, ()) if expanded else ()
+            if symbol.name.lstrip("/") in {name.lstrip("/") for name in names}:
+                return (
+                    f"instances of its machine have other names for `{symbol.name}` (`namespace` or `<remap>` in the "
+                    "system file), which would not be changed"
+                )
+    return ""
 
 
 def _fixed(group: SymbolGroup) -> str:

@@ -7,7 +7,8 @@
   its files.
 - An analysis reports no findings; `roaml.project.checking` runs the rules.
 - The work is divided by subject. A module uses only those before it: `sources`, `interfaces`, `tree_files`, `systems`,
-  `families`, `machines`, `gaps`, `linking`. Other packages use only `Analysis`.
+  `families`, `expanding`, `machines`, `gaps`, `linking`. Other packages use only `Analysis`.
+- A system with parameters or instances is expanded to other texts, which have an analysis of their own (`expanded`).
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from collections.abc import Iterable, Mapping
 from roaml.forest.settings import NEWEST, TreeSettings
 from roaml.interfaces.registry import Registry
 from roaml.model.parameters import NO_OVERRIDES, Overrides
+from roaml.project.analysis.expanding import ExpandedFiles, Expanding
 from roaml.project.analysis.families import Families
 from roaml.project.analysis.gaps import Gaps
 from roaml.project.analysis.interfaces import Interfaces
@@ -25,10 +27,11 @@ from roaml.project.analysis.machines import NO_STRUCTS, Machines, Structs
 from roaml.project.analysis.sources import SourceFiles
 from roaml.project.analysis.systems import Systems
 from roaml.project.analysis.tree_files import TreeFiles
+from roaml.project.expanded import Expanded
 from roaml.project.files import Files
 from roaml.project.memo import Memo
 
-__all__ = ["NO_STRUCTS", "Analysis", "Structs"]
+__all__ = ["NO_STRUCTS", "Analysis", "Expanded", "Structs"]
 
 
 class Analysis:
@@ -42,6 +45,7 @@ class Analysis:
         overrides: parameters that replace those in system files.
         trees: the settings for trees that are not in a system.
         listed: the paths of the files in the workspace.
+        expands: whether parameters and instances are expanded; false for files that are expanded already.
     """
 
     def __init__(
@@ -53,6 +57,8 @@ class Analysis:
         overrides: Overrides = NO_OVERRIDES,
         trees: TreeSettings = NEWEST,
         listed: Iterable[str] = (),
+        *,
+        expands: bool = True,
     ) -> None:
         self.files = files
         self.registry = registry
@@ -65,12 +71,40 @@ class Analysis:
         tree_files = TreeFiles(sources)
         self._systems = Systems(sources, tree_files, systems)
         families = Families(sources, tree_files, self._systems, trees, listed)
+        self._expanding = Expanding(sources, self._systems, overrides.values) if expands else None
+        self._expanded: dict[tuple[str, str, bool], Expanded | None] = {}
         machines = Machines(sources, interfaces, self._systems)
         gaps = Gaps(sources, tree_files, self._systems, machines)
-        linking = Linking(sources, interfaces, self._systems, machines, gaps)
+        linking = Linking(sources, interfaces, self._systems, self.expanded, machines, gaps)
         self._open_files(sources, interfaces)
         self._open_trees(tree_files, families)
         self._open_systems(self._systems, machines, gaps, linking)
+
+    def expanded(self, system: str, *, varied: bool = False) -> Expanded | None:
+        """A system whose parameters and instances are expanded; `None` if it uses neither, or cannot be read. If
+        `varied`, its parameters have other values than the given ones, which they could have as well."""
+        key = ("system", system, varied)
+        if key not in self._expanded:
+            files = self._expanding.system(system, varied=varied) if self._expanding else None
+            self._expanded[key] = self._analysed(files)
+        return self._expanded[key]
+
+    def expanded_file(self, path: str, *, varied: bool = False) -> Expanded | None:
+        """A machine or property file without a system whose own parameters are expanded; `None` if it declares none.
+        For `varied`, see `expanded`."""
+        key = ("file", path, varied)
+        if key not in self._expanded:
+            files = self._expanding.file(path, varied=varied) if self._expanding else None
+            self._expanded[key] = self._analysed(files)
+        return self._expanded[key]
+
+    def _analysed(self, expanded: ExpandedFiles | None) -> Expanded | None:
+        if expanded is None:
+            return None
+        files = expanded.files
+        registry, settings = self.registry.reading(files.text), self.tree_settings
+        inner = Analysis(files, registry, expanded.memo, expanded.systems, self.overrides, settings, expands=False)
+        return Expanded(inner, expanded.expansion)
 
     def _open_files(self, sources: SourceFiles, interfaces: Interfaces) -> None:
         self.source = sources.source

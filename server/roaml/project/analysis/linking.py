@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Protocol
 
 from roaml.expr.types import Struct, Type
 from roaml.jani.properties import identifiers
@@ -32,15 +32,39 @@ if TYPE_CHECKING:
     from roaml.lower.library_tree import LibraryTree
 
 
+class ExpandedSystem(Protocol):
+    """An expanded system (docs/spec/parameters.md#expansion)."""
+
+    def linked(self, path: str) -> System | None:
+        """The linked system of the expanded texts."""
+
+    def system(self, path: str) -> System | None:
+        """The linked system, in which each automaton has the path of its file."""
+
+    def library_tree(self, path: str) -> LibraryTree | None:
+        """The translated tree."""
+
+
 class Linking:
-    """Links systems. A linked system is cached by the outlines of its files."""
+    """Links systems. A linked system is cached by the outlines of its files.
+
+    Args:
+        expanded: returns the expanded system; `None` if a system uses neither parameters nor instances.
+    """
 
     def __init__(
-        self, sources: SourceFiles, interfaces: Interfaces, systems: Systems, machines: Machines, gaps: Gaps
+        self,
+        sources: SourceFiles,
+        interfaces: Interfaces,
+        systems: Systems,
+        expanded: Callable[[str], ExpandedSystem | None],
+        machines: Machines,
+        gaps: Gaps,
     ) -> None:
         self._sources = sources
         self._interfaces = interfaces
         self._systems = systems
+        self._expanded = expanded
         self._machines = machines
         self._gaps = gaps
         self._linked: dict[str, System | None] = {}
@@ -55,6 +79,9 @@ class Linking:
         file = self._sources.system_file(path)
         if file is None:
             return None
+        if (expanded := self._expanded(path)) is not None:
+            linked = expanded.linked(path)
+            return self._sources.memo.get("expanded system", path, linked, lambda: expanded.system(path))
         listed = self._systems.listed(path)
         structs = self._machines.structs(path)
         trees = self._systems.tree_outlines(path)
@@ -111,6 +138,8 @@ class Linking:
         system = self.system(path)
         if system is None or not system.is_library_tree:
             return None
+        if (expanded := self._expanded(path)) is not None:
+            return expanded.library_tree(path)
         from roaml.lower.library_tree import LibraryTreeBuilder  # noqa: PLC0415 - most trees do not need it
 
         files = self._tree_files(system)

@@ -47,7 +47,8 @@ def _is_current(context: FileContext, name: str) -> bool:
     root = context.document.root if context.document else None
     if root is not None and name in context.grammar.roots:
         return name == root.name
-    return not context.grammar.elements[name].use
+    element = context.grammar.elements.get(name)  # `None` for an element that is declared inside others
+    return element is None or not element.use
 
 
 def _group(grammar: Grammar, name: str) -> str:

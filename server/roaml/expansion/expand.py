@@ -1,0 +1,466 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Expands the files of a system (docs/spec/parameters.md#expansion)."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Mapping
+from typing import NamedTuple, Protocol
+
+from roaml.diagnostics import Finding, Fix, Severity, Symbol, Tag
+from roaml.expansion.declarations import (
+    PARAM,
+    PARAMETER,
+    SECTIONS,
+    SETTING,
+    Declared,
+    Given,
+    declaration_elements,
+    declarations,
+    values,
+)
+from roaml.expansion.instances import (
+    REMAP,
+    ListedInstance,
+    instance_edits,
+    instances,
+    removed,
+    removed_attribute,
+)
+from roaml.expansion.problems import ExpansionProblem, Problems
+from roaml.expansion.text import ExpandedText, expanded_text
+from roaml.expansion.uses import VARIABLE, ParameterUses, uses_in
+from roaml.expansion.values import ParameterValue, Scope
+from roaml.expr.types import ScalarKind
+from roaml.jani.properties import Property, identifiers
+from roaml.language import SYSTEM
+from roaml.model.kinds import GRAMMARS, FileKind
+from roaml.record import Record, field
+from roaml.roles import SymbolKind
+from roaml.suggest import close_names, did_you_mean, listing
+from roaml.text import Span, TextEdit
+from roaml.xml_syntax import Document
+
+_STRING = ScalarKind.STRING
+
+
+class UserFiles(Protocol):
+    """The files of the user."""
+
+    def document(self, path: str) -> Document | None:
+        """The XML document in a file; `None` if it cannot be read."""
+
+    def text(self, path: str) -> str | None:
+        """The text of a file; `None` if it cannot be read."""
+
+    def kind(self, path: str) -> FileKind:
+        """The kind of a file."""
+
+    def properties(self, path: str) -> tuple[Property, ...]:
+        """The properties in a file of JANI properties."""
+
+
+class NamedPlace(NamedTuple):
+    """A place that defines or uses the name of a parameter or instance."""
+
+    symbol: Symbol
+    span: Span
+    defines: bool
+
+
+class SystemExpansion(Record, frozen=True, eq=False):
+    """An expanded system.
+
+    Attributes:
+        texts: path -> expanded text, for each file that the expansion changes; several for a file with instances.
+        variants: path of a file of the user -> the paths under which it is analysed; only for files in `texts`.
+        parameters: the parameters of the system with their values.
+        declared: the declarations of the parameters of the system.
+        settable: the names that values can be given for: those of the parameters of the system, and
+            `INSTANCE.PARAMETER` for those of instances.
+        findings: path of a file of the user -> the problems of its parameters and instances.
+        names: path of a file of the user -> the names of parameters and instances in it.
+        renamed: path of a file of the user -> the names of interfaces and events in it, as written, that its instances
+            call otherwise.
+    """
+
+    system: str
+    texts: Mapping[str, ExpandedText]
+    variants: Mapping[str, tuple[str, ...]]
+    parameters: Scope
+    declared: tuple[Declared, ...]
+    settable: frozenset[str]
+    findings: Mapping[str, tuple[Finding, ...]] = field(default_factory=dict)
+    names: Mapping[str, tuple[NamedPlace, ...]] = field(default_factory=dict)
+    renamed: Mapping[str, frozenset[str]] = field(default_factory=dict)
+
+    def source(self, path: str) -> str:
+        """The path of the file of the user that is analysed under `path`."""
+        return self.texts[path].source if path in self.texts else path
+
+    def paths(self, source: str) -> tuple[str, ...]:
+        """The paths under which a file of the user is analysed."""
+        return self.variants.get(source, (source,))
+
+
+def needs_expansion(system: Document, texts: Iterator[str]) -> bool:
+    """Whether a system uses parameters or instances.
+
+    Args:
+        system: the system file.
+        texts: the texts of the other files of the system.
+    """
+    if next(declaration_elements(system), None) is not None or "$(var" in system.text:
+        return True
+    if any(not instance.is_plain for instance in instances(system, Problems())):
+        return True
+    return any(f"<{PARAMETER}" in text or "$(var" in text for text in texts)
+
+
+def expand_file(path: str, sources: UserFiles, *, varied: bool = False) -> SystemExpansion:
+    """Expand a file that is not in a system: its parameters have their own values. For `varied`, see `expand`."""
+    return _Expander("", (path,), sources, (), lambda _, text: text, varied=varied).of_file(path)
+
+
+def expand(
+    path: str,
+    others: tuple[str, ...],
+    sources: UserFiles,
+    given: tuple[tuple[str, str], ...],
+    resolve: Callable[[str, str], str],
+    *,
+    varied: bool = False,
+) -> SystemExpansion:
+    """Expand a system.
+
+    Args:
+        path: the system file.
+        others: the paths of all other files of the system.
+        given: names and texts of values that replace those in the files; the last one of equal names is used.
+        resolve: returns the path that a file names: (path of the file, text).
+        varied: whether the parameters have other values than the given ones, which they could have as well.
+    """
+    return _Expander(path, others, sources, given, resolve, varied=varied).expansion()
+
+
+class _Expander:
+    def __init__(
+        self,
+        path: str,
+        others: tuple[str, ...],
+        sources: UserFiles,
+        given: tuple[tuple[str, str], ...],
+        resolve: Callable[[str, str], str],
+        *,
+        varied: bool,
+    ) -> None:
+        self.path = path
+        self.others = others
+        self.sources = sources
+        self.given = dict(given)
+        self.resolve = resolve
+        self.varied = varied
+        self.problems: dict[str, Problems] = {}
+        self.texts: dict[str, ExpandedText] = {}
+        self.used: set[str] = set()
+        self.settable: set[str] = set()
+        self.taken = {path, *others}
+        self.has_instances = False
+        self.names: dict[str, dict[NamedPlace, None]] = {}
+        self.renamed: dict[str, set[str]] = {}
+
+    def problems_of(self, path: str) -> Problems:
+        return self.problems.setdefault(path, Problems())
+
+    def note(self, path: str, owner: str, name: str, span: Span, *, defines: bool = False) -> None:
+        """Record a use of a parameter in the file `path`. `owner` is the file that declares it."""
+        place = NamedPlace(Symbol(owner, SymbolKind.MODEL_PARAMETER, name), span, defines)
+        self.names.setdefault(path, {})[place] = None
+
+    def note_declarations(self, path: str, document: Document, declared: tuple[Declared, ...], scope: Scope) -> None:
+        own = {parameter.name.value for parameter in declared}
+        for parameter in declared:
+            self.note(path, path, parameter.name.value, parameter.name.span, defines=True)
+            for attribute in (parameter.value, parameter.least, parameter.most):
+                if attribute is not None and parameter.type != "string":
+                    for use in uses_in(document, attribute, {*scope, *own}):
+                        self.note(path, path if use.name in own else self.path, use.name, use.span)
+                        self.used.add(use.name)
+
+    def of_file(self, path: str) -> SystemExpansion:
+        self._expand_listed(path, path, None, {})
+        return self._result({}, ())
+
+    def expansion(self) -> SystemExpansion:
+        document = self.sources.document(self.path)
+        assert document is not None
+        problems = self.problems_of(self.path)
+        declared = declarations(document, problems)
+        given = {name: Given(text, None, SETTING) for name, text in self.given.items() if "." not in name}
+        scope = values(declared, given, {}, problems, varied=self.varied)
+        self.settable |= {parameter.name.value for parameter in declared}
+        self.note_declarations(self.path, document, declared, scope)
+        listed = list(instances(document, problems))
+        edits = list(self._system_edits(document, scope))
+        count: dict[str, int] = {}
+        for instance in listed:
+            target = self.resolve(self.path, instance.src.value)
+            count[target] = count.get(target, 0) + 1
+        seen: set[str] = set()
+        for instance in listed:
+            target = self.resolve(self.path, instance.src.value)
+            seen.add(target)
+            if instance.name is not None:
+                symbol = Symbol(target, SymbolKind.MACHINE, instance.name.value)
+                self.names.setdefault(self.path, {})[NamedPlace(symbol, instance.name.span, True)] = None
+            new = target
+            if count[target] > 1 and (instance.name is not None or instance.params):
+                new = self._fresh(target, instance)
+            self._expand_listed(target, new, instance, scope)
+            if new != target:
+                edits.append(TextEdit(instance.src.value_span, _relative(new, instance.src.value)))
+            edits += self._plain_input(document, instance)
+        for other in self.others:
+            if other not in seen:
+                self._expand_listed(other, other, None, scope)
+        self._report_unused(declared, problems)
+        if edits:
+            self.texts[self.path] = expanded_text(self.path, self.path, document.text, edits)
+        return self._result(scope, declared)
+
+    def _result(self, scope: Scope, declared: tuple[Declared, ...]) -> SystemExpansion:
+        variants: dict[str, list[str]] = {}
+        for path, text in self.texts.items():
+            variants.setdefault(text.source, []).append(path)
+        findings = {path: found.findings for path, found in self.problems.items() if found.findings}
+        names = {path: tuple(places) for path, places in self.names.items()}
+        return SystemExpansion(
+            self.path,
+            self.texts,
+            {source: tuple(paths) for source, paths in variants.items()},
+            scope,
+            declared,
+            frozenset(self.settable),
+            findings,
+            names,
+            {path: frozenset(renamed) for path, renamed in self.renamed.items() if renamed},
+        )
+
+    def _fresh(self, target: str, instance: ListedInstance) -> str:
+        """A path for the text of an instance, beside its file, that no file has."""
+        begin = max(target.rfind("/"), target.rfind("\\")) + 1
+        folder, file = target[:begin], target[begin:]
+        stem, dot, extension = file.rpartition(".")
+        name = instance.name.value if instance.name else f"{stem}_2"
+        number = 2
+        new = f"{folder}{name}{dot}{extension}"
+        while new in self.taken or self.sources.text(new) is not None:
+            new = f"{folder}{name}_{number}{dot}{extension}"
+            number += 1
+        self.taken.add(new)
+        return new
+
+    # --------------------------------------------------------- the system file
+
+    def _system_edits(self, document: Document, scope: Scope) -> Iterator[TextEdit]:
+        uses = ParameterUses(document, SYSTEM, scope, self.problems_of(self.path), frozenset())
+        for use in uses.uses:
+            self.used.add(use.name)
+            self.note(self.path, self.path, use.name, use.span)
+        yield from uses.edits
+        for element in declaration_elements(document):
+            yield removed(document, element)
+        for section in document.root.elements if document.root else ():
+            if section.name == SECTIONS[0]:
+                yield removed(document, section)
+        self._reference(document)
+
+    def _reference(self, document: Document) -> None:
+        """Report the parts that AS2FM ignores or rejects, once each."""
+        ending = "`as2fm-lsp translate --expand DIR` writes the system without parameters and instances"
+        for section in document.root.elements if document.root else ():
+            element = next(iter(section.elements if section.name in SECTIONS[1:] else ()), None)
+            for element in section.elements if section.name in SECTIONS[1:] else ():
+                if element.name == PARAMETER:
+                    message = f"AS2FM rejects `<{PARAMETER}>` in `<{section.name}>`; {ending}"
+                    self.problems_of(self.path).add(
+                        ExpansionProblem.REFERENCE, element.name_span, message, severity=Severity.INFORMATION
+                    )
+                    return
+            if section.name in (SECTIONS[0], PARAMETER):
+                message = f"AS2FM ignores `<{section.name}>`, so it cannot read what uses the parameters; {ending}"
+                self.problems_of(self.path).add(
+                    ExpansionProblem.REFERENCE, section.name_span, message, severity=Severity.INFORMATION
+                )
+                return
+
+    def _plain_input(self, document: Document, instance: ListedInstance) -> Iterator[TextEdit]:
+        """The edits that remove from an input what plain system files do not have."""
+        element = instance.element
+        if instance.is_plain and element.get("name") is None and element.get("namespace") is None:
+            return
+        first = next(iter(element.elements), None)
+        place = first.name_span if first is not None else element.name_span
+        for name in ("name", "namespace"):
+            if (attribute := element.get(name)) is not None:
+                place = attribute.name_span
+                yield removed_attribute(document, attribute)
+        extra = [child for child in element.elements if child.name in (PARAM, REMAP)]
+        if extra and len(extra) == len(element.elements) and element.close_span is not None:
+            yield TextEdit(Span(element.open_span.end - 1, element.span.end), " />")
+        else:
+            for child in extra:
+                yield removed(document, child)
+        if self.has_instances:
+            return
+        self.has_instances = True
+        message = (
+            "AS2FM ignores the name, the namespace, the parameters and the remaps of an input; "
+            "`as2fm-lsp translate --expand DIR` writes a file for each instance"
+        )
+        self.problems_of(self.path).add(ExpansionProblem.REFERENCE, place, message, severity=Severity.INFORMATION)
+
+    # ---------------------------------------------------------- the other files
+
+    def _expand_listed(self, source: str, path: str, instance: ListedInstance | None, scope: Scope) -> None:
+        kind = self.sources.kind(source)
+        if kind is FileKind.PROPERTIES:
+            self._expand_jani(source, scope)
+            return
+        document = self.sources.document(source) if kind in GRAMMARS else None
+        if document is None or document.root is None:
+            return
+        problems, system_problems = self.problems_of(source), self.problems_of(self.path)
+        own = declarations(document, problems) if kind in (FileKind.MACHINE, FileKind.XML_PROPERTIES) else ()
+        given = self._given(source, instance, own, scope, document, system_problems)
+        # A value from the system file is reported there; the problems of defaults and of `--set` belong to the file.
+        from_system = {n: g for n, g in given.items() if g.span is not None}
+        own_values: dict[str, ParameterValue] = {}
+        if from_system:
+            values(tuple(p for p in own if p.name.value in from_system), from_system, scope, system_problems)
+        own_values = values(own, given, scope, Problems() if from_system else problems, varied=self.varied)
+        inner = {**{name: value for name, value in scope.items() if name not in own_values}, **own_values}
+        uses = ParameterUses(document, GRAMMARS[kind], inner, problems, frozenset(own_values))
+        names = {use.name for use in uses.uses} | uses.hidden
+        self.used |= names - own_values.keys()
+        for use in uses.uses:
+            self.note(source, source if use.name in own_values else self.path, use.name, use.span)
+        self.note_declarations(source, document, own, scope)
+        edits = list(uses.edits)
+        edits += (removed(document, parameter.element) for parameter in own)
+        for parameter in own:
+            if parameter.name.value not in names and parameter.type and not self._uses_in_declarations(own, parameter):
+                _unused(document, parameter, problems)
+        if own:
+            message = (
+                "AS2FM ignores `<parameter>`, so it cannot read what uses the parameters; "
+                "`as2fm-lsp translate --expand DIR` writes the file without them"
+            )
+            problems.add(ExpansionProblem.REFERENCE, own[0].element.name_span, message, severity=Severity.INFORMATION)
+        if instance is not None and kind is FileKind.MACHINE:
+            renamed = list(instance_edits(document, instance, system_problems))
+            own_name = document.root.get("name")
+            spans = [edit.span for edit in renamed if own_name is None or edit.span != own_name.value_span]
+            self.renamed.setdefault(source, set()).update(document.decoded(span).text.strip() for span in spans)
+            edits = [*renamed, *edits]
+        if edits or path != source:
+            self.texts[path] = expanded_text(path, source, document.text, edits)
+
+    def _uses_in_declarations(self, own: tuple[Declared, ...], parameter: Declared) -> bool:
+        name = parameter.name.value
+        texts = (a.value for p in own for a in (p.value, p.least, p.most) if a is not None and p is not parameter)
+        return any(name in text for text in texts)
+
+    def _given(
+        self,
+        source: str,
+        instance: ListedInstance | None,
+        own: tuple[Declared, ...],
+        scope: Scope,
+        document: Document,
+        problems: Problems,
+    ) -> dict[str, Given]:
+        """The values that the system gives for the parameters of a file, in increasing precedence: a parameter of the
+        system with the same name, a `<param>`, and a value from outside."""
+        known = {parameter.name.value: parameter for parameter in own}
+        given: dict[str, Given] = {}
+        for name in known:
+            if name in scope:
+                self.used.add(name)
+                given[name] = Given(scope[name].text, None, f"the parameter `{name}` of the system")
+        for param, value in instance.params if instance else ():
+            if param.value not in known:
+                close = close_names(param.value, known)
+                src = instance.src.value if instance else ""
+                declares = f"; it declares {listing(tuple(known))}" if known else "; it declares no parameters"
+                message = f"`{src}` has no parameter `{param.value}`{did_you_mean(close) if close else declares}"
+                problems.add(ExpansionProblem.UNKNOWN, param.span, message, close=close)
+                continue
+            self.note(self.path, source, param.value, param.span)
+            for match in VARIABLE.finditer(value.value):
+                if match[1] not in scope:
+                    message = f"there is no parameter `{match[1]}`; declare it with `<parameter>`"
+                    problems.add(ExpansionProblem.UNKNOWN, value.value_span, message)
+            text = VARIABLE.sub(lambda m: scope[m[1]].text if m[1] in scope else m[0], value.value)
+            system = self.sources.document(self.path)
+            assert system is not None
+            if known[param.value].type != "string" or "$(var" in value.value:
+                for use in uses_in(system, value, scope):
+                    self.used.add(use.name)
+                    self.note(self.path, self.path, use.name, use.span)
+            given[param.value] = Given(text, value.value_span, "`<param>`")
+        root = document.root
+        machine = root.get("name") if root is not None else None
+        name = instance.name.value if instance and instance.name else (machine.value.strip() if machine else "")
+        for parameter in known:
+            self.settable.add(f"{name}.{parameter}")
+            for key in (f"*.{parameter}", f"{name}.{parameter}"):
+                if key in self.given:
+                    given[parameter] = Given(self.given[key], None, SETTING)
+        return given
+
+    def _expand_jani(self, source: str, scope: Scope) -> None:
+        text = self.sources.text(source)
+        if text is None:
+            return
+        problems = self.problems_of(source)
+        edits: list[TextEdit] = []
+        for declared in self.sources.properties(source):
+            for name, span in identifiers(declared.expression):
+                value = scope.get(name)
+                if value is not None and span.end > span.start:
+                    self.used.add(name)
+                    self.note(source, self.path, name, span)
+                    quoted = Span(span.start - 1, span.end + 1)
+                    edits.append(TextEdit(quoted, json.dumps(value.content) if value.kind is _STRING else value.text))
+        for match in VARIABLE.finditer(text):
+            value = scope.get(match[1])
+            if value is None:
+                message = f"there is no parameter `{match[1]}`; declare it in the system file with `<parameter>`"
+                problems.add(ExpansionProblem.UNKNOWN, Span(*match.span(1)), message)
+            else:
+                self.used.add(match[1])
+                self.note(source, self.path, match[1], Span(*match.span(1)))
+                edits.append(TextEdit(Span(*match.span()), value.text.replace("\\", "\\\\").replace('"', '\\"')))
+        if edits:
+            self.texts[source] = expanded_text(source, source, text, edits)
+
+    def _report_unused(self, declared: tuple[Declared, ...], problems: Problems) -> None:
+        document = self.sources.document(self.path)
+        assert document is not None
+        for parameter in declared:
+            name = parameter.name.value
+            if name not in self.used and parameter.type and not self._uses_in_declarations(declared, parameter):
+                _unused(document, parameter, problems)
+
+
+def _unused(document: Document, parameter: Declared, problems: Problems) -> None:
+    message = f"nothing uses the parameter `{parameter.name.value}`; remove it"
+    fix = Fix(f"Remove the parameter `{parameter.name.value}`", (removed(document, parameter.element),))
+    problems.add(ExpansionProblem.UNUSED, parameter.name.span, message, fixes=(fix,), tags=(Tag.UNNECESSARY,))
+
+
+def _relative(path: str, written: str) -> str:
+    """The text with which a system names a file that is beside the file that it names with `written`."""
+    name = path[max(path.rfind("/"), path.rfind("\\")) + 1 :]
+    return written[: max(written.rfind("/"), written.rfind("\\")) + 1] + name

@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Instances: files that a system lists with a name, a namespace, values of parameters and remaps
+(docs/spec/parameters.md#instances)."""
+
+from __future__ import annotations
+
+import posixpath
+import re
+from collections.abc import Iterator
+
+from roaml.expansion.declarations import PARAM
+from roaml.expansion.problems import ExpansionProblem, Problems
+from roaml.language import HL_SCXML
+from roaml.model.build_machine import INTERFACE_ATTRIBUTES
+from roaml.model.syntax import Name, name_of
+from roaml.model.system_file import SystemSection
+from roaml.record import Record
+from roaml.roles import SymbolKind
+from roaml.text import Span, TextEdit
+from roaml.xml_syntax import Attribute, Document, Element
+
+REMAP = "remap"
+_NAME = re.compile(r"[A-Za-z_]\w*\Z", re.ASCII)
+_NAMESPACE = re.compile(r"/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*/?\Z", re.ASCII)
+
+
+class Remap(Record, frozen=True, eq=False):
+    """A `<remap>`: the interface or event `old` of the file is called `new`."""
+
+    element: Element
+    old: Name
+    new: Name
+
+
+class ListedInstance(Record, frozen=True, eq=False):
+    """An `<input>` that lists a file.
+
+    Attributes:
+        name: the name of the instance; `None` if the file keeps its own.
+        namespace: the namespace of relative names; "" if there is none.
+        params: name of a parameter of the file -> its value in the system file.
+        src: the attribute with the path of the file.
+    """
+
+    element: Element
+    section: SystemSection
+    src: Attribute
+    name: Name | None
+    namespace: str
+    params: tuple[tuple[Name, Attribute], ...]
+    remaps: tuple[Remap, ...]
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether the input uses nothing that plain system files do not have."""
+        return self.name is None and not self.namespace and not self.params and not self.remaps
+
+
+def instances(document: Document, problems: Problems) -> Iterator[ListedInstance]:
+    """The inputs of a system file that name a file."""
+    for section in document.root.elements if document.root else ():
+        if section.name not in {member.value for member in SystemSection}:
+            continue
+        for element in section.elements:
+            src = element.get("src")
+            if element.name == "input" and src is not None and src.value:
+                yield _instance(element, SystemSection(section.name), src, problems)
+
+
+def _instance(element: Element, section: SystemSection, src: Attribute, problems: Problems) -> ListedInstance:
+    name = name_of(element.get("name"))
+    if name is not None and not _NAME.match(name.value):
+        message = (
+            f"`{name.value}` cannot be the name of an instance; use letters, digits and underscores, not beginning "
+            "with a digit"
+        )
+        problems.add(ExpansionProblem.INSTANCE, name.span, message)
+        name = None
+    given = name_of(element.get("namespace"))
+    namespace = given.value.strip("/") if given is not None else ""
+    if given is not None and not _NAMESPACE.match(given.value) and given.value != "/":
+        message = f"`{given.value}` is not a namespace of ROS; write names separated by `/`, such as `/robots/first`"
+        problems.add(ExpansionProblem.INSTANCE, given.span, message)
+        namespace = ""
+    if section is not SystemSection.NODE_MODELS:
+        for attribute in (element.get("name"), element.get("namespace")):
+            if attribute is not None:
+                message = (
+                    f"`{attribute.name}` has an effect only on inputs of `<node_models>`; remove the attribute, or set "
+                    "a parameter of the file with `<param>`"
+                )
+                problems.add(ExpansionProblem.INSTANCE, attribute.name_span, message)
+        name, namespace = None, ""
+    return ListedInstance(
+        element, section, src, name, namespace, tuple(_params(element, problems)), tuple(_remaps(element, problems))
+    )
+
+
+def _params(element: Element, problems: Problems) -> Iterator[tuple[Name, Attribute]]:
+    seen: set[str] = set()
+    for child in element.elements:
+        if child.name != PARAM:
+            continue
+        name, value = name_of(child.get("name")), child.get("value")
+        if name is None or value is None:
+            problems.add(ExpansionProblem.INSTANCE, child.name_span, "`<param>` needs a `name` and a `value`")
+        elif name.value in seen:
+            message = f"the parameter `{name.value}` is set twice; remove one of the elements"
+            problems.add(ExpansionProblem.INSTANCE, name.span, message)
+        else:
+            seen.add(name.value)
+            yield name, value
+
+
+def _remaps(element: Element, problems: Problems) -> Iterator[Remap]:
+    for child in element.elements:
+        if child.name != REMAP:
+            continue
+        old, new = name_of(child.get("from")), name_of(child.get("to"))
+        if old is None or new is None:
+            problems.add(ExpansionProblem.INSTANCE, child.name_span, "`<remap>` needs the attributes `from` and `to`")
+        else:
+            yield Remap(child, old, new)
+
+
+class InstanceNames:
+    """The names of topics, services, actions and events of an instance."""
+
+    def __init__(self, instance: ListedInstance, node: str) -> None:
+        self._instance = instance
+        self._node = instance.name.value if instance.name else node
+        self._by_name = {self._full(remap.old.value): remap for remap in reversed(instance.remaps)}
+        self._by_event = {remap.old.value: remap for remap in reversed(instance.remaps)}
+        self.used: set[Remap] = set()
+
+    def _full(self, name: str) -> str:
+        """The full name of a topic, service or action, with a leading `/`, by the rules of ROS 2."""
+        if name.startswith("/"):
+            return name
+        if name.startswith("~"):
+            return posixpath.join("/", self._instance.namespace, self._node, name[1:].lstrip("/"))
+        return posixpath.join("/", self._instance.namespace, name)
+
+    def interface(self, name: str) -> str:
+        """The name of a topic, service or action in this instance. Without a namespace and remaps, it is unchanged."""
+        remap = self._by_name.get(self._full(name))
+        if remap is not None:
+            self.used.add(remap)
+            return self._full(remap.new.value) if self._instance.namespace else remap.new.value
+        return self._full(name) if self._instance.namespace or name.startswith("~") else name
+
+    def event(self, name: str) -> str:
+        remap = self._by_event.get(name)
+        if remap is None:
+            return name
+        self.used.add(remap)
+        return remap.new.value
+
+
+def instance_edits(document: Document, instance: ListedInstance, problems: Problems) -> Iterator[TextEdit]:
+    """The edits that give a machine the name, the namespace and the remaps of an instance.
+
+    Args:
+        problems: receives the remaps that have no effect, as problems of the system file.
+    """
+    root = document.root
+    if root is None:
+        return
+    own = root.get("name")
+    if instance.name is not None and own is not None:
+        yield TextEdit(own.value_span, instance.name.value)
+    if not instance.namespace and not instance.remaps:
+        return
+    names = InstanceNames(instance, own.value if own else "")
+    for element in root.walk():
+        type_ = HL_SCXML.elements.get(element.name)
+        if type_ is None:
+            continue
+        for attribute in element.attributes:
+            role = type_.attributes.get(attribute.name)
+            if role is None or not attribute.value.strip():
+                continue
+            if attribute.name in INTERFACE_ATTRIBUTES:
+                new = names.interface(attribute.value.strip())
+            elif role.defines is SymbolKind.EVENT or SymbolKind.EVENT in role.refers:
+                new = names.event(attribute.value.strip())
+            else:
+                continue
+            if new != attribute.value:
+                yield TextEdit(attribute.value_span, new)
+    for remap in instance.remaps:
+        if remap not in names.used:
+            message = f"the file has no topic, service, action or event `{remap.old.value}`, so the remap has no effect"
+            problems.add(ExpansionProblem.REMAP, remap.old.span, message)
+
+
+def removed(document: Document, element: Element) -> TextEdit:
+    """The edit that removes an element; with its line if nothing else is in it."""
+    text, start, end = document.text, element.span.start, element.span.end
+    line_start = text.rfind("\n", 0, start) + 1
+    line_end = text.find("\n", end)
+    line_end = len(text) if line_end < 0 else line_end + 1
+    if not text[line_start:start].strip() and not text[end:line_end].strip():
+        return TextEdit(Span(line_start, line_end), "")
+    return TextEdit(element.span, "")
+
+
+def removed_attribute(document: Document, attribute: Attribute) -> TextEdit:
+    """The edit that removes an attribute and the white space before it."""
+    start = attribute.span.start
+    while start > 0 and document.text[start - 1].isspace():
+        start -= 1
+    return TextEdit(Span(start, attribute.span.end), "")

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A text with edits that remember where they were made."""
+
+from __future__ import annotations
+
+import bisect
+from collections.abc import Iterable
+from functools import cached_property
+
+from roaml.record import Record
+from roaml.text import Span, TextEdit, apply_edits
+
+
+class ExpandedText(Record, frozen=True, dict=True):
+    """A file of a system after the expansion.
+
+    Attributes:
+        path: the path under which the expanded text is analysed; that of another file of the user never.
+        source: the path of the file of the user.
+        text: the expanded text.
+        edits: the edits that make the expanded text from that of the file, sorted, not overlapping.
+    """
+
+    path: str
+    source: str
+    text: str
+    edits: tuple[TextEdit, ...]
+
+    @cached_property
+    def _pieces(self) -> tuple[list[int], list[tuple[int, int, int]]]:
+        """For each edit, the offset of its new text in the expanded text; and its old span with the length of the new
+        text."""
+        starts, pieces, shift = [], [], 0
+        for span, new in self.edits:
+            starts.append(span.start + shift)
+            pieces.append((span.start, span.end, len(new)))
+            shift += len(new) - (span.end - span.start)
+        return starts, pieces
+
+    def origin(self, span: Span) -> Span:
+        """The span in the file of the user that became `span`. A part of a new text becomes the whole text that it
+        replaces."""
+        start, end = self._offset(span.start, at_end=False), self._offset(span.end, at_end=span.end > span.start)
+        return Span(start, max(start, end))
+
+    def is_written(self, span: Span) -> bool:
+        """Whether the text in `span` is that of the user: no edit touches it."""
+        original = self.origin(span)
+        return not any(edit.start < original.end and original.start < edit.end for edit, _ in self.edits) and (
+            original.end - original.start == span.end - span.start
+        )
+
+    def _offset(self, offset: int, *, at_end: bool) -> int:
+        starts, pieces = self._pieces
+        number = (bisect.bisect_left if at_end else bisect.bisect_right)(starts, offset) - 1
+        if number < 0:
+            return offset
+        start, end, length = pieces[number]
+        into = offset - starts[number]
+        if into < length or (at_end and into == length and length > 0):
+            return end if at_end else start
+        return end + into - length
+
+
+def expanded_text(path: str, source: str, text: str, edits: Iterable[TextEdit]) -> ExpandedText:
+    """The text `text` of the file `source` with edits. Of overlapping edits, the one that begins first is made."""
+    kept: list[TextEdit] = []
+    for edit in sorted(edits, key=lambda edit: (edit.span.start, -edit.span.end)):
+        if not kept or edit.span.start >= kept[-1].span.end:
+            kept.append(edit)
+    return ExpandedText(path, source, apply_edits(text, tuple(kept)), tuple(kept))

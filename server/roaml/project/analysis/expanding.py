@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The files of systems whose parameters and instances are expanded (docs/spec/parameters.md#expansion)."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+
+from roaml.expansion import SystemExpansion, expand, expand_file, needs_expansion
+from roaml.jani.properties import Property
+from roaml.model.kinds import FileKind
+from roaml.project.analysis.sources import SourceFiles
+from roaml.project.analysis.systems import Systems
+from roaml.project.files import Files
+from roaml.project.memo import Memo
+from roaml.project.paths import resolve
+from roaml.record import Record
+from roaml.text import SourceFile
+from roaml.xml_syntax import Document
+
+
+class ExpandedFiles(Record, frozen=True, eq=False):
+    """An expanded system, or an expanded file without a system.
+
+    Attributes:
+        files: the files of the user, in which the expanded ones have their expanded texts.
+        memo: the cache for the analysis of `files`.
+        systems: the path of the system; empty for a file without a system.
+    """
+
+    expansion: SystemExpansion
+    files: Files
+    memo: Memo
+    systems: tuple[str, ...]
+
+
+class _Sources:
+    """The files of the user, for the expansion."""
+
+    def __init__(self, sources: SourceFiles) -> None:
+        self._sources = sources
+        self.document: Callable[[str], Document | None] = sources.document
+        self.kind: Callable[[str], FileKind] = sources.kind
+
+    def text(self, path: str) -> str | None:
+        source = self._sources.source(path)
+        return None if source is None else source.text
+
+    def properties(self, path: str) -> tuple[Property, ...]:
+        return self._sources.properties(path)[0]
+
+
+class Expanding:
+    """Expands systems and files.
+
+    Args:
+        given: names and texts of values that replace those in the files.
+    """
+
+    def __init__(self, sources: SourceFiles, systems: Systems, given: tuple[tuple[str, str], ...]) -> None:
+        self._sources = sources
+        self._systems = systems
+        self._given = given
+
+    def system(self, system: str, *, varied: bool = False) -> ExpandedFiles | None:
+        """An expanded system; `None` if it uses neither parameters nor instances, or cannot be read. If `varied`, its
+        parameters have other values than the given ones."""
+        document = self._sources.document(system)
+        if document is None or self._sources.system_file(system) is None:
+            return None
+        others = self._systems.files_of(system)[1:]
+        sources = _Sources(self._sources)
+        texts = tuple(sources.text(path) or "" for path in others)
+        if not needs_expansion(document, iter(texts)):
+            return None
+        key = (document.text, others, texts, self._given)
+        compute = functools.partial(expand, system, others, sources, self._given, resolve, varied=varied)
+        expansion = self._sources.memo.get("expansion", (system, varied), key, compute)
+        return self._expanded(expansion, f"{system} {varied}", (system,))
+
+    def file(self, path: str, *, varied: bool = False) -> ExpandedFiles | None:
+        """A machine or property file that is not in a system, with the values of its own parameters; `None` if it
+        declares none. For `varied`, see `system`."""
+        source = self._sources.source(path)
+        if source is None or "<parameter" not in source.text:
+            return None
+        if self._sources.kind(path) not in (FileKind.MACHINE, FileKind.XML_PROPERTIES):
+            return None
+        compute = functools.partial(expand_file, path, _Sources(self._sources), varied=varied)
+        expansion = self._sources.memo.get("expansion alone", (path, varied), source.text, compute)
+        return self._expanded(expansion, f"alone {path} {varied}", ())
+
+    def _expanded(self, expansion: SystemExpansion, name: str, systems: tuple[str, ...]) -> ExpandedFiles:
+        texts = {path: SourceFile(path, text.text) for path, text in expansion.texts.items()}
+        return ExpandedFiles(expansion, self._sources.files.with_texts(texts), self._sources.memo.inner(name), systems)

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The analysis of expanded texts, and the way back from its results to the files of the user.
+
+Everything that needs plain HL-SCXML (rules, linking, translation) uses this analysis.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from roaml.diagnostics import Finding, Fix, Related, Symbol
+from roaml.expansion import ExpandedText, SystemExpansion
+from roaml.model.system import System
+from roaml.record import Record, replace
+from roaml.text import Location, TextEdit
+
+if TYPE_CHECKING:
+    from roaml.lower.library_tree import LibraryTree
+    from roaml.project.analysis import Analysis
+
+
+class Expanded(Record, frozen=True, eq=False):
+    """An expanded system, or file without a system. `analysis` analyses the expanded texts."""
+
+    analysis: Analysis
+    expansion: SystemExpansion
+
+    def location(self, location: Location) -> Location:
+        """The place in the files of the user that became a place in the expanded texts."""
+        text = self.expansion.texts.get(location.path)
+        return location if text is None else Location(text.source, text.origin(location.span))
+
+    def symbol(self, symbol: Symbol) -> Symbol:
+        """The symbol in the files of the user. A machine keeps the name of its instance."""
+        return symbol._replace(path=self.expansion.source(symbol.path))
+
+    def finding(self, path: str, finding: Finding) -> Finding:
+        """A finding in the expanded text of `path` as a finding in its file. Fixes that would change an expanded part
+        are left out."""
+        text = self.expansion.texts.get(path)
+        related = tuple(self._related(text, other) for other in finding.related)
+        if text is None:
+            return replace(finding, related=related)
+        fixes = tuple(fix for fix in (self._fix(text, fix) for fix in finding.fixes) if fix is not None)
+        return replace(finding, span=text.origin(finding.span), related=related, fixes=fixes)
+
+    def _related(self, text: ExpandedText | None, related: Related) -> Related:
+        if isinstance(related.place, Symbol):
+            return Related(self.symbol(related.place), related.message)
+        return related if text is None else Related(text.origin(related.place), related.message)
+
+    def _fix(self, text: ExpandedText, fix: Fix) -> Fix | None:
+        edits = fix.edits
+        if not all(text.is_written(edit.span) for edit in edits):
+            return None
+        return replace(fix, plan=tuple(TextEdit(text.origin(edit.span), edit.new_text) for edit in edits))
+
+    def linked(self, path: str) -> System | None:
+        """The linked system of the expanded texts."""
+        return self.analysis.system(path)
+
+    def system(self, path: str) -> System | None:
+        """The linked system, in which each automaton has the path of its file."""
+        linked = self.analysis.system(path)
+        if linked is None:
+            return None
+        source = self.expansion.source
+        nodes = tuple((source(path), outline) for path, outline in linked.nodes)
+        plugins = tuple((source(path), outline) for path, outline in linked.plugins)
+        return replace(linked, nodes=nodes, plugins=plugins)
+
+    def library_tree(self, path: str) -> LibraryTree | None:
+        return self.analysis.library_tree(path)

@@ -1,0 +1,229 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Systems with parameters and instances: they mean what the expanded systems mean; places lead back to the files."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from as2fm_lsp.cli.main import run
+from roaml import api
+from roaml.diagnostics import Severity, Symbol
+from roaml.ide.completion import complete
+from roaml.ide.describe import describe
+from roaml.ide.names.lookup import symbol_group, symbol_group_at
+from roaml.ide.rename import Renaming, rename
+from roaml.jani.writer import write
+from roaml.project.workspace import Snapshot
+from roaml.roles import SymbolKind
+from roaml.text import apply_edits
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGE = (ROOT / "docs" / "spec" / "parameters.md").read_text(encoding="utf-8")
+FILES = dict(re.findall(r"^\*\*`(\S+)`\*\*\n\n```xml\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL))
+"""The files of the example in the definition."""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    for name, text in FILES.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    return tmp_path
+
+
+def jani(path: Path, **values: object) -> str:
+    overrides = api.Overrides(values=tuple((name.replace("__", "."), str(value)) for name, value in values.items()))
+    return "".join(write(api.to_jani(api.load(str(path), overrides=overrides))))
+
+
+def test_the_expanded_files_have_the_same_translation(folder: Path, tmp_path: Path) -> None:
+    values = ("--set", "capacity=80", "--set", "right.period=0.25")
+    assert run(["translate", str(folder / "main.xml"), "--expand", str(tmp_path / "plain"), *values]) == 0
+    plain = tmp_path / "plain"
+    assert sorted(path.name for path in plain.iterdir()) == [
+        "left.ascxml",
+        "main.xml",
+        "monitor.ascxml",
+        "properties.xml",
+        "right.ascxml",
+        "second.ascxml",
+    ]
+    for path in plain.iterdir():
+        text = path.read_text(encoding="utf-8")
+        assert not re.search(r"capacity\b(?!\")|period|loss|<param |<remap|namespace=|\$\(var", text), text
+    assert jani(plain / "main.xml") == jani(folder / "main.xml", capacity=80, right__period=0.25)
+    # The written files may be written again.
+    assert run(["translate", str(folder / "main.xml"), "--expand", str(plain), *values]) == 0
+
+
+def test_values_from_outside_replace_those_of_the_files(folder: Path) -> None:
+    default = jani(folder / "main.xml")
+    assert default == jani(folder / "main.xml", capacity=100, left__period=0.5, right__period=1)
+    assert default != jani(folder / "main.xml", capacity=90)
+    assert default != jani(folder / "main.xml", left__period=1)
+    (folder / "as2fm.toml").write_text("[parameters]\ncapacity = 90\n[parameters.left]\nperiod = 1\n")
+    assert jani(folder / "main.xml") != default
+    assert jani(folder / "main.xml", capacity=100, left__period=0.5) == default
+
+
+@pytest.mark.parametrize("command", ["verify", "simulate", "translate", "check"])
+def test_an_unknown_parameter_is_a_usage_error(command: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run([command, str(folder / "main.xml"), "--set", "capactiy=80"]) == 2
+    assert "no parameter `capactiy`; did you mean `capacity`?" in capsys.readouterr().err
+
+
+def test_a_value_out_of_range_is_an_error_of_the_declaration(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["check", str(folder / "main.xml"), "--set", "capacity=250"]) == 1
+    out = capsys.readouterr().out
+    assert "main.xml:3:26: error: the value 250 that `--set` or a setting gives for the parameter `capacity`" in out
+    assert out.count("error:") == 1
+
+
+def test_findings_are_at_the_places_in_the_files(folder: Path) -> None:
+    battery = folder / "battery.ascxml"
+    text = battery.read_text().replace("level - capacity / 10", "level - capacity / 10 + nothing")
+    battery.write_text(text)
+    found = [d for d in api.check([str(folder / "main.xml")]).diagnostics if d.severity is Severity.ERROR]
+    assert [(d.path, text[d.span.start : d.span.end]) for d in found] == [(str(battery), "nothing")]
+
+
+def test_origins_are_places_in_the_files(folder: Path) -> None:
+    system = api.load(str(folder / "main.xml"))
+    places = api.source_map(system, api.to_jani(system))
+    automata = {entry["name"]: entry for entry in places["automata"]}
+    for name in ("left", "right"):
+        assert automata[name]["file"] == "battery.ascxml"
+        lines = (folder / "battery.ascxml").read_text().splitlines()
+        level = next(v for v in automata[name]["variables"] if v["name"].endswith("level"))
+        assert '<data id="level"' in lines[level["line"] - 1]
+        assert any("<ros_rate_callback" in lines[edge["line"] - 1] for edge in automata[name]["edges"])
+
+
+def snapshot(folder: Path) -> Snapshot:
+    return api.check([str(folder / "main.xml")]).snapshot
+
+
+def test_names_of_parameters_are_found_in_all_files(folder: Path) -> None:
+    analysis = snapshot(folder).analysis
+    text = (folder / "monitor.ascxml").read_text()
+    group = symbol_group_at(analysis, str(folder / "monitor.ascxml"), text.index("capacity") + 2)
+    assert group is not None
+    counts = {name: FILES[name].count("capacity") for name in FILES}
+    counts["properties.xml"] -= 1  # the name of a property contains the word
+    found = [Path(use.path).name for use in group.uses]
+    assert {name: found.count(name) for name in set(found)} == {name: n for name, n in counts.items() if n}
+    assert [Path(place.path).name for place in group.definitions] == ["main.xml"]
+    assert "capacity : uint8 = 100" in describe(analysis, group.symbols[0])
+
+
+def test_a_parameter_is_renamed_in_all_files(folder: Path) -> None:
+    before = jani(folder / "main.xml")
+    current = snapshot(folder)
+    path = str(folder / "battery.ascxml")
+    offset = FILES["battery.ascxml"].index('"period"') + 1
+    renaming = rename(current.analysis, path, offset, "interval")
+    assert isinstance(renaming, Renaming), renaming
+    for changed, edits in renaming.edits.items():
+        file = Path(changed)
+        file.write_text(apply_edits(file.read_text(), tuple(edits)))
+    assert "period" not in "".join(file.read_text() for file in folder.glob("*.*xml"))
+    assert jani(folder / "main.xml") == before
+
+
+@pytest.mark.parametrize(
+    ("file", "before", "typed", "expected"),
+    [
+        ("battery.ascxml", 'expr="', "", {"capacity", "loss", "period"}),
+        ("battery.ascxml", 'rate_hz="', "", {"capacity", "loss", "period"}),
+        ("battery.ascxml", 'prob="', "", {"capacity", "loss", "period"}),
+        ("battery.ascxml", 'topic="', "$(var ca", {"capacity", "loss", "period"}),
+        ("monitor.ascxml", 'cond="', "", {"capacity", "loss"}),
+        ("main.xml", '<param name="', "", {"period"}),
+        ("properties.xml", "<event>", "", {"capacity", "loss"}),
+    ],
+)
+def test_parameters_are_completed(file: str, before: str, typed: str, expected: set[str], folder: Path) -> None:
+    text = FILES[file]
+    at = text.index(before) + len(before)
+    (folder / file).write_text(text[:at] + typed + text[at:])
+    found = complete(snapshot(folder), str(folder / file), at + len(typed))
+    assert found is not None
+    assert {item.label for item in found.items if item.detail.startswith("parameter: ")} == expected
+
+
+def test_an_instance_is_a_definition(folder: Path) -> None:
+    analysis = snapshot(folder).analysis
+    symbol = Symbol(str(folder / "battery.ascxml"), SymbolKind.MACHINE, "left")
+    places = symbol_group(analysis, (symbol,)).definitions
+    assert [Path(place.path).name for place in places] == ["main.xml"]
+    system = analysis.system(str(folder / "main.xml"))
+    assert system is not None
+    assert [automaton.name for automaton in system.automata] == ["left", "right", "Monitor", "second"]
+    assert {Path(automaton.path).name for automaton in system.automata} == {"battery.ascxml", "monitor.ascxml"}
+    assert sorted(system.topics) == ["left__level", "right__level"]
+
+
+def test_a_machine_alone_has_its_own_values(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "lamp.ascxml").write_text(
+        """<ascxml name="Lamp" version="1.0" initial="off">
+    <parameter name="n" type="int32" value="3" />
+    <datamodel><data id="levels" type="int32[n + 1]" expr="[n, -n]" /></datamodel>
+    <ros_time_rate name="blink" rate_hz="1 / n" />
+    <state id="off">
+        <ros_rate_callback name="blink" target="off"><assign location="levels[n]" expr="-n" /></ros_rate_callback>
+    </state>
+</ascxml>
+"""
+    )
+    assert run(["check", str(tmp_path / "lamp.ascxml"), "--warnings-as-errors"]) == 0, capsys.readouterr().out
+
+
+def test_a_warning_that_depends_on_a_value_is_left_out(tmp_path: Path) -> None:
+    lamp = """<ascxml name="Lamp" version="1.0" initial="off">
+    <parameter name="n" type="int32" value="{value}" min="0" />
+    <ros_time_rate name="blink" rate_hz="1" />
+    <state id="off">
+        <ros_rate_callback name="blink" cond="n &gt; 2" target="off" />
+        <ros_rate_callback name="blink" cond="{second}" target="off" />
+    </state>
+</ascxml>
+"""
+    path = tmp_path / "lamp.ascxml"
+
+    def codes(value: int, second: str) -> set[str]:
+        path.write_text(lamp.format(value=value, second=second))
+        return {d.code for d in api.check([str(path)]).diagnostics if d.severity >= Severity.WARNING}
+
+    assert codes(2, "n &gt; 1") == set()
+    assert codes(4, "n &gt; 2") == {"shadowed-transition"}  # with the value 5 as well
+
+
+ROS_FILE = """
+/**:
+  ros__parameters:
+    capacity: 80
+    use_sim_time: true
+/left:
+  left:
+    ros__parameters: {period: 0.25}
+/right/right:
+  ros__parameters:
+    period: 2
+"""
+
+
+def test_values_from_a_parameter_file_of_ros(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "robot.yaml").write_text(ROS_FILE)
+    main, file = str(folder / "main.xml"), str(folder / "robot.yaml")
+    assert run(["translate", main, "--params-file", file, "--set", "right.period=1"]) == 0
+    assert (folder / "main.jani").read_text().rstrip("\n") == jani(
+        folder / "main.xml", capacity=80, left__period=0.25, right__period=1
+    )
+    assert run(["check", main, "--params-file", file]) == 0
+    (folder / "robot.yaml").write_text("capacity: 80")
+    for command in ("check", "verify", "translate", "simulate"):
+        capsys.readouterr()
+        assert run([command, main, "--params-file", file]) == 2
+        assert "not a parameter file of ROS 2: no node has `ros__parameters`" in capsys.readouterr().err
