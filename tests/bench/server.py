@@ -121,6 +121,11 @@ class Server:
         rows = dict(line.split(":", 1) for line in status.read_text().splitlines())
         return int(rows["VmRSS"].split()[0]) * 1024
 
+    def cpu_time(self) -> float:
+        """The CPU time of all threads in s, with the resolution of the scheduler; 0 on systems without /proc."""
+        tasks = Path(f"/proc/{self._process.pid}/task").glob("*/schedstat")
+        return sum(int(task.read_text().split()[0]) for task in tasks) / 1e9
+
     def end(self) -> None:
         self._process.kill()
         self._process.wait()

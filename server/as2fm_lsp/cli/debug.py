@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.exit_status import CLEAN
-from as2fm_lsp.collector import spare_the_collector_of_a_server
+from as2fm_lsp.collector import spare_the_collector
 
 EXAMPLES = """\
 An editor starts this program; docs/debugging.md describes the configuration. The arguments of `launch` are:
@@ -37,7 +37,7 @@ def run(arguments: Sequence[str]) -> int:
     from as2fm_lsp.debug.adapter import Adapter  # noqa: PLC0415
     from as2fm_lsp.debug.framing import MessageReader  # noqa: PLC0415
 
-    spare_the_collector_of_a_server()
+    spare_the_collector()
     # Only the adapter may write into the stream of messages.
     output = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())

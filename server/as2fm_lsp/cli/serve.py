@@ -14,7 +14,7 @@ from as2fm_lsp import sockets
 from as2fm_lsp.cli.arguments import ArgumentParser
 from as2fm_lsp.cli.exit_status import CLEAN, USAGE
 from as2fm_lsp.cli.options import serve_options
-from as2fm_lsp.collector import spare_the_collector_of_a_server
+from as2fm_lsp.collector import spare_the_collector
 from as2fm_lsp.server import create
 
 UNEXPECTED_END = 1
@@ -69,7 +69,7 @@ def serve(tcp: str | None = None, socket_file: str | None = None, allow_remote: 
     logging.basicConfig(stream=sys.stderr, level=logging.WARNING, format="%(levelname)s %(name)s: %(message)s")
     logging.getLogger("pygls").setLevel(logging.CRITICAL)  # the server itself logs errors
     sys.setswitchinterval(SWITCH_INTERVAL_S)
-    spare_the_collector_of_a_server()
+    spare_the_collector()
     server = create()
     try:
         if tcp is not None and socket_file is not None:

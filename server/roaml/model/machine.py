@@ -215,7 +215,7 @@ class State(Record, frozen=True, eq=False):
     handlers: tuple[Handler, ...]
 
 
-class Chart(Record, frozen=True, eq=False, dict=True):
+class Chart(Record, frozen=True, eq=False, dict=True, weakref=True):
     """The states and data of a machine itself, or those of one action thread.
 
     `scope` is "" for the machine itself and distinguishes the threads of a file.

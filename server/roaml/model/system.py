@@ -157,7 +157,7 @@ _BESIDE_EVENTS = (GapAct.PORT, GapAct.VARIABLE, GapAct.REMAP, GapAct.NAME, GapAc
 """The acts that do not affect which events a machine handles and sends."""
 
 
-class System(Record, frozen=True, eq=False, dict=True):
+class System(Record, frozen=True, eq=False, dict=True, weakref=True):
     """A system file and everything that it names.
 
     Attributes:

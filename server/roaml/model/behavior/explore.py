@@ -14,6 +14,7 @@ decide which events may arrive: a response only after its request, a tick only a
 
 from __future__ import annotations
 
+import weakref
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
@@ -180,6 +181,8 @@ class Behavior(Record, frozen=True, eq=False):
     """The graph of a chart.
 
     Attributes:
+        owner: refers to the chart. The reference is weak, because the chart caches its graph: otherwise, each version
+            of a machine in an editor would remain in memory until the next garbage collection.
         configurations: all configurations, the initial ones first.
         starts: the number of initial configurations.
         steps: all steps; `outgoing` groups them by their source.
@@ -188,13 +191,19 @@ class Behavior(Record, frozen=True, eq=False):
         approximate: whether some knowledge was discarded, so that the graph may contain impossible paths.
     """
 
-    chart: Chart
+    owner: weakref.ref[Chart]
     configurations: tuple[ChartConfiguration, ...]
     starts: int
     steps: tuple[BehaviorStep, ...]
     at_start: tuple[ProtocolEvent, ...]
     statuses: Mapping[ReturnStatus, frozenset[str]]
     approximate: bool
+
+    @property
+    def chart(self) -> Chart:
+        chart = self.owner()
+        assert chart is not None, "a graph is used only while its machine is in use"
+        return chart
 
     @property
     def size(self) -> int:
@@ -519,7 +528,7 @@ class _Explorer(Record, eq=False, dict=True):
         except _TooLargeError:
             return None
         return Behavior(
-            self.chart,
+            weakref.ref(self.chart),
             tuple(self.numbers),
             starts,
             tuple(self.steps.values()),

@@ -8,6 +8,7 @@ other leaf acts. A client whose graph is not known may send anything at any time
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Iterator
 
 from roaml.model.behavior.explore import Behavior, BehaviorStep, ChartConfiguration
@@ -52,12 +53,21 @@ class ClientProtocols(Record, frozen=True, eq=False, dict=True):
     """What the clients of the automata of one machine may send. Without a system, everything is possible.
 
     Attributes:
+        owner: refers to the system. The reference is weak, because the system caches these protocols.
         automata: the automata of the machine in the system.
     """
 
-    system: System | None
+    owner: weakref.ref[System] | None
     automata: tuple[SystemAutomaton, ...]
     known: dict[tuple[Duty, ProtocolEvent], Interleaving | None] = field(default_factory=dict)
+
+    @property
+    def system(self) -> System | None:
+        if self.owner is None:
+            return None
+        system = self.owner()
+        assert system is not None, "the protocols are used only while their system is in use"
+        return system
 
     def possible(self, behavior: Behavior, step: BehaviorStep) -> bool:
         """Whether the clients can send the event of a step while the answers are due that its source owes."""

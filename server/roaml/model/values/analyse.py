@@ -8,6 +8,7 @@ narrowed again by the conditions of the model.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple, TypeAlias
@@ -28,6 +29,7 @@ from roaml.model.machine import (
     SetOutput,
     State,
     Statement,
+    Target,
 )
 from roaml.model.syntax import Expression, PortRead, Value
 from roaml.model.triggers import Trigger, chooses, trigger
@@ -45,6 +47,7 @@ from roaml.model.values.domain import (
     widen,
 )
 from roaml.model.values.evaluate import Evaluator, Valuation, is_within, joined_valuations, literal, place_of
+from roaml.model.values.remembered import Memory, RememberedPart, effects, names_in, names_of, root, text_of
 from roaml.record import Record, field
 from roaml.roles import ProtocolPart
 from roaml.scxml.names import STATUSES
@@ -128,19 +131,22 @@ def analyse(
     ignored: frozenset[Span] = frozenset(),
     *,
     is_bounded: bool = False,
+    memory: Memory | None = None,
 ) -> MachineValues:
     """The values in `machine` if the data that arrive are those in `arriving`.
 
     Args:
         ignored: the places of conditions that may have both results whatever the values are.
         is_bounded: whether only the values of the first passes are returned, instead of widened ones.
+        memory: the memory of earlier analyses of this machine, to which this one is added.
     """
+    memory = memory or Memory()
     charts: dict[str, ChartValues] = {}
     sent: dict[DataChannel, Fields] = {}
     broken = {v.place.chart for v in typed.values if isinstance(v.value, Expression) and v.value.broken}
     for chart in machine.charts:
         if chart not in broken and _is_whole(chart):
-            interpreter = _Interpreter(machine, chart, typed, arriving, ignored, is_bounded)
+            interpreter = _Interpreter(machine, chart, typed, arriving, ignored, is_bounded, memory)
             charts[chart.scope] = interpreter.run()
             for channel, fields in interpreter.sent.items():
                 sent[channel] = merged(sent[channel], fields) if channel in sent else fields
@@ -203,6 +209,7 @@ class _Group(NamedTuple):
 
     handlers: tuple[Handler, ...]
     data: Valuation
+    part: RememberedPart
 
 
 class _Interpreter(Record, eq=False, dict=True):
@@ -212,6 +219,7 @@ class _Interpreter(Record, eq=False, dict=True):
     arriving: Arriving
     ignored: frozenset[Span]
     is_bounded: bool
+    memory: Memory
     entered: dict[str, Valuation] = field(default_factory=dict)
     conditions: dict[Span, ConditionValues] = field(default_factory=dict)
     sent: dict[DataChannel, Fields] = field(default_factory=dict)
@@ -232,12 +240,16 @@ class _Interpreter(Record, eq=False, dict=True):
             for path, leaf in leaves(type_)
             if isinstance(leaf, Array) and leaf.bound is not None
         }
-        self.evaluator = Evaluator(self._is_whole, dict(STATUSES))
+        # Not a method: a cycle of references would keep the machine in memory until the next garbage collection.
+        self.evaluator = Evaluator(functools.partial(_is_whole_in, self.whole), dict(STATUSES))
         self.thresholds = sorted(self._thresholds())
-        self.groups: dict[str, list[_Group]] = {}
-
-    def _is_whole(self, place: str) -> bool:
-        return place in self.whole or place.endswith(".length")
+        self.groups: dict[str, tuple[RememberedPart, list[_Group]]] = {}
+        ports = {
+            channel.name: frozenset(fields.items())
+            for channel, fields in self.arriving.items()
+            if channel.part is ProtocolPart.BLACKBOARD
+        }
+        self.variables = (frozenset(self.whole), *(frozenset(d.items()) for d in (self.capacities, ports)))
 
     def _thresholds(self) -> set[float]:
         numbers: set[float] = set()
@@ -267,18 +279,21 @@ class _Interpreter(Record, eq=False, dict=True):
     def _ascend(self, initial: str) -> bool:
         """Follow all transitions until no set grows; the result states whether sets were widened."""
         visits: dict[str, int] = {}
+        joined: dict[tuple[str, str, int], Valuation] = {}
         waiting = {initial: None}
         widened = False
         while waiting:
             name = next(iter(waiting))
             del waiting[name]
-            for target, known in self._from(name, self.entered[name]):
+            for number, (target, known) in enumerate(self._from(name, self.entered[name])):
                 before = self.entered.get(target)
+                last = joined.get((name, target, number), {})
+                joined[name, target, number] = known
                 if before is None:
                     after = known
                 else:
-                    after = joined_valuations(before, known)
-                    if after == before:
+                    after = _grown(before, known, last)
+                    if after is before:
                         continue
                     visits[target] = visits.get(target, 0) + 1
                     if visits[target] > MAX_VISITS:
@@ -323,15 +338,37 @@ class _Interpreter(Record, eq=False, dict=True):
         fields = self.arriving.get(DataChannel(ProtocolPart.BLACKBOARD, read.key.value if read.key else ""), {})
         return fields.get("") or (of_type(type_) if type_ is not None else ANYTHING)
 
-    def _groups(self, name: str) -> list[_Group]:
+    def _groups(self, name: str) -> tuple[RememberedPart, list[_Group]]:
+        """The handlers of a state, as a whole and by their triggers."""
         if name not in self.groups:
             by_trigger: dict[Trigger | int | None, list[Handler]] = {}
             for number, handler in enumerate(self.states[name].handlers):
                 if handler.effective:
                     key = trigger(self.machine, handler)
                     by_trigger.setdefault(number if key is None else key, []).append(handler)
-            self.groups[name] = [_Group(tuple(hs), self._data(hs[0])) for hs in by_trigger.values()]
+            groups = [self._group(self.states[name], tuple(handlers)) for handlers in by_trigger.values()]
+            names = frozenset(name for group in groups for name in group.part.names)
+            self.groups[name] = RememberedPart(tuple(group.part.content for group in groups), names), groups
         return self.groups[name]
+
+    def _group(self, state: State, handlers: tuple[Handler, ...]) -> _Group:
+        data = self._data(handlers[0])
+        leaving = state.exit.statements if state.exit else ()
+        tests = [(text_of(h.cond), h.cond is not None and h.cond.span in self.ignored, chooses(h)) for h in handlers]
+        bodies = [[(target, self._entry(target)) for target in handler.targets] for handler in handlers]
+        done = tuple(
+            tuple((t.state.value if t.state else "", effects(t.body), effects(entry)) for t, entry in targets)
+            for targets in bodies
+        )
+        content = (self.variables, frozenset(data.items()), effects(leaving), tuple(tests), done)
+        names = {name for handler in handlers for name in names_of(handler.cond)} | set(names_in(leaving))
+        for target, entry in (pair for targets in bodies for pair in targets):
+            names |= {*names_in(target.body), *names_in(entry)}
+        return _Group(handlers, data, RememberedPart(content, frozenset(names)))
+
+    def _entry(self, target: Target) -> tuple[Statement, ...]:
+        entry = self.states[target.state.value].entry if target.state else None
+        return entry.statements if entry else ()
 
     def _data(self, handler: Handler) -> Valuation:
         """The values of the data of the event that a handler waits for."""
@@ -355,21 +392,32 @@ class _Interpreter(Record, eq=False, dict=True):
                 data[f"{_DATA_OF[part]}.{path}" if path else _DATA_OF[part]] = values
         return data
 
-    def _from(self, name: str, known: Valuation) -> Iterator[tuple[str, Valuation]]:
+    def _from(self, name: str, known: Valuation) -> Iterable[tuple[str, Valuation]]:
         """The states that follow the state `name`, each with the values with which it is entered."""
         state = self.states[name]
-        for group in self._groups(name):
-            left: Valuation | None = {**known, **group.data}
-            alone = left
-            assert alone is not None
-            for handler in group.handlers:
-                taken = left
-                if handler.cond is not None:
-                    taken = self._condition(handler.cond, alone, left)
-                if taken is not None:
-                    yield from self._take(state, handler, taken)
-                if left is not None and not chooses(handler):
-                    left = None if handler.cond is None else self._unless(left, handler.cond)
+        whole, groups = self._groups(name)
+        if self.evaluator.records:
+            return (found for group in groups for found in self._followed(state, group, known))
+
+        def follow(inside: Valuation) -> Iterator[tuple[str, Valuation]]:
+            for group in groups:
+                yield from self.memory.transitions(group.part, inside, functools.partial(self._followed, state, group))
+
+        return self.memory.transitions(whole, known, follow)
+
+    def _followed(self, state: State, group: _Group, known: Valuation) -> Iterator[tuple[str, Valuation]]:
+        """The states that follow `state` by the handlers of `group`."""
+        left: Valuation | None = {**known, **group.data}
+        alone = left
+        assert alone is not None
+        for handler in group.handlers:
+            taken = left
+            if handler.cond is not None:
+                taken = self._condition(handler.cond, alone, left)
+            if taken is not None:
+                yield from self._take(state, handler, taken)
+            if left is not None and not chooses(handler):
+                left = None if handler.cond is None else self._unless(left, handler.cond)
 
     def _condition(self, cond: Expression, alone: Valuation, left: Valuation | None) -> Valuation | None:
         """The values where a condition holds, if it is tested with `left`."""
@@ -394,7 +442,7 @@ class _Interpreter(Record, eq=False, dict=True):
         for target in handler.targets:
             assert target.state is not None
             after = self._body(target.body, after_exit)
-            after = {place: v for place, v in after.items() if place[0] != "_" or _root(place) not in EVENT_VARIABLES}
+            after = {place: v for place, v in after.items() if place[0] != "_" or root(place) not in EVENT_VARIABLES}
             entry = self.states[target.state.value].entry
             yield target.state.value, self._body(entry.statements, after) if entry else after
 
@@ -530,12 +578,27 @@ class _Interpreter(Record, eq=False, dict=True):
         self.sent[channel] = merged(self.sent[channel], fields) if channel in self.sent else fields
 
 
+def _is_whole_in(whole: set[str], place: str) -> bool:
+    """Whether the values of a place are integers: it is one of `whole`, or a length."""
+    return place in whole or place.endswith(".length")
+
+
+def _grown(before: Valuation, known: Valuation, last: Valuation) -> Valuation:
+    """The values of both; `before` itself if it contains those of `known`, and `last` too."""
+    grown = {}
+    for place, values in before.items():
+        other = known.get(place)
+        if other is not None and other is not values and other is not last.get(place):
+            both = join(values, other)
+            if both != values:
+                grown[place] = both
+    if len(known) < len(before) or not known.keys() >= before.keys():
+        return {place: grown.get(place, values) for place, values in before.items() if place in known}
+    return before | grown if grown else before
+
+
 def _at_most(length: ValueSet, most: int) -> ValueSet:
     """The lengths of an array that can hold `most` elements."""
     if length.only is not None:
         return listed(min(n, most) for n in length.only if not isinstance(n, str))
     return between(min(length.low, most), min(length.high, most), length.low_from, length.high_from)
-
-
-def _root(place: str) -> str:
-    return place.split(".", 1)[0]

@@ -7,6 +7,7 @@ handler that takes the step, or at a statement in `<onentry>` or `<onexit>` that
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
@@ -169,7 +170,7 @@ def protocols(context: MachineContext) -> ClientProtocols:
     known: dict[str, ClientProtocols] = context.system.__dict__.setdefault("client_protocols", {})
     path = context.source.path
     if path not in known:
-        known[path] = ClientProtocols(context.system, context.automata)
+        known[path] = ClientProtocols(weakref.ref(context.system), context.automata)
     return known[path]
 
 
