@@ -28,8 +28,18 @@ def run(*command: str, cwd: Path) -> str:
 
 @pytest.fixture(scope="module")
 def c_code(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What Cython makes of the sources in the first test; the others do not translate them again."""
-    return tmp_path_factory.mktemp("cython")
+    """What Cython makes of the sources. The tests begin with what the installation of the checkout left, if there is
+    anything; Cython translates what is older than its source, and each file only once."""
+    folder, left = tmp_path_factory.mktemp("cython"), ROOT / "build/cython"
+    if left.is_dir():
+        shutil.copytree(left, folder, dirs_exist_ok=True)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def objects(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What the compiler has made; the tests compile the same source only once."""
+    return tmp_path_factory.mktemp("objects")
 
 
 def build(tmp_path: Path, c_code: Path) -> Path:
@@ -53,15 +63,36 @@ def build(tmp_path: Path, c_code: Path) -> Path:
     return installed
 
 
-def hasty_compiler(path: Path) -> Path:
-    """The compiler of this Python with less optimisation, which takes less time."""
-    path.write_text(f'#!/bin/sh\nexec {sysconfig.get_config_var("CC")} "$@" -O0\n')
+def hasty_compiler(path: Path, objects: Path) -> Path:
+    """The compiler of this Python with less optimisation, which takes less time. Its objects are kept in a folder, by
+    the content of their sources, and copied from there."""
+    path.write_text(HASTY.format(compiler=sysconfig.get_config_var("CC"), objects=objects))
     path.chmod(0o755)
     return path
 
 
-def test_wheel_checks_the_example(tmp_path: Path, c_code: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("CC", str(hasty_compiler(tmp_path / "cc")))
+HASTY = """\
+#!/bin/sh
+source="" result="" before=""
+for argument; do
+    case "$argument" in *.c) source=$argument ;; esac
+    [ "$before" != -o ] || result=$argument
+    before=$argument
+done
+[ -n "$source" ] || exec {compiler} "$@"
+kept="{objects}/$(cksum <"$source" | tr " " -).o"
+[ -e "$kept" ] || {compiler} "$@" -O0 -c -o "$kept" || exit
+case "$result" in *.o) exec cp "$kept" "$result" ;; esac
+for argument; do
+    shift
+    [ "$argument" = "$source" ] && set -- "$@" "$kept" || set -- "$@" "$argument"
+done
+exec {compiler} "$@"
+"""
+
+
+def test_wheel_checks_the_example(tmp_path: Path, c_code: Path, objects: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CC", str(hasty_compiler(tmp_path / "cc", objects)))
     installed = build(tmp_path, c_code)
     assert len(kernels(installed)) == len(PLAIN) + len(MODULES) * kernel.compiled()
     for schema in (ROOT / "schemas").iterdir():
@@ -98,7 +129,7 @@ def kernels(installed: Path) -> list[str]:
     return sorted(path.name for pattern in patterns for path in (installed / "roaml").glob(pattern))
 
 
-def test_wheel_without_a_compiler(tmp_path: Path, c_code: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_wheel_without_a_compiler(tmp_path: Path, c_code: Path, objects: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The wheel contains the kernel as Python, which verifies, and as C, which can be compiled after the installation.
     The program says that it is slow."""
     monkeypatch.setenv("CC", "false")
@@ -107,7 +138,7 @@ def test_wheel_without_a_compiler(tmp_path: Path, c_code: Path, monkeypatch: pyt
     slow = verified(installed)
     assert slow.startswith("never_empty: 1 in ")
     _, *flags = shlex.split(sysconfig.get_config_var("LDSHARED"))
-    linker = shlex.join((str(hasty_compiler(tmp_path / "cc")), *flags))
+    linker = shlex.join((str(hasty_compiler(tmp_path / "cc", objects)), *flags))
     isolated = (sys.executable, "-I", "-c", BUILD, str(installed), linker)
     done = subprocess.run(isolated, capture_output=True, text=True, check=False)
     # The environment of the tests was made in the same way: what could be compiled there can be compiled here.
