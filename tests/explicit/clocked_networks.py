@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import json
 
-from hypothesis import strategies as st
 from loose_networks import networks
 from smc_models import Json, automaton, edge, op, probability, variable, way
 
+import kept_strategies as st
 from roaml.durations import ANY_TIME
 from roaml.jani.model import Clock, Metadata, Model
 from roaml.jani.reader import read_model

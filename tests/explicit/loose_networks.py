@@ -6,8 +6,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from hypothesis import strategies as st
 from smc_models import Json, automaton, document, edge, op, probability, variable, way
+
+import kept_strategies as st
 
 SHARED = ("x", "y")
 STUCK_AUTOMATON, STUCK_LOCATION = "m0", "m"
@@ -117,6 +118,7 @@ def _machine(draw: st.DrawFn, number: int, events: list[str], *, has_faults: boo
     return automaton(f"m{number}", " ".join(locations), edges, [variable(own)])
 
 
+@st.kept
 def _properties() -> st.SearchStrategy[Json]:
     condition = st.builds(op, st.sampled_from(["=", ">"]), st.sampled_from(SHARED), st.sampled_from([1, 1, 2]))
     limit = st.builds(op, st.sampled_from(["≠", "<"]), st.sampled_from(SHARED), st.sampled_from([1, 2, 2]))

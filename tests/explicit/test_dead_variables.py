@@ -10,10 +10,10 @@ from typing import Any
 
 import pytest
 from hypothesis import given, settings
-from hypothesis import strategies as st
 from smc_models import Json, at, automaton, document, edge, model, op, probability, variable, way, ways
 from smc_random import networks
 
+import kept_strategies as st
 from roaml.explicit.path import PathRecorder, shortest
 from roaml.explicit.plain import plain_kernel, plain_search
 from roaml.explicit.preparation import preparation_of
@@ -134,6 +134,7 @@ SHARED = ("x", "y", "z")
 ACTIONS = ("a", "b")
 
 
+@st.kept
 def numbers(names: tuple[str, ...]) -> st.SearchStrategy[Any]:
     simple = st.one_of(st.sampled_from(names), st.integers(0, 2))
     return st.one_of(
@@ -146,6 +147,7 @@ def numbers(names: tuple[str, ...]) -> st.SearchStrategy[Any]:
     )
 
 
+@st.kept
 def conditions(names: tuple[str, ...]) -> st.SearchStrategy[Any]:
     return st.builds(op, st.sampled_from(["=", "<", "≠"]), numbers(names), st.integers(0, 2))
 
@@ -181,7 +183,7 @@ def automata(draw: st.DrawFn, number: int) -> Json:
     for source in locations:
         for _ in range(draw(st.integers(1, 2))):
             action = draw(st.sampled_from([None, *ACTIONS]))
-            guard = draw(st.none() | st.none() | conditions(names))
+            guard = draw(st.one_of(st.none(), st.none(), conditions(names)))
             branches = draw(destinations(locations, names))
             edges.append(edge(source, *branches, action=action, guard=guard))
     type_: Any = "int"

@@ -9,10 +9,10 @@ from typing import Any
 import pytest
 import stormpy
 from hypothesis import given, settings
-from hypothesis import strategies as st
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way, ways
 from smc_random import conditions, networks
 
+import kept_strategies as st
 from roaml.explicit.space import StateLimits, explore
 from roaml.explicit.values import GoalValues, values_of
 from roaml.smc.fault import FaultError

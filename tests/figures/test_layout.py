@@ -6,8 +6,8 @@ from __future__ import annotations
 from itertools import combinations, pairwise
 
 from hypothesis import given, settings
-from hypothesis import strategies as st
 
+import kept_strategies as st
 from examples import examples
 from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.layout import Layout, LayoutDirection, Link, layered, tidy_tree

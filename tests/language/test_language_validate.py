@@ -7,9 +7,9 @@ import re
 
 import pytest
 from hypothesis import assume, given
-from hypothesis import strategies as st
 from lxml import etree
 
+import kept_strategies as st
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, PLAIN_SCXML, STRUCTS, SYSTEM, XML_PROPERTIES
 from roaml.language.grammar import AttributeType, Grammar, SimpleType, ValueChoice
 from roaml.language.validate import (

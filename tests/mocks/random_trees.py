@@ -12,7 +12,8 @@ from typing import Protocol, TypeAlias, TypeVar
 from xml.sax.saxutils import quoteattr
 
 import library_model
-from hypothesis import strategies as st
+
+import kept_strategies as st
 
 Table: TypeAlias = Mapping[str, Mapping[str, Sequence[str]]]
 """Types of nodes, with the ports of each and what they may contain."""

@@ -9,8 +9,8 @@ import naive
 import pytest
 from drawn import CONDITIONS, final_state, observed
 from hypothesis import assume, given, settings
-from hypothesis import strategies as st
 
+import kept_strategies as st
 from examples import examples
 from roaml.observers.build import observer_of
 from roaml.observers.program import State

@@ -13,9 +13,9 @@ from collections.abc import Iterator
 import naive
 import pytest
 from hypothesis import given, settings
-from hypothesis import strategies as st
 from test_observer_random import windows
 
+import kept_strategies as st
 from examples import examples
 from roaml import api
 from roaml.observers.notation import read as read_formula

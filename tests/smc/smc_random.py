@@ -5,13 +5,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from hypothesis import strategies as st
 from smc_models import Json, at, automaton, document, edge, op, probability, variable, ways
+
+import kept_strategies as st
 
 SHARED = ("x", "y")
 ACTIONS = ("a", "b")
 
 
+@st.kept
 def numbers(names: tuple[str, ...]) -> st.SearchStrategy[Any]:
     """Expressions with small integers as values."""
     simple = st.one_of(st.sampled_from(names), st.integers(0, 3), st.just(at("v", 1)))
@@ -23,6 +25,7 @@ def numbers(names: tuple[str, ...]) -> st.SearchStrategy[Any]:
     )
 
 
+@st.kept
 def conditions(names: tuple[str, ...]) -> st.SearchStrategy[Any]:
     compared = st.builds(op, st.sampled_from(["=", "<", "≤", "≠", ">"]), numbers(names), numbers(names))
     return st.one_of(compared, st.builds(op, st.sampled_from(["∧", "∨"]), compared, compared))
@@ -51,7 +54,7 @@ def automata(draw: st.DrawFn, number: int) -> Json:
     edges = []
     for _ in range(draw(st.integers(1, 5))):
         action = draw(st.sampled_from([None, *ACTIONS, *ACTIONS]))
-        guard = draw(st.none() | conditions(names))
+        guard = draw(st.one_of(st.none(), conditions(names)))
         branches = draw(destinations(locations, names))
         edges.append(edge(draw(st.sampled_from(locations)), *branches, action=action, guard=guard))
     return automaton(f"m{number}", " ".join(locations), edges, [variable(own)])

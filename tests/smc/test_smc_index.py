@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 from smc_models import at, automaton, document, edge, model, op, probability, variable, way, ways
 from smc_random import networks
 
+import kept_strategies as st
 from both_kernels import difference
 from examples import examples
 from roaml.explicit.space import StateLimits, explore

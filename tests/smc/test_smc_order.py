@@ -8,11 +8,11 @@ from typing import Any
 from unittest.mock import patch
 
 from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 from smc_models import automaton, document, edge, model, op, probability, variable, way
 from smc_random import networks
 from test_smc_states import NO_PAYLOAD, PATHS, compiled_model, expected, results, with_nodes
 
+import kept_strategies as st
 from examples import examples
 from roaml.explicit.plain import plain_states
 from roaml.smc import rounds, states

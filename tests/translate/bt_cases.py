@@ -8,7 +8,8 @@ from dataclasses import replace
 from fractions import Fraction
 
 from bt_trees import Setup, Tree, leaf, node, writer
-from hypothesis import strategies as st
+
+import kept_strategies as st
 
 SCRIPTS = (
     "SSFRRSRFFS",

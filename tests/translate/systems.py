@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from xml.sax.saxutils import quoteattr
 
-from hypothesis import strategies as st
+import kept_strategies as st
 
 EVENTS = {"alpha": "int", "beta": "bool", "gamma": "list", "delta": None}
 """Events and the kind of their parameter `p`."""
@@ -83,6 +83,7 @@ def statements(draw: st.DrawFn, event: str | None, known: tuple[str, ...], depth
     return f"<if{_attributes(cond=cond)}>{body}<else/>{otherwise}</if>"
 
 
+@st.kept
 def bodies(event: str | None, known: tuple[str, ...], most: int = 2) -> st.SearchStrategy[str]:
     return st.lists(statements(event, known), max_size=most).map("".join)
 

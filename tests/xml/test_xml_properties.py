@@ -7,9 +7,9 @@ import re
 from collections.abc import Iterable
 
 from hypothesis import assume, given
-from hypothesis import strategies as st
 from lxml import etree
 
+import kept_strategies as st
 from roaml.text import Span, apply_edits
 from roaml.xml_syntax import Element, Node, parse
 from roaml.xml_syntax.names import is_local_name
