@@ -4,4 +4,4 @@
 `roaml.api` is the public interface for other programs. The package does not depend on editors or LSP.
 """
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"

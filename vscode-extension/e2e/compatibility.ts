@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import * as fs from "node:fs";
 import * as path from "node:path";
+import { VERSION } from "./support/paths";
 import { MEND, sample, type Stage } from "./support/stage";
 import { fakeExtension, temporaryFolder, write } from "./support/workbench";
 
@@ -131,7 +132,10 @@ export function compatibility(stage: Stage): void {
         // The Python extension now reports its interpreter, which is another one.
         write(path.join(window.folder, ".python"), "");
         fs.rmSync(starts);
-        await window.statusItem("AS2FM: 0.1.0").and(window.page.locator('[aria-label*="own environment"]')).waitFor();
+        await window
+            .statusItem(`AS2FM: ${VERSION}`)
+            .and(window.page.locator('[aria-label*="own environment"]'))
+            .waitFor();
         await window.squiggles.first().waitFor();
     });
 }

@@ -6,6 +6,7 @@
  */
 
 import type { Frame } from "playwright-core";
+import { VERSION } from "./support/paths";
 import { MEND, sample } from "./support/stage";
 import { Workbench } from "./support/workbench";
 
@@ -24,7 +25,7 @@ const window = await workbench.open(sample(LONG));
 const { page } = window;
 await window.openFile("main.xml");
 const offer = window.notification("is not installed yet").getByRole("button", { name: "Install" });
-const running = window.statusItem("AS2FM: 0.1.0");
+const running = window.statusItem(`AS2FM: ${VERSION}`);
 await offer.or(running).first().waitFor();
 if (await offer.isVisible()) await offer.click();
 await window.running();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import * as fs from "node:fs";
+import { VERSION } from "./support/paths";
 import { sample, type Stage } from "./support/stage";
 import type { Window } from "./support/window";
 
@@ -40,7 +41,7 @@ export function serverLifeCycle(stage: Stage): void {
         await window.running();
         await window.squiggles.first().waitFor();
         await window.run("AS2FM: Show Versions");
-        await window.notification("as2fm-lsp 0.1.0").waitFor();
+        await window.notification(`as2fm-lsp ${VERSION}`).waitFor();
         const before = await onlyServer(window, stage.workbench.home);
         await window.run("AS2FM: Restart Language Server");
         await window.until(() => servers(stage.workbench.home).some((pid) => pid !== before));

@@ -6,7 +6,7 @@ import * as fs from "node:fs";
 import * as path from "node:path";
 import { isDeepStrictEqual } from "node:util";
 import type { Frame, Locator, Page } from "playwright-core";
-import { OUTPUT } from "./paths";
+import { OUTPUT, VERSION } from "./paths";
 
 export class Window {
     constructor(
@@ -181,7 +181,7 @@ export class Window {
 
     /** Waits until the language server runs. */
     async running(timeout = TIMEOUT_MS): Promise<void> {
-        await this.statusItem("AS2FM: 0.1.0").waitFor({ timeout });
+        await this.statusItem(`AS2FM: ${VERSION}`).waitFor({ timeout });
     }
 
     /** Waits until a value that is read from the page equals another one. */
