@@ -13,6 +13,7 @@ from roaml import api
 from roaml.diagnostics import Severity, Symbol
 from roaml.ide.completion import complete
 from roaml.ide.describe import describe
+from roaml.ide.hover import hover
 from roaml.ide.names.lookup import symbol_group, symbol_group_at
 from roaml.ide.rename import Renaming, rename
 from roaml.jani.writer import write
@@ -115,7 +116,30 @@ def test_names_of_parameters_are_found_in_all_files(folder: Path) -> None:
     found = [Path(use.path).name for use in group.uses]
     assert {name: found.count(name) for name in set(found)} == {name: n for name, n in counts.items() if n}
     assert [Path(place.path).name for place in group.definitions] == ["main.xml"]
+    assert [symbol.kind for symbol in group.symbols] == [SymbolKind.MODEL_PARAMETER]
     assert "capacity : uint8 = 100" in describe(analysis, group.symbols[0])
+
+
+def test_a_parameter_is_hovered_where_it_is_used(folder: Path) -> None:
+    analysis = snapshot(folder).analysis
+    for name, text in FILES.items():
+        for match in re.finditer(r"\bcapacity\b", text):
+            shown = hover(analysis, str(folder / name), match.start() + 1)
+            assert shown is not None
+            assert "capacity : uint8 = 100" in shown.text
+            assert "unknown" not in shown.text
+            assert "No port" not in shown.text
+
+
+def test_a_misspelled_parameter_is_corrected(folder: Path) -> None:
+    path = folder / "battery.ascxml"
+    path.write_text(FILES["battery.ascxml"].replace("- capacity / 10", "- capactiy / 10"))
+    result = api.check([str(folder / "main.xml")])
+    (finding,) = [d for d in result.diagnostics if d.severity is Severity.ERROR]
+    assert finding.code == "undeclared-variable"
+    assert "did you mean the parameter `capacity`?" in finding.message
+    (fix,) = [fix for fix in finding.fixes if "capacity" in fix.title]
+    assert apply_edits(path.read_text(), fix.edits) == FILES["battery.ascxml"]
 
 
 def test_a_parameter_is_renamed_in_all_files(folder: Path) -> None:

@@ -98,6 +98,12 @@ class SystemExpansion(Record, frozen=True, eq=False):
         """The path of the file of the user that is analysed under `path`."""
         return self.texts[path].source if path in self.texts else path
 
+    def known_in(self, path: str) -> frozenset[str]:
+        """The names of the parameters that a file can use."""
+        return frozenset(self.parameters) | frozenset(
+            place.symbol.name for place in self.names.get(path, ()) if place.defines and place.symbol.path == path
+        )
+
     def paths(self, source: str) -> tuple[str, ...]:
         """The paths under which a file of the user is analysed."""
         return self.variants.get(source, (source,))

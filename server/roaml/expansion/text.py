@@ -43,6 +43,16 @@ class ExpandedText(Record, frozen=True, dict=True):
         start, end = self._offset(span.start, at_end=False), self._offset(span.end, at_end=span.end > span.start)
         return Span(start, max(start, end))
 
+    def written(self, span: Span) -> str:
+        """The text of the user in `span`, a span of the file of the user that no edit touches; "" if one touches it."""
+        shift = 0
+        for edit, new in self.edits:
+            if edit.end <= span.start:
+                shift += len(new) - (edit.end - edit.start)
+            elif edit.start < span.end:
+                return ""
+        return self.text[span.start + shift : span.end + shift]
+
     def is_written(self, span: Span) -> bool:
         """Whether the text in `span` is that of the user: no edit touches it."""
         original = self.origin(span)

@@ -156,6 +156,7 @@ _SYMBOLS = {
     SymbolKind.EVENT: TokenKind.EVENT,
     SymbolKind.PORT: TokenKind.PORT,
     SymbolKind.VARIABLE: TokenKind.VARIABLE,
+    SymbolKind.MODEL_PARAMETER: TokenKind.CONSTANT,
     SymbolKind.PLUGIN: TokenKind.PLUGIN,
     SymbolKind.TREE: TokenKind.TREE,
     SymbolKind.MACHINE: TokenKind.TREE,

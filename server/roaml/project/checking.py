@@ -42,6 +42,7 @@ from roaml.project.settings import Settings
 from roaml.project.suppress import Suppression, covering, suppressions
 from roaml.project.translation import size_of_translation
 from roaml.project.values import arriving_at, local_values, values_in
+from roaml.record import replace
 from roaml.rules import BY_CODE, RULES
 from roaml.rules.files import file_too_large, unused_suppression
 from roaml.rules.files import internal_error as internal_error_rule
@@ -57,6 +58,7 @@ from roaml.rules.rule import (
     replacements,
 )
 from roaml.rules.support.end_tags import without_misnamed_ends
+from roaml.suggest import close_names
 from roaml.text import Location, SourceFile, Span
 
 log = logging.getLogger(__name__)
@@ -188,7 +190,7 @@ class RuleRunner:
         runner = RuleRunner(expanded.analysis, self.settings)
         for variant in expanded.expansion.paths(path):
             for finding in runner.findings(variant, system):
-                yield expanded.finding(variant, finding)
+                yield _meant_parameter(expanded, path, expanded.finding(variant, finding))
 
     def _is_selected(self, finding: Finding) -> bool:
         code, settings = finding.code, self.settings
@@ -214,6 +216,22 @@ class RuleRunner:
             location = locate(self.analysis, related.place)
             return None if location is None else RelatedPlace(location, related.message)
         return RelatedPlace(Location(path, related.place), related.message)
+
+
+_UNKNOWN_NAMES = ("undeclared-variable", "property-condition", "invalid-rate", "invalid-value")
+"""The codes of findings at a name that may be a misspelled parameter."""
+
+
+def _meant_parameter(expanded: Expanded, path: str, finding: Finding) -> Finding:
+    """A finding about an unknown name with a suggestion, if the name is similar to that of a parameter."""
+    if finding.code not in _UNKNOWN_NAMES or finding.fixes:
+        return finding
+    text = expanded.written(path, finding.span)
+    close = close_names(text, expanded.expansion.known_in(path), 1) if text.isidentifier() else ()
+    if not close or close[0] == text:
+        return finding
+    message = f"{finding.message.partition(';')[0]}; did you mean the parameter `{close[0]}`?"
+    return replace(finding, message=message, fixes=tuple(replacements(finding.span, close)))
 
 
 def _limited(rule: Rule, findings: Iterable[Finding]) -> list[Finding]:

@@ -12,7 +12,7 @@ from roaml.diagnostics import Finding, Fix, Related, Symbol
 from roaml.expansion import ExpandedText, SystemExpansion
 from roaml.model.system import System
 from roaml.record import Record, replace
-from roaml.text import Location, TextEdit
+from roaml.text import Location, Span, TextEdit
 
 if TYPE_CHECKING:
     from roaml.lower.library_tree import LibraryTree
@@ -54,6 +54,14 @@ class Expanded(Record, frozen=True, eq=False):
         if not all(text.is_written(edit.span) for edit in edits):
             return None
         return replace(fix, plan=tuple(TextEdit(text.origin(edit.span), edit.new_text) for edit in edits))
+
+    def written(self, path: str, span: Span) -> str:
+        """The text in a span of a file of the user."""
+        for variant in self.expansion.paths(path):
+            source, text = self.analysis.source(variant), self.expansion.texts.get(variant)
+            if source is not None:
+                return source.text[span.start : span.end] if text is None else text.written(span)
+        return ""
 
     def linked(self, path: str) -> System | None:
         """The linked system of the expanded texts."""

@@ -68,7 +68,15 @@ def _index(occurrences: Iterable[Occurrence]) -> Uses:
 
 
 def _of(analysis: Analysis, path: str, system: str | None) -> Iterator[Occurrence]:
-    yield from in_parameters(analysis, path, system)
+    parameters = tuple(in_parameters(analysis, path, system))
+    yield from parameters
+    spans = {occurrence.span for occurrence in parameters}
+    for occurrence in _of_kind(analysis, path, system):
+        if occurrence.span not in spans:  # the name of a parameter is that of a variable only where one hides it
+            yield occurrence
+
+
+def _of_kind(analysis: Analysis, path: str, system: str | None) -> Iterator[Occurrence]:
     source, owner = analysis.source(path), system or path
     kind = analysis.kind_in(path, system)
     assert source is not None
