@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
@@ -16,6 +17,7 @@ from roaml.mocks.mock import Mock, MockError, read_mock, read_mocks, unused
 from roaml.model.kinds import FileKind, kind_of
 from roaml.project.settings import Settings
 from roaml.record import Record, field, replace
+from roaml.suggest import close_names, did_you_mean
 from roaml.text import decode
 
 if TYPE_CHECKING:
@@ -50,15 +52,24 @@ class MockDeclarations(Record, frozen=True):
     def is_empty(self) -> bool:
         return not (self.has_mocks or self.entries or self.rate)
 
-    def mocks(self) -> tuple[Mock, ...]:
+    def mocks(self, parameters: Callable[[], Mapping[str, str]] | None = None) -> tuple[Mock, ...]:
         """The declared mocks, followed by those in the file.
+
+        Args:
+            parameters: returns the values of the parameters of a system, by name, which replace `$(var NAME)`
+                (docs/spec/parameters.md#uses).
 
         Raises:
             MockError: a mock is not valid, or the file is not valid UTF-8.
             OSError: the file cannot be read.
         """
-        mocks = tuple(read_mock(text) for text in self.texts)
-        return mocks if self.file is None else mocks + _mocks_of(self.file)
+        texts, in_file = self.texts, None if self.file is None else _text_of(self.file)
+        if parameters is not None and any("$(var" in text for text in (*texts, in_file or "")):
+            known = parameters()
+            texts = tuple(_with_parameters(text, known) for text in texts)
+            in_file = None if in_file is None else _with_parameters(in_file, known)
+        mocks = tuple(read_mock(text) for text in texts)
+        return mocks if in_file is None else mocks + read_mocks(in_file)
 
 
 class MockMessages(Record, frozen=True):
@@ -240,7 +251,12 @@ def mocked_system_texts(
     """
     from roaml.api.mocked_systems import mock_system  # noqa: PLC0415 - systems without mocks start faster
 
-    mocked = mock_system(path, declared.mocks(), ros_paths, settings, texts)
+    def parameters() -> Mapping[str, str]:
+        from roaml.api.systems import values_of_parameters  # noqa: PLC0415
+
+        return values_of_parameters(path, ros_paths, settings, texts)
+
+    mocked = mock_system(path, declared.mocks(parameters), ros_paths, settings, texts)
     if mocked.missing:
         raise _missing_mocks(path, mocked.missing, messages)
     _report_unused(mocked.unused, messages)
@@ -253,11 +269,26 @@ def mocked_system_texts(
     return {**texts, **mocked.texts}
 
 
-def _mocks_of(path: str) -> tuple[Mock, ...]:
+def _text_of(path: str) -> str:
+    """The text of a file with mocks."""
     try:
-        return read_mocks(required(path).decode("utf-8"))
+        return required(path).decode("utf-8")
     except UnicodeDecodeError:
         raise MockError(f"{path}: not valid UTF-8; fix the encoding") from None
+
+
+def _with_parameters(text: str, parameters: Mapping[str, str]) -> str:
+    """A mock, or the text of a file with mocks, in which `$(var NAME)` is replaced."""
+    from roaml.expansion.uses import VARIABLE  # noqa: PLC0415 - a JANI model needs no languages
+
+    def value(match: re.Match[str]) -> str:
+        if match[1] not in parameters:
+            close = close_names(match[1], parameters)
+            known = did_you_mean(close) if close else "; declare it in the system file with `<parameter>`"
+            raise MockError(f"there is no parameter `{match[1]}`{known}")
+        return parameters[match[1]]
+
+    return VARIABLE.sub(value, text)
 
 
 def _missing_mocks(path: str, types: Iterable[str], messages: MockMessages) -> MockError:

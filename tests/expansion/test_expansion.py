@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 
@@ -251,3 +252,46 @@ def test_values_from_a_parameter_file_of_ros(folder: Path, capsys: pytest.Captur
         capsys.readouterr()
         assert run([command, main, "--params-file", file]) == 2
         assert "not a parameter file of ROS 2: no node has `ros__parameters`" in capsys.readouterr().err
+
+
+TREE_SYSTEM = """<roaml>
+    <parameter_declarations>
+        <parameter name="grasps" type="float64" value="0.25" min="0" max="1" />
+        <parameter name="tries" type="int32" value="1" />
+    </parameter_declarations>
+    <parameters><max_time value="20" unit="s" /></parameters>
+    <behavior_tree><input type="bt.cpp-xml" src="tree.xml" /></behavior_tree>
+    <properties><input type="jani" src="properties.jani" /></properties>
+</roaml>
+"""
+TREE = """<root BTCPP_format="4">
+    <BehaviorTree ID="Main">
+        <RetryUntilSuccessful num_attempts="$(var tries)"><Grasp /></RetryUntilSuccessful>
+    </BehaviorTree>
+</root>
+"""
+
+
+def test_mocks_and_trees_use_parameters(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The probability that one of n tries succeeds is 1 - (1 - p)^n."""
+    done = {"op": "=", "left": "bt_1000_response__status", "right": 1}
+    done = {"op": "∧", "left": "bt_1000_response.valid", "right": done}
+    value = {"op": "filter", "fun": "values", "values": {"op": "Pmin", "exp": {"op": "F", "exp": done}}}
+    value["states"] = {"op": "initial"}
+    properties = {"properties": [{"name": "done", "expression": value}]}
+    for name, text in (("main.xml", TREE_SYSTEM), ("tree.xml", TREE), ("properties.jani", json.dumps(properties))):
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    command = ["verify", str(tmp_path / "main.xml"), "--mock", "Grasp: $(var grasps)", "--exhaustive"]
+    for values, expected in (
+        ([], 0.25),
+        (["--set", "grasps=0.5"], 0.5),
+        (["--set", "grasps=0.5", "--set", "tries=3"], 0.875),
+    ):
+        capsys.readouterr()
+        assert run([*command, "--format", "json", *values]) in (0, 1)
+        written = json.loads(capsys.readouterr().out)
+        (result,) = written["results"]
+        assert result["exact"]["least"] == pytest.approx(expected, abs=1e-6)
+        assert written["parameters"]["grasps"] == str(0.5 if values else 0.25)
+    assert run(["verify", str(tmp_path / "main.xml"), "--mock", "Grasp: $(var grsps)"]) == 2
+    assert "there is no parameter `grsps`; did you mean `grasps`?" in capsys.readouterr().err

@@ -102,14 +102,15 @@ def read_target(options: argparse.Namespace, settings: Settings) -> Verification
             return load_mocked_tree(
                 options.main, declared, options.max_time, settings, MESSAGES, counts=False, texts=options.texts
             ).target
-        if not declared.is_empty:
-            texts = mocked_system_texts(options.main, declared, options.ros_path, settings, MESSAGES, options.texts)
         settings = with_parameter_files(settings, options.params_file)
+        overrides = Overrides(
+            options.max_time, None, options.reaction_time, semantics=semantics_of(options), values=tuple(options.set)
+        )
+        if not declared.is_empty:
+            around = replace(settings, overrides=overrides)
+            texts = mocked_system_texts(options.main, declared, options.ros_path, around, MESSAGES, options.texts)
     except (MockError, ParameterFileError) as error:
         raise UsageError(str(error)) from None
-    overrides = Overrides(
-        options.max_time, None, options.reaction_time, semantics=semantics_of(options), values=tuple(options.set)
-    )
     return api.target(options.main, options.ros_path, settings, texts, overrides, options.constant)
 
 

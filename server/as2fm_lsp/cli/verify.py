@@ -396,7 +396,7 @@ class _Verification:
         if self.options.format is Format.JSON:
             entries = [_row(finding) for finding in self._fault_entries()]
             row = None if self.stuck_result is None else stuck_report.as_row(self.stuck_result, self._place_row)
-            return as_json(self.results, entries, stuck=row, tree=self._tree_row())
+            return as_json(self.results, entries, stuck=row, tree=self._tree_row(), parameters=self.target.parameters)
         if self.options.format is Format.JUNIT:
             from as2fm_lsp.verification.junit_report import as_junit  # noqa: PLC0415 - needs a library for XML
 

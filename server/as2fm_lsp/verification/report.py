@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from as2fm_lsp.verification import activity_report, ends, exact_report, scheduler_report, stuck_report
@@ -266,6 +266,7 @@ def as_json(
     errors: Sequence[dict[str, Any]] = (),
     stuck: dict[str, Any] | None = None,
     tree: dict[str, Any] | None = None,
+    parameters: Mapping[str, str] | None = None,
 ) -> str:
     """All results for programs, as JSON.
 
@@ -273,12 +274,15 @@ def as_json(
         errors: the errors of the model because of which properties have no result.
         stuck: the result of the check whether the system gets stuck.
         tree: the measurements of a tree without a system.
+        parameters: name of a parameter of the system -> the text of its value.
     """
     value: dict[str, Any] = {"results": [row(result) for result in results]}
     if stuck is not None:
         value["stuck"] = stuck
     if tree is not None:
         value["tree"] = tree
+    if parameters:
+        value["parameters"] = dict(parameters)
     if errors:
         value["errors"] = list(errors)
     return json.dumps(value, indent=1, ensure_ascii=False) + "\n"

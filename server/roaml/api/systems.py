@@ -66,8 +66,7 @@ class LoadedSystem(Record, frozen=True):
     @property
     def parameters(self) -> dict[str, str]:
         """Name of a parameter of the system -> the text of its value (docs/spec/parameters.md#values)."""
-        expanded = self.analysis.expanded(self.path)
-        return {} if expanded is None else {name: p.text for name, p in expanded.expansion.parameters.items()}
+        return _parameters(self.analysis, self.path)
 
 
 def load(
@@ -116,6 +115,19 @@ def loaded(snapshot: Snapshot, path: str) -> LoadedSystem:
     if errors:
         raise ModelError(CheckResult(errors, analysis.files_of(path), (), snapshot))
     return LoadedSystem(path, properties_of(analysis, path), analysis, observed_properties_of(analysis, path))
+
+
+def _parameters(analysis: Analysis, path: str) -> dict[str, str]:
+    expanded = analysis.expanded(path)
+    return {} if expanded is None else {name: p.text for name, p in expanded.expansion.parameters.items()}
+
+
+def values_of_parameters(
+    path: str, ros_paths: Iterable[str], settings: Settings, texts: Mapping[str, str | bytes]
+) -> dict[str, str]:
+    """Name of a parameter of a system -> the text of its value, even if the system has errors. The arguments are those
+    of `check`."""
+    return _parameters(check([path], ros_paths, settings, texts).snapshot.analysis, os.path.abspath(path))
 
 
 def unknown_parameter(analysis: Analysis, systems: Iterable[str], overrides: Overrides) -> str:
