@@ -16,7 +16,7 @@ from roaml.ide.completion import complete
 from roaml.ide.describe import describe
 from roaml.ide.hover import hover
 from roaml.ide.names.lookup import symbol_group, symbol_group_at
-from roaml.ide.rename import Renaming, rename
+from roaml.ide.rename import RenameRefusal, Renaming, rename
 from roaml.jani.writer import write
 from roaml.project.workspace import Snapshot
 from roaml.roles import SymbolKind
@@ -188,6 +188,28 @@ def test_an_instance_is_a_definition(folder: Path) -> None:
     assert [automaton.name for automaton in system.automata] == ["left", "right", "Monitor", "second"]
     assert {Path(automaton.path).name for automaton in system.automata} == {"battery.ascxml", "monitor.ascxml"}
     assert sorted(system.topics) == ["left__level", "right__level"]
+
+
+def test_an_instance_is_renamed_with_its_references(folder: Path) -> None:
+    properties = folder / "properties.xml"
+    properties.write_text(FILES["properties.xml"].replace('event="publish">', 'event="publish" origin="left">'))
+    analysis = snapshot(folder).analysis
+    offset = properties.read_text().index('origin="left"') + 9
+    renaming = rename(analysis, str(properties), offset, "port")
+    assert isinstance(renaming, Renaming), renaming
+    for changed, edits in renaming.edits.items():
+        file = Path(changed)
+        file.write_text(apply_edits(file.read_text(), tuple(edits)))
+    assert 'name="port" namespace="left"' in (folder / "main.xml").read_text()
+    assert 'origin="port"' in properties.read_text()
+    assert not [d for d in api.check([str(folder / "main.xml")]).diagnostics if d.severity >= Severity.WARNING]
+
+
+def test_a_name_that_instances_change_is_not_renamed(folder: Path) -> None:
+    offset = FILES["battery.ascxml"].index('topic="level"') + 8
+    refusal = rename(snapshot(folder).analysis, str(folder / "battery.ascxml"), offset, "charge")
+    assert isinstance(refusal, RenameRefusal)
+    assert "instances of its machine have other names" in refusal.reason
 
 
 def test_a_machine_alone_has_its_own_values(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
