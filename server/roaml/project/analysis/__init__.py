@@ -13,12 +13,13 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable, Mapping
 
 from roaml.forest.settings import NEWEST, TreeSettings
 from roaml.interfaces.registry import Registry
 from roaml.model.parameters import NO_OVERRIDES, Overrides
-from roaml.project.analysis.expanding import ExpandedFiles, Expanding
+from roaml.project.analysis.expanding import ExpandedFiles, Expanding, Expansions
 from roaml.project.analysis.families import Families
 from roaml.project.analysis.gaps import Gaps
 from roaml.project.analysis.interfaces import Interfaces
@@ -71,40 +72,16 @@ class Analysis:
         tree_files = TreeFiles(sources)
         self._systems = Systems(sources, tree_files, systems)
         families = Families(sources, tree_files, self._systems, trees, listed)
-        self._expanding = Expanding(sources, self._systems, overrides.values) if expands else None
-        self._expanded: dict[tuple[str, str, bool], Expanded | None] = {}
+        expanding = Expanding(sources, self._systems, overrides.values) if expands else None
+        expansions = Expansions(expanding, functools.partial(_analysed, registry, overrides, trees))
+        self.expanded = expansions.system
+        self.expanded_file = expansions.file
         machines = Machines(sources, interfaces, self._systems)
         gaps = Gaps(sources, tree_files, self._systems, machines)
-        linking = Linking(sources, interfaces, self._systems, self.expanded, machines, gaps)
+        linking = Linking(sources, interfaces, self._systems, expansions.system, machines, gaps)
         self._open_files(sources, interfaces)
         self._open_trees(tree_files, families)
         self._open_systems(self._systems, machines, gaps, linking)
-
-    def expanded(self, system: str, *, varied: bool = False) -> Expanded | None:
-        """A system whose parameters and instances are expanded; `None` if it uses neither, or cannot be read. If
-        `varied`, its parameters have other values than the given ones, which they could have as well."""
-        key = ("system", system, varied)
-        if key not in self._expanded:
-            files = self._expanding.system(system, varied=varied) if self._expanding else None
-            self._expanded[key] = self._analysed(files)
-        return self._expanded[key]
-
-    def expanded_file(self, path: str, *, varied: bool = False) -> Expanded | None:
-        """A machine or property file without a system whose own parameters are expanded; `None` if it declares none.
-        For `varied`, see `expanded`."""
-        key = ("file", path, varied)
-        if key not in self._expanded:
-            files = self._expanding.file(path, varied=varied) if self._expanding else None
-            self._expanded[key] = self._analysed(files)
-        return self._expanded[key]
-
-    def _analysed(self, expanded: ExpandedFiles | None) -> Expanded | None:
-        if expanded is None:
-            return None
-        files = expanded.files
-        registry, settings = self.registry.reading(files.text), self.tree_settings
-        inner = Analysis(files, registry, expanded.memo, expanded.systems, self.overrides, settings, expands=False)
-        return Expanded(inner, expanded.expansion)
 
     def _open_files(self, sources: SourceFiles, interfaces: Interfaces) -> None:
         self.source = sources.source
@@ -165,3 +142,9 @@ class Analysis:
     def memberships(self) -> Mapping[str, tuple[str, ...]]:
         """File -> its systems."""
         return self._systems.memberships
+
+
+def _analysed(registry: Registry, overrides: Overrides, trees: TreeSettings, expanded: ExpandedFiles) -> Expanded:
+    reading = registry.reading(expanded.files.text)
+    inner = Analysis(expanded.files, reading, expanded.memo, expanded.systems, overrides, trees, expands=False)
+    return Expanded(inner, expanded.expansion)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
+from typing import Generic, TypeVar
 
 from roaml.expansion import SystemExpansion, expand, expand_file, needs_expansion
 from roaml.jani.properties import Property
@@ -17,6 +18,8 @@ from roaml.project.paths import resolve
 from roaml.record import Record
 from roaml.text import SourceFile
 from roaml.xml_syntax import Document
+
+T = TypeVar("T")
 
 
 class ExpandedFiles(Record, frozen=True, eq=False):
@@ -93,3 +96,35 @@ class Expanding:
     def _expanded(self, expansion: SystemExpansion, name: str, systems: tuple[str, ...]) -> ExpandedFiles:
         texts = {path: SourceFile(path, text.text) for path, text in expansion.texts.items()}
         return ExpandedFiles(expansion, self._sources.files.with_texts(texts), self._sources.memo.inner(name), systems)
+
+
+class Expansions(Generic[T]):
+    """The expanded systems and files, each with its analysis.
+
+    Args:
+        expanding: `None` for files that are expanded already.
+        analyse: returns the analysis of expanded files.
+    """
+
+    def __init__(self, expanding: Expanding | None, analyse: Callable[[ExpandedFiles], T]) -> None:
+        self._expanding = expanding
+        self._analyse = analyse
+        self._known: dict[tuple[str, str, bool], T | None] = {}
+
+    def system(self, system: str, *, varied: bool = False) -> T | None:
+        """A system whose parameters and instances are expanded; `None` if it uses neither, or cannot be read. If
+        `varied`, its parameters have other values than the given ones, which they could have as well."""
+        key = ("system", system, varied)
+        if key not in self._known:
+            files = self._expanding.system(system, varied=varied) if self._expanding else None
+            self._known[key] = None if files is None else self._analyse(files)
+        return self._known[key]
+
+    def file(self, path: str, *, varied: bool = False) -> T | None:
+        """A machine or property file without a system whose own parameters are expanded; `None` if it declares none.
+        For `varied`, see `system`."""
+        key = ("file", path, varied)
+        if key not in self._known:
+            files = self._expanding.file(path, varied=varied) if self._expanding else None
+            self._known[key] = None if files is None else self._analyse(files)
+        return self._known[key]

@@ -6,7 +6,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 from roaml.forest.forest import Forest
 from roaml.forest.settings import TreeSettings
@@ -15,9 +14,6 @@ from roaml.model.kinds import FileKind
 from roaml.project.analysis.sources import SourceFiles
 from roaml.project.analysis.systems import Systems
 from roaml.project.analysis.tree_files import TreeFiles
-
-if TYPE_CHECKING:
-    pass
 
 
 class Families:

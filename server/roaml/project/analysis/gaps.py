@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from roaml.language import BEHAVIOR_TREE
 from roaml.model.expand import is_whole, node_at, stray_remaps
@@ -18,9 +17,6 @@ from roaml.project.analysis.systems import Systems
 from roaml.project.analysis.tree_files import TreeFiles
 from roaml.suggest import close_names
 from roaml.text import Span
-
-if TYPE_CHECKING:
-    pass
 
 
 class Gaps:

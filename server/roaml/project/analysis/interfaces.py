@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 from roaml.interfaces.registry import NotFound, Reason, Registry
 from roaml.interfaces.types import Definition, Kind
@@ -13,9 +12,6 @@ from roaml.model.nesting import MAX_DEPTH, MAX_FIELDS
 from roaml.model.ros import InterfaceType, RepeatedType, extent_of, interface_type
 from roaml.model.value_types import INTERFACE_KINDS
 from roaml.project.memo import Memo
-
-if TYPE_CHECKING:
-    pass
 
 
 class Interfaces:

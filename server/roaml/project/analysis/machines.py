@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 from roaml.expr.types import Struct, Type
 from roaml.interfaces.registry import NotFound
@@ -28,9 +27,6 @@ from roaml.project.analysis.systems import Systems
 from roaml.record import Record
 from roaml.roles import SymbolKind
 from roaml.scxml.names import sanitise
-
-if TYPE_CHECKING:
-    pass
 
 
 class Structs(Record, frozen=True, eq=False):

@@ -7,7 +7,7 @@ The results are cached by the text of the file.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from roaml.diagnostics import Finding
 from roaml.jani.properties import Property
@@ -31,10 +31,6 @@ from roaml.project.memo import Memo
 from roaml.text import SourceFile, Span
 from roaml.xml_syntax import Document
 from roaml.xml_syntax import parse as parse_xml
-
-if TYPE_CHECKING:
-    pass
-
 
 T = TypeVar("T")
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 from roaml.disk import UnreadableReason
 from roaml.model.expand import TreeFileOutline
@@ -15,9 +14,6 @@ from roaml.project.analysis.sources import SourceFiles
 from roaml.project.analysis.tree_files import TreeFiles
 from roaml.project.files import MAX_CHARACTERS
 from roaml.project.paths import resolve
-
-if TYPE_CHECKING:
-    pass
 
 
 class Systems:

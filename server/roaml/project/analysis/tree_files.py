@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import functools
 import os
-from typing import TYPE_CHECKING
 
 from roaml.model.expand import TreeFileOutline, tree_file_outline
 from roaml.model.kinds import PROJECT_EXTENSION
@@ -14,9 +13,6 @@ from roaml.project.analysis.sources import SourceFiles
 from roaml.project.paths import resolve
 from roaml.project.settings import folders_above
 from roaml.record import replace
-
-if TYPE_CHECKING:
-    pass
 
 
 class TreeFiles:
