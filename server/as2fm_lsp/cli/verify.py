@@ -405,6 +405,12 @@ class _Verification:
             from as2fm_lsp.verification.csv_report import as_csv  # noqa: PLC0415
 
             return as_csv(self.results)
+        if self.options.format is Format.MARKDOWN:
+            from as2fm_lsp.cli.verify_markdown import as_markdown  # noqa: PLC0415
+
+            return as_markdown(self.results, self._report(), self._assumptions())
+        if self.options.format is not Format.TEXT:
+            return render(self._report(), self.options.format)
         if is_quiet():
             return as_brief_text(self.results, self._place, self.options.stuck)
         # A story of a stuck trace ends with the waiting automata.
@@ -416,6 +422,15 @@ class _Verification:
         if self.stuck_result is not None:
             text += stuck_report.as_text(self.stuck_result, self._place, self._where_shown(has_story))
         return f"{text}{'' if has_story else explained(text, self.target.model, self._place)}{self._assumptions()}\n"
+
+    def _report(self) -> CheckReport:
+        """The results as findings, and the errors in the model because of which properties could not be decided."""
+        from as2fm_lsp.verification.findings import diagnostics  # noqa: PLC0415
+
+        source_of = _source_of(self.target)
+        found = diagnostics(self.results, self.target, os.path.abspath(self.options.main))
+        entries = [entry(diagnostic, source_of, shown_path) for diagnostic in found]
+        return CheckReport([*self._fault_entries(), *entries], len(self.target.files))
 
     def _tree_row(self) -> dict[str, Any] | None:
         if self.tree is None:
@@ -534,7 +549,7 @@ class _Verification:
 
     def _print_faults(self) -> None:
         """Report on standard error why properties could not be decided. JSON already contains these errors."""
-        if self.faults and self.options.format is not Format.JSON:
+        if self.faults and self.options.format in (Format.TEXT, Format.JUNIT, Format.CSV):
             entries = self._fault_entries()
             report = CheckReport(entries, len({finding.file for finding in entries}), color=takes_color(sys.stderr))
             if entries:
@@ -656,8 +671,8 @@ def _fault(options: argparse.Namespace, target: VerificationTarget, fault: Fault
 def _errors(options: argparse.Namespace, report: CheckReport) -> int:
     if options.format is Format.JSON:
         print_text(as_json((), [_row(finding) for finding in report.entries]), "utf-8")
-    elif options.format is Format.JUNIT:
-        print_text(render(report, Format.JUNIT), "utf-8")
+    elif options.format not in (Format.TEXT, Format.CSV):
+        print_text(render(report, options.format), "utf-8")
     else:
         print_text(render(report, Format.TEXT), stream=sys.stderr)
     return FOUND

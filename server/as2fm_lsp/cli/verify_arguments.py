@@ -126,7 +126,7 @@ def parser() -> ArgumentParser:
     add_curves(result)
     add("--dask", metavar="ADDRESS", help="run on the Dask cluster with the scheduler at this address (needs the "
         "Python package distributed)")  # fmt: skip
-    add("--format", action=WordAction, words=(Format.TEXT, Format.JSON, Format.JUNIT, Format.CSV), default=Format.TEXT,
+    add("--format", action=WordAction, words=Format, default=Format.TEXT,
         help="format of the results")  # fmt: skip
     return result
 

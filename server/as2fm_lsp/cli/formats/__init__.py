@@ -20,6 +20,7 @@ class Format(Vocabulary):
     GITLAB = "gitlab"
     SARIF = "sarif"
     JUNIT = "junit"
+    MARKDOWN = "markdown"
     CSV = "csv"
 
     @property

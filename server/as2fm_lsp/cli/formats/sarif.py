@@ -14,6 +14,7 @@ from collections import Counter
 from typing import Any
 
 from as2fm_lsp.cli.formats.report import CheckReport, Entry, LineRange
+from as2fm_lsp.verification.findings import SUMMARIES
 from roaml import __version__
 from roaml.project.paths import slashed
 from roaml.rules import BY_CODE, cited, document
@@ -44,15 +45,21 @@ def render(report: CheckReport) -> str:
 
 
 def _rule(code: str) -> dict[str, Any]:
+    if code in SUMMARIES:
+        return {"id": code, "name": _name(code), "shortDescription": {"text": SUMMARIES[code]}}
     rule, text = BY_CODE[code], cited(document(code))
     return {
         "id": code,
-        "name": "".join(word.capitalize() for word in code.split("-")),
+        "name": _name(code),
         "shortDescription": {"text": rule.summary},
         "fullDescription": {"text": rule.summary},
         "help": {"text": text, "markdown": text},
         "defaultConfiguration": {"level": _LEVELS[rule.severity.label]},
     }
+
+
+def _name(code: str) -> str:
+    return "".join(word.capitalize() for word in code.split("-"))
 
 
 def _result(entry: Entry, index: int, seen: Counter[str]) -> dict[str, Any]:
