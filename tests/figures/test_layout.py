@@ -161,3 +161,37 @@ def test_parts_that_are_not_connected_are_placed_so_that_they_suit_the_page() ->
     assert sizes[0.8] == sizes[100.0]
     assert sizes[0.8].width > 240 > sizes[0.01].width
     assert sizes[0.01].height > sizes[0.8].height
+
+
+SHAPES = ("chain", "ring", "star", "hub", "tree", "returns")
+
+
+@st.composite
+def large_graphs(draw: st.DrawFn) -> tuple[dict[str, Extent], list[Link]]:
+    """Large graphs of the kinds that models have, with a few links more."""
+    count = draw(st.integers(12, 64))
+    shape = draw(st.sampled_from(SHAPES))
+    following = [(number, number + 1) for number in range(count - 1)]
+    ends = {
+        "chain": following,
+        "ring": [*following, (count - 1, 0)],
+        "star": [(0, number) for number in range(1, count)],
+        "hub": [pair for number in range(1, count) for pair in ((0, number), (number, 0))],
+        "tree": [((number - 1) // 3, number) for number in range(1, count)],
+        "returns": [*following, *((number, 0) for number in range(2, count))],
+    }[shape]
+    more = st.tuples(st.integers(0, count - 1), st.integers(0, count - 1)).filter(lambda pair: pair[0] != pair[1])
+    ends = [*ends, *draw(st.lists(more, max_size=6))]
+    label = draw(st.sampled_from([None, Extent(90, 24)]))
+    return {str(number): Extent(100, 40) for number in range(count)}, [Link(str(a), str(b), label) for a, b in ends]
+
+
+@settings(max_examples=examples(25), deadline=None)
+@given(large_graphs(), DIRECTIONS)
+def test_large_graphs_are_wrapped(graph: tuple[dict[str, Extent], list[Link]], direction: LayoutDirection) -> None:
+    """Neither side is more than three times as long as the other one, and nothing else is lost."""
+    nodes, links = graph
+    layout = layered(nodes, links, direction, 1)
+    assert flaws(nodes, links, layout) == []
+    width, height = layout.size
+    assert max(width / height, height / width) <= 3

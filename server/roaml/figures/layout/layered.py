@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+import math
+from bisect import bisect_right
 from collections.abc import Mapping, Sequence
 
 from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.layout.cycles import closing_links
 from roaml.figures.layout.graph import Layout, LayoutDirection, Link, Route
-from roaml.figures.layout.layers import assign_layers
+from roaml.figures.layout.layers import assign_layers, column_starts
 from roaml.figures.layout.order import order_layers
 from roaml.figures.layout.packing import components, pack
 from roaml.figures.layout.ports import PORT_DISTANCE, PORT_MARGIN, Ports
@@ -21,6 +23,16 @@ LAYER_DISTANCE = 30.0
 TRACK_MARGIN = 18.0
 TRACK_DISTANCE = 10.0
 """Distances between layers, in pixels: the minimum distance of two layers; of a track from a layer; of two tracks."""
+MAX_RATIO = 2.5
+"""The ratio of the sides of a part above which it is wrapped. Frames and headings are added to parts, so it is smaller
+than the ratio that a drawing may have, which is 3."""
+WRAPPED_RATIO = 1.3
+"""The desired ratio of height to width after wrapping."""
+MIN_WRAPPED = 12
+"""The minimum number of nodes of a part that is wrapped."""
+MAX_ATTEMPTS = 6
+DIVISION = 1.2
+"""The maximum number of attempts to wrap a part, and the minimum factor by which layers become narrower in each."""
 
 
 def layered(nodes: Mapping[str, Extent], links: Sequence[Link], direction: LayoutDirection, aspect: float) -> Layout:
@@ -36,10 +48,44 @@ def layered(nodes: Mapping[str, Extent], links: Sequence[Link], direction: Layou
         turned = {name: size.turned for name, size in nodes.items()}
         turned_links = [Link(link.source, link.target, link.label.turned if link.label else None) for link in links]
         return layered(turned, turned_links, LayoutDirection.DOWN, 1 / aspect).turned
-    parts = [
-        (_Component(nodes, names, indexes, links).layout(), indexes) for names, indexes in components(nodes, links)
-    ]
+    parts = [(_part(nodes, names, indexes, links), indexes) for names, indexes in components(nodes, links)]
     return pack(parts, len(links), aspect)
+
+
+def _part(sizes: Mapping[str, Extent], names: Sequence[str], indexes: Sequence[int], links: Sequence[Link]) -> Layout:
+    """The layout of a connected graph, downwards. If it is much higher than wide, its layers are continued in further
+    columns; if it is much wider than high, its layers are divided."""
+
+    def made(columns: int = 1, limit: float | None = None) -> Layout:
+        return _Component(sizes, names, indexes, links, columns, limit).layout()
+
+    best = made()
+    if len(names) < MIN_WRAPPED:
+        return best
+    width, height = best.size
+    if _excess(best) > 1 and height > width:
+        columns = 1
+        for _ in range(MAX_ATTEMPTS):
+            # More columns are also higher, because their links pass other nodes.
+            factor = math.sqrt(best.size.height / best.size.width / WRAPPED_RATIO)
+            columns = max(columns + 1, round(columns * factor))
+            best = min(best, made(columns=columns), key=_excess)
+            if _excess(best) <= 1:
+                break
+    if _excess(best) > 1 and best.size.width > best.size.height:
+        limit = width
+        for _ in range(MAX_ATTEMPTS):
+            limit = limit / max(DIVISION, math.sqrt(best.size.width / best.size.height / WRAPPED_RATIO))
+            best = min(best, made(limit=limit), key=_excess)
+            if _excess(best) <= 1:
+                break
+    return best
+
+
+def _excess(layout: Layout) -> float:
+    """The ratio of the longer to the shorter side, as a multiple of `MAX_RATIO`; 1 if it is not greater."""
+    width, height = max(1.0, layout.size.width), max(1.0, layout.size.height)
+    return max(1.0, width / height / MAX_RATIO, height / width / MAX_RATIO)
 
 
 class _Edge(Record, frozen=True):
@@ -54,14 +100,23 @@ class _Component:
     """The layout of a connected graph, downwards."""
 
     def __init__(
-        self, sizes: Mapping[str, Extent], names: Sequence[str], indexes: Sequence[int], links: Sequence[Link]
+        self,
+        sizes: Mapping[str, Extent],
+        names: Sequence[str],
+        indexes: Sequence[int],
+        links: Sequence[Link],
+        columns: int = 1,
+        limit: float | None = None,
     ) -> None:
+        self.limit = limit
         self.names = names
         self.indexes = indexes
         self.links = links
         number = {name: index for index, name in enumerate(names)}
         ends = [(number[links[index].source], number[links[index].target]) for index in indexes]
         turned = closing_links(len(names), ends)
+        if columns > 1:
+            turned = self._wrapped(ends, turned, [sizes[name] for name in names], columns)
         self.turned = {index: position in turned for position, index in enumerate(indexes)}
         downwards = {
             index: (target, source) if self.turned[index] else (source, target)
@@ -73,6 +128,24 @@ class _Component:
         self._add_edges(downwards)
         self._split_long_edges()
         self._grow()
+
+    @staticmethod
+    def _wrapped(
+        ends: Sequence[tuple[int, int]], turned: frozenset[int], sizes: Sequence[Extent], columns: int
+    ) -> frozenset[int]:
+        """The links that lead upwards if the layers are continued in further columns, each beginning at the top.
+
+        Args:
+            turned: the links that lead upwards in one column.
+        """
+        down = [(b, a) if position in turned else (a, b) for position, (a, b) in enumerate(ends)]
+        layers = assign_layers([Vertex(VertexKind.NODE, size) for size in sizes], down)
+        starts = column_starts(layers, down, columns)
+        place = [(bisect_right(starts, layer) - 1, layer) for layer in layers]
+        row = [layer - starts[column] for column, layer in place]
+        upwards = {position for position, (a, b) in enumerate(down) if place[a][0] != place[b][0] and row[a] >= row[b]}
+        now = [(b, a) if position in upwards else (a, b) for position, (a, b) in enumerate(down)]
+        return turned ^ upwards ^ closing_links(len(sizes), now)
 
     def _add_edges(self, downwards: Mapping[int, tuple[int, int]]) -> None:
         for index in self.indexes:
@@ -88,7 +161,7 @@ class _Component:
     def _split_long_edges(self) -> None:
         """Add a vertex to each layer that a link passes."""
         pairs = [(edge.upper, edge.lower) for edge in self.edges]
-        self.layers = assign_layers(self.vertices, pairs)
+        self.layers = assign_layers(self.vertices, pairs, self.limit)
         short: list[_Edge] = []
         for edge in self.edges:
             upper = edge.upper

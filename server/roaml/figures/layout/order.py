@@ -3,11 +3,15 @@
 
 from __future__ import annotations
 
+import random
 from bisect import bisect_right, insort
 from collections.abc import Sequence
 from itertools import pairwise
 
 MAX_SWEEPS = 12
+MAX_STARTS = 12
+MAX_WORK = 3000
+"""The maximum number of orders from which the sweeps begin, and of vertices in all of them together."""
 
 
 def order_layers(layers: Sequence[int], edges: Sequence[tuple[int, int]]) -> list[list[int]]:
@@ -30,17 +34,25 @@ def order_layers(layers: Sequence[int], edges: Sequence[tuple[int, int]]) -> lis
     for vertex in _by_depth(layers, below, above):
         rows[layers[vertex]].append(vertex)
     best, least = [list(row) for row in rows], crossings(rows, below)
-    for sweep in range(MAX_SWEEPS):
-        if least == 0:
-            break
-        downwards = sweep % 2 == 0
-        for index in range(1, count) if downwards else range(count - 2, -1, -1):
-            fixed = rows[index - 1 if downwards else index + 1]
-            rows[index] = _by_barycenter(rows[index], fixed, above if downwards else below)
-        _exchange(rows, above, below)
-        now = crossings(rows, below)
-        if now < least:
-            best, least = [list(row) for row in rows], now
+    for start in range(max(1, min(MAX_STARTS, MAX_WORK // max(1, len(layers))))):
+        if start > 0:
+            chance = random.Random(start)
+            rows = [chance.sample(row, len(row)) for row in best]
+            if start % 2:
+                rows = [[] for _ in range(count)]
+                for vertex in _by_depth(layers, below, above, chance):
+                    rows[layers[vertex]].append(vertex)
+        for sweep in range(MAX_SWEEPS):
+            if least == 0:
+                return best
+            downwards = (sweep + start) % 2 == 0
+            for index in range(1, count) if downwards else range(count - 2, -1, -1):
+                fixed = rows[index - 1 if downwards else index + 1]
+                rows[index] = _by_barycenter(rows[index], fixed, above if downwards else below)
+            _exchange(rows, above, below)
+            now = crossings(rows, below)
+            if now < least:
+                best, least = [list(row) for row in rows], now
     return best
 
 
@@ -58,10 +70,16 @@ def crossings(rows: Sequence[Sequence[int]], below: Sequence[Sequence[int]]) -> 
     return total
 
 
-def _by_depth(layers: Sequence[int], below: Sequence[Sequence[int]], above: Sequence[Sequence[int]]) -> list[int]:
-    """All vertices in the order of a depth-first search downwards, then upwards."""
+def _by_depth(
+    layers: Sequence[int],
+    below: Sequence[Sequence[int]],
+    above: Sequence[Sequence[int]],
+    chance: random.Random | None = None,
+) -> list[int]:
+    """All vertices in the order of a depth-first search downwards, then upwards; with `chance`, from random ones."""
     order: dict[int, None] = {}
-    for start in sorted(range(len(layers)), key=lambda vertex: (layers[vertex], vertex)):
+    starts = sorted(range(len(layers)), key=lambda vertex: (layers[vertex], vertex))
+    for start in starts if chance is None else chance.sample(starts, len(starts)):
         stack = [start]
         while stack:
             vertex = stack.pop()
