@@ -240,7 +240,7 @@ def test_explains_a_failing_trace(command: Command, robot: Path) -> None:
     done = command("verify", "main.xml", "--property", "all_delivered", "--explain", "--seed", 0)
     assert done.status == 0
     story = done.out.partition("all_delivered failed in trace ")[2]
-    assert "it reads topic_parcels_msg.valid, topic_parcels_msg__ros_fields__data" in story
+    assert "it reads /parcels.data" in story
     # Each line contains its time and its place; the changes follow below it.
     lines = (robot / "plugins/deliver.ascxml").read_text().splitlines()
     number = next(n for n, text in enumerate(lines, 1) if '<bt_tick target="carrying"' in text)

@@ -16,6 +16,7 @@ from roaml.smc.end import End
 from roaml.smc.record import SELECTED, SHORTEST, VERDICTS, TraceVerdict
 from roaml.smc.story import Story
 from roaml.views.arrays import DeclaredChange, DeclaredValue
+from roaml.views.event_words import message_phrases
 from roaml.views.observed import reads_observer
 from roaml.views.turns import Message, Turn, turns
 from roaml.views.values import shown_parameters, shown_value
@@ -134,7 +135,8 @@ def heading(story: Story) -> str:
     count = len(turns(story))
     text += f"; {count:,} {'turn matters' if count == 1 else 'turns matter'}"
     automata = {automaton.name for automaton in story.automata}
-    variables = [name for name in story.variables if not reads_observer(name, automata)]
+    read = [name for name in story.variables if not reads_observer(name, automata)]
+    variables = message_phrases(read, automata)
     return text + (f" (it reads {', '.join(variables)})" if variables else "")
 
 
