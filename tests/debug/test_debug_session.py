@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -60,6 +61,10 @@ def test_the_dropped_block_and_the_other_choice(client: Client) -> None:
     violated = client.move()
     assert violated["reason"] == "exception"
     assert violated["text"] == "violated: never_placed_empty"
+    reason, sentence, message = client.ask("exceptionInfo")["description"].splitlines()
+    assert reason == violated["text"]
+    assert sentence == "The gripper is not opened at the goal without a block in it."
+    assert re.fullmatch(r"a message on the topic `/block/placed`: \{data: false\}, sent by Arm in step \d+", message)
     back = client.move("reverseContinue")
     assert client.step() == before
     assert back["reason"] == "breakpoint"

@@ -92,11 +92,11 @@ class StateRequests:
         return body
 
     def _exception_info(self, arguments: Arguments) -> Body:
-        self._session.stopped  # noqa: B018
         stop = self._session.stop
         if stop is None or stop.reason is not StopReason.EXCEPTION:
             raise RequestError("the run has not stopped at an exception")
-        return {"exceptionId": stop.filter, "description": stop.text, "breakMode": "always"}
+        description = self._session.stopped.explanation(stop)
+        return {"exceptionId": stop.filter, "description": description, "breakMode": "always"}
 
     def _loaded_sources(self, arguments: Arguments) -> Body:
         debugger = self._session.debugger

@@ -17,6 +17,7 @@ from roaml.debugging.evaluate import Scope
 from roaml.debugging.frames import TREE_THREAD, DebugThread, Frame, FrameRole, Stacks, node_of, threads
 from roaml.debugging.scopes import Values
 from roaml.debugging.sources import Sources
+from roaml.debugging.values import shown
 from roaml.jani.node import Origin
 from roaml.record import Record
 from roaml.scxml.names import TREE_ROOT_PREFIX, TreeEventKind, received_by, sent_by, tree_event_name
@@ -411,6 +412,20 @@ class Debugger:
         elif any(breakpoint_ is first for _, breakpoint_ in breakpoints.variables):
             reason = StopReason.DATA_BREAKPOINT
         return self._stop(reason, first.name, numbers, "", instance)
+
+    def explanation(self, stop: Stop) -> str:
+        """Why the run has stopped, for readers: what has happened, what the decided properties require, and the last
+        messages that they read, in lines."""
+        lines = [stop.text]
+        if stop.filter in (ExceptionFilter.VIOLATED.value, ExceptionFilter.SATISFIED.value):
+            verdict = TraceVerdict.FAILED if stop.filter == ExceptionFilter.VIOLATED.value else TraceVerdict.PASSED
+            decided = [p for p in self._verdicts.at(self.session.position) if p.verdict is verdict]
+            comments = self.sources.comments
+            lines += [comments[property_.name] for property_ in decided if property_.name in comments]
+            variables = {name for property_ in decided for name in property_.variables}
+            entries = self.values.messages_read(variables)
+            lines += [f"{entry.name}: {shown(entry.value)}, {entry.type}" for entry in entries]
+        return "\n".join(lines)
 
     def _text(self, filter_: ExceptionFilter) -> str:
         decided = self._verdicts.at(self.session.position)

@@ -16,6 +16,7 @@ from roaml.record import Record, replace
 from roaml.scxml.names import (
     BLACKBOARD,
     FIELD_PREFIX,
+    FLAG,
     STATUS_NAMES,
     InterfaceEventKind,
     is_length,
@@ -158,6 +159,14 @@ class Values:
             parameters: Value = self._parameters(event.event)
             waiting = ", not received yet" if event.is_waiting else ""
             yield ScopeEntry(event.text, parameters, f"sent by {event.sender} in step {event.step}{waiting}")
+
+    def messages_read(self, variables: Collection[str]) -> Iterator[ScopeEntry]:
+        """The last messages whose fields or presence are among variables of the model; the last event that was sent if
+        there are none, because an observer of events decides a property when it sees one."""
+        read = {name.partition(f"{SEPARATOR}{FIELD_PREFIX}")[0].removesuffix(f".{FLAG}") for name in variables}
+        sent = [event for event in self._state.events if event.event in read]
+        for event in sent or sorted(self._state.events, key=lambda event: event.step)[-1:]:
+            yield ScopeEntry(event.text, self._parameters(event.event), f"sent by {event.sender} in step {event.step}")
 
     def _shared(self) -> Iterator[ScopeEntry]:
         stored = self._stored.get(-1, {})

@@ -14,6 +14,7 @@ from roaml.jani.node import Origin
 from roaml.model.ros import InterfaceType
 from roaml.model.value_types import INTERFACE_KINDS
 from roaml.project.analysis import Analysis
+from roaml.project.translation import properties_of
 from roaml.record import Record
 from roaml.scxml.names import (
     FIELD_PREFIX,
@@ -44,6 +45,15 @@ class Sources(Record, frozen=True, dict=True):
 
     def place(self, origin: Origin | None) -> LineColumn | None:
         return self.target.place(origin)
+
+    @cached_property
+    def comments(self) -> Mapping[str, str]:
+        """What properties require, in sentences, by the names of the properties. The translation to JANI keeps only the
+        comments of observed properties."""
+        written = {property_.name: property_.comment for property_ in self.target.properties}
+        if self.analysis is not None:
+            written |= {p.name: p.comment for p in properties_of(self.analysis, self.target.path)}
+        return {name: " ".join(comment.split()) for name, comment in written.items() if comment}
 
     @cached_property
     def nodes(self) -> Mapping[int, SourceNode]:

@@ -16,11 +16,16 @@ from roaml.smc.record import VERDICTS, TraceVerdict
 
 
 class Decided(NamedTuple):
-    """A property is decided in the state after `position` steps; `verdict` is `PASSED` or `FAILED`."""
+    """A property is decided in the state after `position` steps; `verdict` is `PASSED` or `FAILED`.
+
+    Attributes:
+        variables: the variables that the property reads.
+    """
 
     name: str
     position: int
     verdict: TraceVerdict
+    variables: tuple[str, ...] = ()
 
 
 class Verdicts:
@@ -61,6 +66,7 @@ class _PropertyFollower:
     def __init__(self, checker: ModelChecker, property_: CompiledProperty, seed: int, trace: int) -> None:
         compiled = checker.compiled(property_)
         self.name = property_.question.name
+        self._property = property_
         self.decided: Decided | None = None
         self._kernel = Kernel(compiled.program, compiled.goal)
         self._seed, self._trace = seed, trace
@@ -96,7 +102,7 @@ class _PropertyFollower:
 
     def _note(self, status: int) -> None:
         if status not in (UNKNOWN, FAULTY):
-            self.decided = Decided(self.name, self._position, VERDICTS[status])
+            self.decided = Decided(self.name, self._position, VERDICTS[status], self._property.question.variables)
 
     def verdict(self, position: int) -> TraceVerdict:
         is_known = self.decided is not None and self.decided.position <= position
