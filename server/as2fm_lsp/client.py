@@ -28,6 +28,8 @@ class Client:
         show_counterexample: the command that explains why a property fails.
         show_witness: the command that explains why a property holds.
         debug_counterexample: the command that debugs a trace in which a property fails.
+        debug_model: the command that debugs a system or a tree.
+        edit_mocks: the command that shows the mocks of a tree to edit them.
         set_expectation: the command that asks for the expected value of a property.
         trigger_suggest: the command that requests completions.
     """
@@ -37,6 +39,8 @@ class Client:
         self.show_counterexample = ""
         self.show_witness = ""
         self.debug_counterexample = ""
+        self.debug_model = ""
+        self.edit_mocks = ""
         self.set_expectation = ""
         self.trigger_suggest = ""
         self._endpoint = endpoint
@@ -48,6 +52,8 @@ class Client:
         self.show_witness = str(options.get("showWitness") or "")
         self.set_expectation = str(options.get("setExpectation") or "")
         self.debug_counterexample = str(options.get("debugCounterexample") or "")
+        self.debug_model = str(options.get("debugModel") or "")
+        self.edit_mocks = str(options.get("editMocks") or "")
         self.trigger_suggest = str(options.get("triggerSuggest") or "")
 
     # ------------------------------------------------------------------ facts

@@ -11,6 +11,7 @@ import { pictures } from "./pictures";
 import { restricted } from "./restricted";
 import { systems } from "./systems";
 import { themes } from "./themes";
+import { loneTrees } from "./trees";
 import { verification } from "./verification";
 import { withoutPython } from "./withoutPython";
 import { walkthrough } from "./walkthrough";
@@ -33,6 +34,9 @@ describe("pictures", () => {
 });
 describe("verification", () => {
     verification(stage);
+});
+describe("lone trees", () => {
+    loneTrees(stage);
 });
 describe("debugging", () => {
     debugging(stage);

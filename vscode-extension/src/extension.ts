@@ -12,6 +12,7 @@ import { JaniView } from "./editor/janiView";
 import { PicturePanels } from "./editor/picturePanels";
 import { PlainScxmlPreview } from "./editor/plainScxml";
 import { onInterpreterChange } from "./editor/pythonExtensions";
+import { ResultsView } from "./editor/results";
 import { LanguageServer } from "./editor/server";
 import { StatusItem } from "./editor/statusItem";
 import { done, watchErrors } from "./editor/steps";
@@ -56,6 +57,7 @@ export function activate(context: vscode.ExtensionContext): void {
         pictures,
         tests,
         counterexamples,
+        new ResultsView(tests),
         sessions,
         new ChoicesView(sessions, log),
         new TimelineView(context, sessions),

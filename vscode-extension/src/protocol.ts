@@ -206,6 +206,25 @@ export interface Property extends Place {
     readonly comment: string;
     readonly stale?: boolean;
     readonly result?: Verified;
+    readonly view?: ResultView;
+}
+
+/** A known result as it is shown, in the words of the server. */
+export interface ResultView {
+    readonly words: string;
+    readonly mark: "failed" | "uniform" | "passed" | "open" | "undecided" | "doubtful";
+    /** The report on the property, line by line. */
+    readonly lines: readonly string[];
+    /** Which changes make the result stale; "" if none do. */
+    readonly since: string;
+    readonly counterexample: boolean;
+    readonly witness: boolean;
+    /** The trace that contradicts the expectation. */
+    readonly seed: number | null;
+    readonly trace: number | null;
+    readonly canSetExpectation: boolean;
+    /** Half the width of the interval of an estimate; 0 for an exact value. */
+    readonly epsilon: number;
 }
 
 export interface VerifiableSystem {
@@ -288,6 +307,46 @@ export interface ExpectationSet {
     readonly problem: string;
 }
 
+/**
+ * A mock of leaves of a tree. `milliseconds` is null if a duration has no effect. `origin` states which mock applies if
+ * it is not the own one of the leaves.
+ */
+export interface MockRow {
+    readonly pattern: string;
+    readonly kind: string;
+    readonly probability: number;
+    readonly milliseconds: number | null;
+    readonly isSet: boolean;
+    readonly origin: string;
+    readonly reason: string;
+    /** The ids of the leaves in the picture of the tree. */
+    readonly nodes: readonly string[];
+}
+
+/** The mocks of a tree, in the file at `uri`, and the known result in a few words. */
+export interface Mocks {
+    readonly uri: string;
+    readonly exists: boolean;
+    readonly rows: readonly MockRow[];
+    readonly result: string;
+    readonly problem: string;
+}
+
+export interface SetMockParams extends DocumentParams {
+    readonly pattern: string;
+    readonly probability: number;
+    readonly milliseconds: number | null;
+}
+
+/** An edit of the file with mocks; `problem` is the reason if there is none. */
+export interface MockSet {
+    readonly edit: WorkspaceEdit | null;
+    readonly uri: string;
+    readonly problem: string;
+}
+
+export const mocks = new RequestType<DocumentParams, Mocks | null, void>("as2fm/mocks");
+export const setMock = new RequestType<SetMockParams, MockSet, void>("as2fm/setMock");
 export const properties = new RequestType<null, readonly VerifiableSystem[], void>("as2fm/properties");
 export const expectations = new RequestType<PropertyParams, Expectations | null, void>("as2fm/expectations");
 export const setExpectation = new RequestType<SetExpectationParams, ExpectationSet, void>("as2fm/setExpectation");

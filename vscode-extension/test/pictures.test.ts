@@ -10,6 +10,7 @@ import {
     centered,
     fit,
     fitLegibly,
+    follow,
     mapOf,
     neighbour,
     pan,
@@ -244,3 +245,17 @@ test("a drawing that does not fit is shown around its root", () => {
 function box(x: number, y: number): Box {
     return { x, y, width: 100, height: 20 };
 }
+
+test("the view follows a state with the targets of its transitions", () => {
+    const drawing = { width: 3000, height: 3000 };
+    const sight = { x: 0, y: 0, scale: 1 };
+    const at = (x: number, y: number) => ({ x, y, width: 100, height: 50 });
+    // Nothing moves while all of them are visible.
+    assert.equal(follow(sight, drawing, at(10, 10), [at(300, 200)], 800, 600), sight);
+    // A target outside of the window: both are in the middle.
+    const both = follow(sight, drawing, at(500, 500), [at(1000, 800)], 800, 600);
+    assert.deepEqual(both, { scale: 1, x: 400, y: 375 });
+    // If they do not fit, the state is in the middle.
+    const one = follow(sight, drawing, at(1500, 1500), [at(2800, 2800)], 800, 600);
+    assert.deepEqual(one, { scale: 1, x: 1150, y: 1225 });
+});

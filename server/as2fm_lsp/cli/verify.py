@@ -55,6 +55,7 @@ from roaml.figures.themes import AUTOMATIC
 from roaml.jani.property_text import PropertyTextError
 from roaml.mocks.mock import MockError
 from roaml.record import replace
+from roaml.scxml.names import SUCCEEDS
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.lss import Search
@@ -156,7 +157,6 @@ def _run_tree(
 ) -> int:
     """Verify a tree without a system, with mocks (docs/spec/mocks.md)."""
     from roaml.verification.tree_outcome import (  # noqa: PLC0415 - systems start faster without it
-        SUCCEEDS,
         TRACES,
         measure,
     )

@@ -110,7 +110,9 @@ class Adapter:
             body = handler(Arguments(message.get("arguments")))
         except (RequestError, WatchError) as error:
             text = str(error)
-            details = {"id": 1, "format": _escaped(text), "showUser": command in ("launch", "restart")}
+            # For a failed launch, VS Code would show a modal dialog that leads to launch.json. Its extension shows the
+            # message, which other clients show in any case.
+            details = {"id": 1, "format": _escaped(text), "showUser": command == "restart"}
             self._connection.send({**response, "success": False, "message": text, "body": {"error": details}})
             return
         self._connection.send({**response, "success": True, **({} if body is None else {"body": body})})

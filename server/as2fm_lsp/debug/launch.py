@@ -30,12 +30,12 @@ from roaml.model.parameters import Overrides
 from roaml.project.configuration import find_settings
 from roaml.project.settings import ament_prefixes
 from roaml.record import Record, replace
+from roaml.scxml.names import SUCCEEDS
 from roaml.simulation import RunError, SavedSession
 from roaml.smc.fault import FaultError
 from roaml.smc.record import TraceVerdict
 from roaml.text import SourceFile
 from roaml.verification.target import VerificationTarget
-from roaml.verification.tree_outcome import SUCCEEDS
 
 MAX_SAVED = 1 << 26
 """The maximum size of a saved session in bytes."""

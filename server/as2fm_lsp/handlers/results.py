@@ -26,14 +26,16 @@ from as2fm_lsp.handlers.requested_document import RequestedDocument
 from as2fm_lsp.verification import background
 from as2fm_lsp.verification.known_results import ExpectedNow, KnownResult, expected_now, missed, short
 from as2fm_lsp.verification.report import one_as_text, row
+from as2fm_lsp.verification.result_view import SYMBOLS, mark_of, result_view
 from roaml.debugging.overview import StateRow, overview
 from roaml.debugging.sources import Sources
 from roaml.ide.describe import markdown
 from roaml.ide.diagrams import highlights
 from roaml.ide.system_names import system_names
-from roaml.ide.verifiable import Verifiable, verifiable
+from roaml.ide.verifiable import Verifiable, fingerprint, verifiable
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
+from roaml.project.mock_files import mocks_path
 from roaml.project.paths import is_on_disk
 from roaml.project.workspace import Snapshot
 from roaml.simulation.session import Session
@@ -42,7 +44,6 @@ from roaml.smc.goal import STUCK_PROPERTY
 from roaml.text import Location
 from roaml.verification.counterexample import counterexample, unwanted_trace, witness, witness_trace
 from roaml.verification.expectations import NO_EXPECTATION
-from roaml.verification.headline import headline
 from roaml.verification.results import Result
 from roaml.verification.target import VerificationTarget
 from roaml.views.story import StoryLine
@@ -61,13 +62,14 @@ def register(context: Context) -> None:
 
     @context.feature(PROPERTIES)
     def properties(_: Any) -> list[Json]:
-        """The systems that have properties, with the properties and their known results."""
+        """The systems that have properties, and the trees without a system that have mocks or are open, with the
+        properties and their known results."""
         moment = session.moment()
         systems = []
         for path in moment.files():
             snapshot = moment.snapshot(path)
             analysis = snapshot.analysis
-            if analysis.kind(path) is FileKind.SYSTEM:
+            if analysis.kind(path) is FileKind.SYSTEM or _is_tree_to_verify(context, analysis, path):
                 current = CurrentResults(context, snapshot, path)
                 rows = [_property(current, property_) for property_ in verifiable(analysis, path)]
                 systems.append({"uri": session.convert.uri(path), "properties": rows})
@@ -114,6 +116,13 @@ def register(context: Context) -> None:
             await background.in_thread(lambda _: run.jump(max(step, earlier)), context.requests.checkpoint)
         last = len(run.steps)
         return [_state_row(row) for row in overview(run, sources, min(step, last), min(earlier, last))]
+
+
+def _is_tree_to_verify(context: Context, analysis: Analysis, path: str) -> bool:
+    """Whether a file is a tree that has mocks, or that is open and may get them."""
+    if analysis.kind(path) is not FileKind.TREE:
+        return False
+    return context.session.text(path) is not None or analysis.source(mocks_path(path)) is not None
 
 
 class CurrentResults:
@@ -172,15 +181,15 @@ def lenses(context: Context, on: RequestedDocument, broken: Collection[str]) -> 
             if property_.path != on.path:
                 continue
             known = current.get(property_.name)
-            words = [_words(current, known)] if tells and known is not None else []
+            words = [result_words(current, known)] if tells and known is not None else []
             title = " · ".join([f"{TITLE}{where}", *words])
             commands = [types.Command(title, VERIFY, arguments=[uri, [property_.name]])]
-            commands += [] if known is None else _commands(context, uri, property_.name, known.result)
+            commands += [] if known is None else result_commands(context, uri, property_.name, known.result)
             for command in commands:
                 yield types.CodeLens(on.range(property_.name_span), command)
 
 
-def _commands(context: Context, uri: str, name: str, result: Result) -> Iterator[types.Command]:
+def result_commands(context: Context, uri: str, name: str, result: Result) -> Iterator[types.Command]:
     """The commands that the client offers for a result."""
     client, unwanted, witness = context.client, unwanted_trace(result), witness_trace(result)
     if client.set_expectation and result.has_no_expectation and result.answer is not None:
@@ -206,12 +215,9 @@ def hints(context: Context, on: RequestedDocument, within: types.Range) -> Itera
             known = current.get(property_.name)
             if known is None or property_.path != on.path or not span.start <= property_.name_span.end <= span.end:
                 continue
-            is_uniform = any(verdict.is_uniform for verdict in known.result.verdicts)
-            mark = "✗" if missed(known.result) else "~" if is_uniform else "✓" if known.result.verdicts else "="
-            mark = "?" if mark == "=" and headline(known.result).claim else mark
-            mark = "⚠" if known.result.stuck else mark
+            mark = SYMBOLS[mark_of(known.result)]
             # Editors cut long hints. The value and its system come first.
-            text = f"{mark} {_words(current, known, where)}"
+            text = f"{mark} {result_words(current, known, where)}"
             position = on.convert.position(on.source, min(property_.name_span.end + 1, len(on.source.text)))
             place_of = partial(place_in_words, known.result.traces.target if known.result.traces else None)
             tooltip = one_as_text(known.result, place_of)
@@ -223,7 +229,8 @@ def _shows_hints(context: Context) -> bool:
     return bool(document and document.inlay_hint) and display_settings(context.session.client_settings).results
 
 
-def _words(current: CurrentResults, known: KnownResult, where: str = "") -> str:
+def result_words(current: CurrentResults, known: KnownResult, where: str = "") -> str:
+    """A known result in a few words, with what its reader must know."""
     result = known.result
     wrong = missed(result)
     parts = [short(result) + where, *([f"not {wrong}"] if wrong else [])]
@@ -244,6 +251,9 @@ def _property(current: CurrentResults, property_: Verifiable) -> Json:
     if known is not None:
         values["stale"] = current.is_stale(known)
         values["result"] = verified_row(known.result)
+        place_of = partial(place_in_words, known.result.traces.target if known.result.traces else None)
+        now = fingerprint(current.analysis, current.system)
+        values["view"] = {"words": result_words(current, known), **result_view(known, now, place_of)}
     return values
 
 

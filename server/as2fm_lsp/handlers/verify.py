@@ -17,13 +17,15 @@ from as2fm_lsp.handlers.first_error import counted, show
 from as2fm_lsp.handlers.results import VERIFY, place, place_in_words, verified_row
 from as2fm_lsp.progress import Progress
 from as2fm_lsp.verification import background, stuck_report
+from as2fm_lsp.verification.editor_targets import editor_target
 from as2fm_lsp.verification.known_results import KnownResult, short
 from as2fm_lsp.verification.node_names import explained
 from as2fm_lsp.verification.report import one_as_text
 from as2fm_lsp.verification.settings import VerificationSettings, verification_settings
 from roaml import api
 from roaml.diagnostics import Diagnostic
-from roaml.ide.verifiable import Texts, expected_beside, fingerprint
+from roaml.ide.verifiable import Texts, verifiable
+from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.project.memo import Interrupted
 from roaml.record import replace
@@ -100,48 +102,47 @@ class _VerifyCommand:
         name = os.path.basename(path)
         try:
             await self.bar.step("checking")
-            snapshot = context.session.moment().snapshot(path)
-            system = api.loaded(snapshot, path)
+            model = editor_target(context, path)
         except api.ModelError as error:
             self.show_error(f"{name} has {counted(error.result.diagnostics)} and was not verified.")
             if not self.settings.is_silent:
                 await show(context, error.result.snapshot, error.result.diagnostics)
             return {"results": [], "errors": [self.error(d, error.result) for d in error.result.diagnostics]}
-        except api.PathError as error:
+        except (api.PathError, api.MockError) as error:
             self.show_error(str(error))
             return {"results": [], "errors": [{"message": str(error)}]}
-        texts = fingerprint(system.analysis, path)
-        target = context.results.target(texts)
-        if target is None:
-            await self.bar.step("translating")
-            target = api.as_target(system)
-            context.results.keep_target(texts, target)
-        beside = expected_beside(system.analysis, path)
-        target = replace(target, expectations=()).expecting(beside)
-        target = target.expecting(context.session.settings_of(path).expectations)
+        target, analysis, texts = model.target, model.analysis, model.texts
+        if model.note:
+            context.client.show_message(types.MessageType.Info, model.note)
         await self.bar.step("compiling")
-        names = list(dict.fromkeys(names or [property_.name for property_ in target.properties]))
-        verifier, properties = self.compiled(target, names, system.analysis)
+        names = list(dict.fromkeys(names or self.asked(analysis, target)))
+        verifier, properties = self.compiled(target, names, analysis)
         results: list[Result] = []
         together = [
             property_ for property_ in properties.values() if verifier is not None and verifier.can_share(property_)
         ]
         if verifier is not None and len(together) > 1:
-            results += await self.together(verifier, together, system.analysis, texts)
+            results += await self.together(verifier, together, analysis, texts)
         for property_name in names:
             if verifier is None or property_name in self.rows:
                 continue
             try:
                 result = await self.alone(verifier, properties[property_name])
             except FaultError as fault:
-                self.refuse(property_name, fault, system.analysis)
+                self.refuse(property_name, fault, analysis)
             except WorkersLostError as error:
                 self.reject(property_name, str(error))
             else:
                 results.append(result)
-                self.publish(result, target, system.analysis, texts)
-        stuck_row = None if verifier is None else await self.check_stuck(verifier, system.analysis, results, texts)
+                self.publish(result, target, analysis, texts)
+        stuck_row = None if verifier is None else await self.check_stuck(verifier, analysis, results, texts)
         return {"results": [self.rows[name] for name in names], "errors": [], "stuck": stuck_row}
+
+    def asked(self, analysis: Analysis, target: VerificationTarget) -> list[str]:
+        """The properties that are verified if none is named: all that the editor shows."""
+        if analysis.kind(self.path) is FileKind.TREE:
+            return [property_.name for property_ in verifiable(analysis, self.path)]
+        return [property_.name for property_ in target.properties]
 
     def compiled(
         self, target: VerificationTarget, names: Sequence[str], analysis: Analysis

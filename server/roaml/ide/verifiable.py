@@ -13,7 +13,9 @@ from roaml.ide.navigation.document_symbols import document_symbols
 from roaml.model.kinds import FileKind
 from roaml.model.property_file import PropertyFile
 from roaml.project.analysis import Analysis
+from roaml.project.mock_files import executed_tree, mocks_path
 from roaml.record import Record
+from roaml.scxml.names import SUCCEEDS
 from roaml.text import SourceFile, Span
 
 Texts: TypeAlias = tuple[tuple[str, bytes], ...]
@@ -36,7 +38,11 @@ class Verifiable(Record, frozen=True):
 
 def verifiable(analysis: Analysis, system: str) -> tuple[Verifiable, ...]:
     """The properties of the system file `system`, in the order of their files, without properties that contain
-    errors."""
+    errors. A file of trees that belongs to no system has the property that its tree succeeds."""
+    tree = executed_tree(analysis, system)
+    if tree is not None:
+        name = tree.id.span if tree.id is not None else tree.element.name_span
+        return (Verifiable(SUCCEEDS, "The tree returns SUCCESS.", system, tree.element.span, name),)
     properties: dict[str, Iterator[Verifiable]] = {}
     for listed in analysis.listed(system):
         if listed.usable and listed.required_kind is FileKind.PROPERTIES:
@@ -79,7 +85,9 @@ def expected_beside(analysis: Analysis, system: str) -> dict[str, Comparison]:
 def fingerprint(analysis: Analysis, system: str) -> Texts:
     """The digests of the files of a system. Results of a verification are valid as long as the digests are the same.
     The digests do not depend on the expectations of properties in XML, which do not change the results."""
-    sources = ((path, analysis.source(path)) for path in analysis.files_of(system))
+    forest = analysis.forest(system) if executed_tree(analysis, system) is not None else None
+    paths = analysis.files_of(system) if forest is None else (*(path for path, _ in forest.files), mocks_path(system))
+    sources = ((path, analysis.source(path)) for path in paths)
     return tuple((path, _digest(analysis, path, source)) for path, source in sources if source is not None)
 
 

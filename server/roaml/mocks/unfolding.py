@@ -56,7 +56,7 @@ def unfold(forest: Forest) -> ExecutedTree:
     Raises:
         TreeRefusal: the file has no executed tree, it is not clear which tree is executed, or the tree is invalid.
     """
-    tree = _main_tree(forest)
+    tree = main_tree(forest)
     unfolder = _Unfolder(forest)
     name = tree.id.value if tree.id is not None else UNNAMED
     unfolder.tree(forest.path, tree, TreeFrame("", {}, False, None, frozenset((name,))), 0)
@@ -78,7 +78,12 @@ def _numbered(places: Mapping[int, ExecutedNode]) -> tuple[ExecutedNode, ...]:
     )
 
 
-def _main_tree(forest: Forest) -> Tree:
+def main_tree(forest: Forest) -> Tree:
+    """The tree that is executed.
+
+    Raises:
+        TreeRefusal: there is none, or it is not clear which one is executed.
+    """
     file = forest.file
     named = [tree for tree in file.trees if tree.id is not None]
     if file.main is not None:

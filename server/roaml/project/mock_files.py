@@ -1,13 +1,28 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The file with the mocks of a tree that belongs to no system (docs/spec/mocks.md#leaves)."""
+"""Trees that belong to no system, and the files with their mocks (docs/spec/mocks.md#leaves)."""
 
 from __future__ import annotations
 
 import os
 
+from roaml.lower.programs.refusal import TreeRefusal
 from roaml.mocks.mock import Mock, MockError, read_mocks
-from roaml.model.kinds import MOCKS_EXTENSION
+from roaml.mocks.unfolding import main_tree
+from roaml.model.kinds import MOCKS_EXTENSION, FileKind
+from roaml.model.tree import Tree
 from roaml.project.analysis import Analysis
+
+
+def executed_tree(analysis: Analysis, path: str) -> Tree | None:
+    """The tree that is executed if a file of trees is run alone; `None` if the file belongs to a system, or if it is
+    not clear which tree is executed."""
+    if analysis.kind(path) is not FileKind.TREE or analysis.memberships.get(path):
+        return None
+    forest = analysis.forest(path)
+    try:
+        return main_tree(forest) if forest is not None else None
+    except TreeRefusal:
+        return None
 
 
 def mocks_path(tree: str) -> str:

@@ -23,7 +23,7 @@ from roaml.jani.properties import (
 from roaml.lower.programs.executed import ExecutedNode
 from roaml.mocks.network import TICKS, MockedLeaf, MockedTree
 from roaml.record import Record
-from roaml.scxml.names import TREE_ROOT_PREFIX, TreeEventKind, tree_event_name
+from roaml.scxml.names import FAILS, SUCCEEDS, TREE_ROOT_PREFIX, TreeEventKind, tree_event_name
 from roaml.smc.kernel import Kernel
 from roaml.smc.model import ModelChecker
 from roaml.smc.names import Storage
@@ -32,8 +32,6 @@ from roaml.smc.run import Options
 from roaml.smc.statistics import Bounds, Mean, clopper_pearson, incomplete_beta
 from roaml.verification.target import VerificationTarget
 
-SUCCEEDS, FAILS = "succeeds", "fails"
-"""The names of the properties of a tree without a system."""
 TRACES = 1000
 """The default number of traces."""
 QUANTILES = (0.5, 0.9, 0.99)

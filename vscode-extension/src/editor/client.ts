@@ -28,6 +28,8 @@ const SELECTOR: DocumentSelector = [
         { scheme: "untitled", language },
     ]),
     { scheme: "file", pattern: "**/*.{msg,srv,action}" },
+    // Results and pictures of a tree follow its mocks while they are edited.
+    { scheme: "file", pattern: "**/*.mocks" },
     // Errors in the configuration are shown while it is edited.
     { scheme: "file", pattern: "**/{as2fm,pyproject}.toml" },
 ];
@@ -40,6 +42,12 @@ export const SHOW_COUNTEREXAMPLE = "as2fm.showCounterexample";
 export const SHOW_WITNESS = "as2fm.showWitness";
 export const SET_EXPECTATION = "as2fm.setExpectation";
 export const DEBUG_COUNTEREXAMPLE = "as2fm.debugCounterexample";
+
+/** Debugs a system or a tree. Arguments: its URI, and attributes of `launch`. */
+export const DEBUG_MODEL = "as2fm.debugModel";
+
+/** Shows a tree with fields for its mocks. Argument: the URI of the tree. */
+export const EDIT_MOCKS = "as2fm.editMocks";
 
 const WELL_FORMEDNESS = "xml-syntax";
 const MAX_LOGGED_CHARACTERS = 4000;
@@ -123,6 +131,8 @@ function options(log: vscode.LogOutputChannel, listener: Listener): LanguageClie
             showCounterexample: SHOW_COUNTEREXAMPLE,
             showWitness: SHOW_WITNESS,
             debugCounterexample: DEBUG_COUNTEREXAMPLE,
+            debugModel: DEBUG_MODEL,
+            editMocks: EDIT_MOCKS,
             setExpectation: SET_EXPECTATION,
             triggerSuggest: "editor.action.triggerSuggest",
         },

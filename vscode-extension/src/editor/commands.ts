@@ -4,7 +4,15 @@ import type { Location, Position } from "vscode-languageserver-protocol";
 import { migrate, TRANSLATE } from "../protocol";
 import { thisHost } from "../server/host";
 import { pythons } from "../server/python";
-import { DEBUG_COUNTEREXAMPLE, SET_EXPECTATION, SHOW_COUNTEREXAMPLE, SHOW_REFERENCES, SHOW_WITNESS } from "./client";
+import {
+    DEBUG_COUNTEREXAMPLE,
+    DEBUG_MODEL,
+    EDIT_MOCKS,
+    SET_EXPECTATION,
+    SHOW_COUNTEREXAMPLE,
+    SHOW_REFERENCES,
+    SHOW_WITNESS,
+} from "./client";
 import type { Activation } from "./activation";
 import type { Counterexamples } from "./counterexamples";
 import type { Debugging, Trace } from "./debugging";
@@ -17,7 +25,7 @@ import type { PlainScxmlPreview } from "./plainScxml";
 import { untrustedFolders, type LanguageServer } from "./server";
 import type { StatusItem } from "./statusItem";
 import { Tasks } from "./tasks";
-import type { PropertyTests } from "./tests";
+import type { Asked, PropertyTests } from "./tests";
 import { newMachine, newSystem, openSample, addToCi } from "./templates";
 import { isTrusted } from "./trust";
 import { tellOrigin } from "./wording";
@@ -79,32 +87,47 @@ export function registerCommands(parts: Parts): void {
     );
     context.subscriptions.push(
         // Also called from a lens, from a message, and from the menu of a test.
-        vscode.commands.registerCommand(SHOW_COUNTEREXAMPLE, (of: string | vscode.TestItem, property: string) => {
-            const asked = parts.tests.asked(of, property);
-            return asked && parts.counterexamples.show(asked.system, asked.property);
-        }),
-        vscode.commands.registerCommand(SHOW_WITNESS, (of: string | vscode.TestItem, property: string) => {
+        vscode.commands.registerCommand(
+            SHOW_COUNTEREXAMPLE,
+            (of: string | vscode.TestItem | Asked, property: string) => {
+                const asked = parts.tests.asked(of, property);
+                return asked && parts.counterexamples.show(asked.system, asked.property);
+            },
+        ),
+        vscode.commands.registerCommand(SHOW_WITNESS, (of: string | vscode.TestItem | Asked, property: string) => {
             const asked = parts.tests.asked(of, property);
             return asked && parts.counterexamples.show(asked.system, asked.property, true);
         }),
-        vscode.commands.registerCommand(SET_EXPECTATION, async (of: string | vscode.TestItem, property: string) => {
-            const asked = parts.tests.asked(of, property);
-            if (!asked || !isTrusted()) return;
-            if (await chooseExpectation(server, asked.system, asked.property)) await parts.tests.refresh();
-        }),
+        vscode.commands.registerCommand(
+            SET_EXPECTATION,
+            async (of: string | vscode.TestItem | Asked, property: string) => {
+                const asked = parts.tests.asked(of, property);
+                if (!asked || !isTrusted()) return;
+                if (await chooseExpectation(server, asked.system, asked.property)) await parts.tests.refresh();
+            },
+        ),
     );
     context.subscriptions.push(
         vscode.commands.registerCommand(
             DEBUG_COUNTEREXAMPLE,
-            (of: string | vscode.TestItem, property: string, trace?: Trace) => {
+            (of: string | vscode.TestItem | Asked, property: string, trace?: Trace) => {
                 const asked = parts.tests.asked(of, property);
                 const uri = asked && server.client?.protocol2CodeConverter.asUri(asked.system);
-                return (
-                    uri &&
-                    parts.debugging.counterexample(uri, asked.property, typeof of === "string" ? trace : undefined)
-                );
+                return uri && parts.debugging.counterexample(uri, asked.property, asked.trace ?? trace);
             },
         ),
+    );
+    context.subscriptions.push(
+        vscode.commands.registerCommand(DEBUG_MODEL, async (model: string, attributes: object) => {
+            // The debugger reads the files from the disk.
+            await vscode.workspace.saveAll(false);
+            const uri = server.client?.protocol2CodeConverter.asUri(model);
+            return uri && parts.debugging.start(uri, attributes);
+        }),
+        vscode.commands.registerCommand(EDIT_MOCKS, (tree: string) => {
+            const uri = server.client?.protocol2CodeConverter.asUri(tree);
+            return uri && pictures.editMocks(uri);
+        }),
     );
     for (const [name, run] of Object.entries(commands)) {
         const command = () => {
@@ -125,8 +148,8 @@ async function translate({ server, documents }: Parts): Promise<void> {
     if (system) await vscode.commands.executeCommand(TRANSLATE, server.client?.code2ProtocolConverter.asUri(system));
 }
 
-async function verify({ documents, server, tests }: Parts): Promise<void> {
-    const system = await documents.system(vscode.window.activeTextEditor?.document);
+async function verify({ debugging, server, tests }: Parts): Promise<void> {
+    const system = await debugging.program(vscode.window.activeTextEditor?.document);
     const uri = system && server.client?.code2ProtocolConverter.asUri(system);
     if (uri === undefined) return;
     // Focus the view first: the verification may open the place of an error, which must then keep the focus.

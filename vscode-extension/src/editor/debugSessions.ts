@@ -4,6 +4,22 @@
 import * as vscode from "vscode";
 import { DEBUG_TYPE } from "./debugging";
 
+/** The part of a message of the debug adapter that is used here. */
+interface Message {
+    readonly event?: string;
+    readonly command?: string;
+    readonly success?: boolean;
+    readonly message?: string;
+}
+
+/** Tell why a run could not start. The adapter keeps VS Code from showing a dialog that leads to launch.json. */
+function tellFailure(reason: string): void {
+    const problems = vscode.l10n.t("Show Problems");
+    void vscode.window.showErrorMessage(reason, problems).then((pressed) => {
+        if (pressed === problems) void vscode.commands.executeCommand("workbench.actions.view.problems");
+    });
+}
+
 export class DebugSessions implements vscode.Disposable {
     private readonly stopped = new vscode.EventEmitter<vscode.DebugSession>();
     private readonly ended = new vscode.EventEmitter<vscode.DebugSession>();
@@ -17,7 +33,8 @@ export class DebugSessions implements vscode.Disposable {
     constructor() {
         this.registration = vscode.debug.registerDebugAdapterTrackerFactory(DEBUG_TYPE, {
             createDebugAdapterTracker: (session) => ({
-                onDidSendMessage: (message: { event?: string }) => {
+                onDidSendMessage: (message: Message) => {
+                    if (message.command === "launch" && message.success === false) tellFailure(message.message ?? "");
                     if (message.event !== "stopped") return;
                     this.current = session;
                     this.stopped.fire(session);

@@ -49,7 +49,7 @@ export class Debugging implements vscode.DebugConfigurationProvider, vscode.Debu
         _folder: vscode.WorkspaceFolder | undefined,
         given: vscode.DebugConfiguration,
     ): Promise<vscode.DebugConfiguration | undefined> {
-        if (!isTrusted()) return undefined;
+        if (!isTrusted() || !(await this.isReady())) return undefined;
         const configuration = { ...given };
         // Without a launch.json, the attributes are missing, although their types do not say so.
         if (!configuration.type) {
@@ -60,6 +60,22 @@ export class Debugging implements vscode.DebugConfigurationProvider, vscode.Debu
         if (typeof configuration["program"] === "string") return configuration;
         const program = await this.program(vscode.window.activeTextEditor?.document);
         return program && { ...configuration, program: program.fsPath };
+    }
+
+    /** Wait for the server if it is starting; return whether it runs. Otherwise, say so. */
+    private async isReady(): Promise<boolean> {
+        const states = ["searching", "installing", "starting"];
+        if (states.includes(this.server.state.kind))
+            await new Promise<void>((resolve) => {
+                const waiting = this.server.onState(({ kind }) => {
+                    if (states.includes(kind)) return;
+                    waiting.dispose();
+                    resolve();
+                });
+            });
+        if (this.server.state.kind === "running") return true;
+        void vscode.window.showErrorMessage(vscode.l10n.t("The language server is not running."));
+        return false;
     }
 
     /** The model that is debugged from a document: the document itself if it is a JANI model, or a tree that belongs to

@@ -2,6 +2,7 @@
 /** The panels with pictures: one for each kind, which follows the active document and the caret. */
 
 import * as vscode from "vscode";
+import { ExecuteCommandRequest } from "vscode-languageserver-protocol";
 import type {
     FromView,
     Activity,
@@ -14,8 +15,17 @@ import type {
     Words,
 } from "../pictures/contract";
 import { partAt } from "../pictures/partAt";
-import { pictureFile, picture as pictureRequest, type Highlight } from "../protocol";
+import {
+    mocks as mocksRequest,
+    pictureFile,
+    picture as pictureRequest,
+    setMock,
+    VERIFY,
+    type Highlight,
+    type Mocks,
+} from "../protocol";
 import type { LanguageServer } from "./server";
+import { isTrusted } from "./trust";
 import { webviewPage } from "./webviewPage";
 
 const DELAY_MS = 200;
@@ -65,6 +75,12 @@ export class PicturePanels implements vscode.Disposable {
         }
         await panel.show(uri);
         await panel.loaded;
+    }
+
+    /** Show a tree with fields for its mocks. */
+    async editMocks(uri: vscode.Uri): Promise<void> {
+        await this.open("tree", uri);
+        await this.panels.get("tree")?.showMocks(true);
     }
 
     /** The document whose picture of a kind is shown. */
@@ -127,6 +143,9 @@ class PicturePanel implements vscode.Disposable {
     readonly loaded: Promise<void>;
     private hasLoaded: () => void = () => undefined;
     private asked = 0;
+    private mocks: Mocks | null = null;
+    private isVerifying = false;
+    private mustVerify = false;
     /** The ids of the nodes whose descendants are hidden, and the file that they belong to. */
     private readonly collapsed = new Set<string>();
     private collapsedIn = "";
@@ -183,6 +202,62 @@ class PicturePanel implements vscode.Disposable {
         this.here = this.partAtAnyCaret();
         this.shownUri = this.asServerSays(this.uri);
         this.draw();
+        await this.showMocks();
+    }
+
+    /** Show the mocks of the tree. */
+    async showMocks(opens = false): Promise<void> {
+        if (this.kind !== "tree" || !this.uri) return;
+        const asked = this.asked;
+        const mocks = await this.server.ask(mocksRequest, { textDocument: { uri: this.uri.toString() } });
+        if (asked !== this.asked || mocks === undefined) return;
+        this.mocks = mocks;
+        this.postMocks(opens);
+    }
+
+    private postMocks(opens = false): void {
+        this.post({ type: "mocks", mocks: this.mocks, busy: this.isVerifying, opens });
+    }
+
+    /** Change a mock in the file beside the tree, and verify the tree again. */
+    private async setMock(message: Extract<FromView, { type: "setMock" }>): Promise<void> {
+        const { client } = this.server;
+        if (!this.uri || !client || !isTrusted()) return;
+        const { pattern, probability, milliseconds } = message;
+        const values = { textDocument: { uri: this.uri.toString() }, pattern, probability, milliseconds };
+        const answer = await this.server.ask(setMock, values);
+        const edit = await client.protocol2CodeConverter.asWorkspaceEdit(answer?.edit ?? undefined);
+        if (!answer || !edit) {
+            if (answer) void vscode.window.showErrorMessage(answer.problem);
+            return;
+        }
+        const uri = client.protocol2CodeConverter.asUri(answer.uri);
+        if (!(await vscode.workspace.applyEdit(edit))) return;
+        // The debugger and the command line read the file from the disk.
+        await (await vscode.workspace.openTextDocument(uri)).save();
+        await this.verify();
+    }
+
+    /** Verify the tree. A change of a mock during the verification starts another one after it. */
+    private async verify(): Promise<void> {
+        const { client } = this.server;
+        if (!this.uri || !client || !isTrusted()) return;
+        this.mustVerify = true;
+        if (this.isVerifying) return;
+        this.isVerifying = true;
+        this.postMocks();
+        try {
+            while (this.mustVerify) {
+                this.mustVerify = false;
+                const params = { command: VERIFY, arguments: [this.uri.toString(), [], { silent: true }] };
+                await client.sendRequest(ExecuteCommandRequest.type, params);
+            }
+        } catch (error) {
+            this.log.debug(`The tree has no result: ${String(error)}`);
+        } finally {
+            this.isVerifying = false;
+        }
+        await this.refresh();
     }
 
     follow(editor: vscode.TextEditor): void {
@@ -258,6 +333,7 @@ class PicturePanel implements vscode.Disposable {
             return;
         }
         this.post({ type: "show", picture: this.picture, here: this.here, highlighted: this.highlightedNode });
+        this.postMocks();
         this.postLit();
     }
 
@@ -280,6 +356,12 @@ class PicturePanel implements vscode.Disposable {
                 break;
             case "jump":
                 await jump(message.place, message.beside);
+                break;
+            case "setMock":
+                await this.setMock(message);
+                break;
+            case "verify":
+                await this.verify();
                 break;
             case "save":
                 await this.save(message);
@@ -372,6 +454,12 @@ function words(): Words {
             "Arrow keys move between nodes, Enter opens the source, Shift+F10 the menu, Space collapses a node of a tree, + and - zoom, 0 fits the diagram, / searches.",
         ),
         byChance: vscode.l10n.t("random"),
+        mocks: vscode.l10n.t("Mocks"),
+        probability: vscode.l10n.t("probability of success"),
+        seconds: vscode.l10n.t("duration in seconds"),
+        verify: vscode.l10n.t("Verify"),
+        unverified: vscode.l10n.t("Not verified"),
+        verifying: vscode.l10n.t("Verifying…"),
         kinds: {
             state: vscode.l10n.t("state"),
             choice: vscode.l10n.t("random choice"),

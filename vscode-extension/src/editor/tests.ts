@@ -18,7 +18,7 @@ import {
 import { outcomeOf } from "../verification/outcome";
 import { chosen } from "../verification/selection";
 import { SHOW_COUNTEREXAMPLE, SHOW_WITNESS } from "./client";
-import type { Debugging } from "./debugging";
+import type { Debugging, Trace } from "./debugging";
 import type { LanguageServer } from "./server";
 import { done } from "./steps";
 import { isTrusted } from "./trust";
@@ -29,6 +29,8 @@ const DELAY_MS = 300;
 export interface Asked {
     readonly system: string;
     readonly property: string;
+    /** The trace that contradicts its expectation, if it is known. */
+    readonly trace?: Trace;
 }
 
 export class PropertyTests implements vscode.Disposable {
@@ -39,8 +41,13 @@ export class PropertyTests implements vscode.Disposable {
     private readonly judged = new Map<string, string>();
     private readonly running = new Set<string>();
     private readonly stale = new Set<string>();
+    /** Settings of the verification that is started next. */
+    private options: object = {};
     private readonly toldStuck = new WeakMap<vscode.TestRun, Set<string>>();
     private timer: NodeJS.Timeout | undefined;
+    private readonly systems = new vscode.EventEmitter<readonly VerifiableSystem[]>();
+    /** The systems with their properties and known results, whenever they may have changed. */
+    readonly onSystems = this.systems.event;
 
     constructor(
         private readonly server: LanguageServer,
@@ -65,6 +72,7 @@ export class PropertyTests implements vscode.Disposable {
         };
         this.subscriptions = [
             this.controller,
+            this.systems,
             profile,
             debug,
             server.onState(soon),
@@ -92,9 +100,20 @@ export class PropertyTests implements vscode.Disposable {
         return true;
     }
 
-    /** The property that a lens, a message or a test denotes. */
-    asked(of: string | vscode.TestItem, property: string): Asked | undefined {
-        return typeof of === "string" ? { system: of, property } : this.askedBy.get(of);
+    /** Verify a property with an interval of half the width. */
+    async verifyMore({ system, property }: Asked, epsilon: number): Promise<void> {
+        this.options = { epsilon: epsilon / 2 };
+        try {
+            await this.verify(system, [property]);
+        } finally {
+            this.options = {};
+        }
+    }
+
+    /** The property that a lens, a message, a test or a row of the results denotes. */
+    asked(of: string | vscode.TestItem | Asked, property: string): Asked | undefined {
+        if (typeof of === "string") return { system: of, property };
+        return "system" in of ? of : this.askedBy.get(of);
     }
 
     dispose(): void {
@@ -113,6 +132,7 @@ export class PropertyTests implements vscode.Disposable {
     async refresh(): Promise<void> {
         const systems = await this.server.ask(properties, null);
         if (systems === undefined) return;
+        this.systems.fire(systems);
         const known = new Set(systems.map(({ uri }) => uri));
         this.controller.items.forEach((item) => {
             if (!known.has(item.id)) this.controller.items.delete(item.id);
@@ -195,6 +215,7 @@ export class PropertyTests implements vscode.Disposable {
             run.end();
             for (const disposable of [...both, cancel]) disposable.dispose();
         }
+        await this.refresh();
     }
 
     /** Debug a run in which the first of the properties does not hold. */
@@ -266,7 +287,8 @@ export class PropertyTests implements vscode.Disposable {
         const partialResultToken = randomUUID();
         const parts = client.onProgress(new ProgressType<Verified>(), partialResultToken, take);
         try {
-            const params = { command: VERIFY, arguments: [system, names, { silent: true, partialResultToken }] };
+            const options = { silent: true, partialResultToken, ...this.options };
+            const params = { command: VERIFY, arguments: [system, names, options] };
             return (await client.sendRequest(ExecuteCommandRequest.type, params, token)) as Verification | null;
         } finally {
             parts.dispose();

@@ -171,6 +171,30 @@ export interface Words {
     readonly help: string;
     readonly kinds: Readonly<Record<NodeKind | EdgeKind, string>>;
     readonly byChance: string;
+    readonly mocks: string;
+    readonly probability: string;
+    readonly seconds: string;
+    readonly verify: string;
+    readonly unverified: string;
+    readonly verifying: string;
+}
+
+/** Fields for a mock of leaves. `nodes` are the ids of the leaves; `milliseconds` is null if it has no duration. */
+export interface MockField {
+    readonly pattern: string;
+    readonly kind: string;
+    readonly probability: number;
+    readonly milliseconds: number | null;
+    readonly origin: string;
+    readonly reason: string;
+    readonly nodes: readonly string[];
+}
+
+/** The mocks of a tree, and its known result in a few words. */
+export interface MockFields {
+    readonly rows: readonly MockField[];
+    readonly result: string;
+    readonly problem: string;
 }
 
 /** The looks of active nodes, by their ids, and the active edges with the ids of their ends. */
@@ -192,6 +216,8 @@ export type ToView =
     | { readonly type: "activity"; readonly activity: Activity }
     /** Convert the text of an SVG file to PNG. */
     | { readonly type: "rasterize"; readonly svg: string }
+    /** The mocks of the shown tree; null if it belongs to a system. `opens` shows the fields. */
+    | { readonly type: "mocks"; readonly mocks: MockFields | null; readonly busy: boolean; readonly opens: boolean }
     | { readonly type: "none"; readonly reason: string };
 
 export type FromView =
@@ -200,6 +226,13 @@ export type FromView =
     | { readonly type: "collapse"; readonly node: string }
     | { readonly type: "jump"; readonly place: Place; readonly beside: boolean }
     | { readonly type: "save"; readonly format: PictureFormat; readonly direction: Direction; readonly theme: Theme }
+    | {
+          readonly type: "setMock";
+          readonly pattern: string;
+          readonly probability: number;
+          readonly milliseconds: number | null;
+      }
+    | { readonly type: "verify" }
     /** The answer to `rasterize`: the PNG file in base64. */
     | { readonly type: "png"; readonly data: string }
     /** Sent after the picture has been drawn. */

@@ -147,6 +147,35 @@ export function around(sight: Sight, drawing: Area, box: Box, width: number, hei
     return { ...sight, x: inside(x, sight.x, drawing.width, w), y: inside(y, sight.y, drawing.height, h) };
 }
 
+/** The smallest box around boxes. */
+export function union(boxes: readonly Box[]): Box {
+    const [x, y] = [Math.min(...boxes.map((box) => box.x)), Math.min(...boxes.map((box) => box.y))];
+    const right = Math.max(...boxes.map((box) => box.x + box.width));
+    const bottom = Math.max(...boxes.map((box) => box.y + box.height));
+    return { x, y, width: right - x, height: bottom - y };
+}
+
+/**
+ * The view that follows a box: unchanged while the box and those around it are visible; otherwise with all of them in
+ * the middle if they fit, else with the box in the middle.
+ */
+export function follow(
+    sight: Sight,
+    drawing: Area,
+    box: Box,
+    others: readonly Box[],
+    width: number,
+    height: number,
+): Sight {
+    const all = union([box, ...others]);
+    const [w, h] = [width / sight.scale, height / sight.scale];
+    const fits = all.width <= w && all.height <= h;
+    const wanted = fits ? all : box;
+    const isVisible = (at: number, low: number, size: number, whole: number) => low >= at && low + size <= at + whole;
+    if (isVisible(sight.x, wanted.x, wanted.width, w) && isVisible(sight.y, wanted.y, wanted.height, h)) return sight;
+    return around(sight, drawing, wanted, width, height);
+}
+
 /** Where a node was before, relative to where it is. */
 export interface Shift {
     readonly index: number;

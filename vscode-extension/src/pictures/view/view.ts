@@ -3,6 +3,7 @@
 
 import {
     DIRECTIONS,
+    type DrawnNode,
     type Drawing,
     type FromView,
     type Activity,
@@ -20,6 +21,7 @@ import {
     bestDrawing,
     fit,
     fitLegibly,
+    follow,
     isArrow,
     neighbour,
     pan,
@@ -31,6 +33,7 @@ import {
     type Sight,
 } from "./find";
 import { Minimap } from "./minimap";
+import { MockPane } from "./mocks";
 import { menuOf } from "./menu";
 import { element, pngData, sceneOf, type Scene } from "./scene";
 import { legendOf, type LegendEntry } from "./words";
@@ -59,6 +62,10 @@ class View {
         this.moved = true;
         this.look(sight);
     });
+    private readonly mocks = new MockPane((message) => {
+        editor.postMessage(message);
+    });
+    private readonly mocksButton = document.createElement("button");
     private words: Words | undefined;
     private picture: Picture | undefined;
     /** The index of the drawing that is shown. */
@@ -80,7 +87,13 @@ class View {
         const stage = document.createElement("div");
         stage.className = "stage";
         stage.append(this.svg, this.notice, this.minimap.svg);
-        document.body.append(this.bar, stage, this.legend);
+        const middle = document.createElement("div");
+        middle.className = "middle";
+        middle.append(stage, this.mocks.pane);
+        document.body.append(this.bar, middle, this.legend);
+        this.mocks.onFocus = (nodes) => {
+            this.emphasiseNodes(nodes);
+        };
         this.listen();
         new ResizeObserver(() => {
             this.refit();
@@ -113,6 +126,11 @@ class View {
                 void pngData(message.svg).then((data) => {
                     editor.postMessage({ type: "png", data });
                 });
+                break;
+            case "mocks":
+                this.mocks.show(message.mocks, message.busy, message.opens);
+                this.mocksButton.hidden = message.mocks === null;
+                this.showMocksState();
                 break;
             case "none":
                 this.clear();
@@ -225,8 +243,40 @@ class View {
         const { width, height } = this.svg.getBoundingClientRect();
         if (!this.drawing) return;
         const sight = fitLegibly(this.drawing, width, height);
-        const root = this.picture?.kind === "tree" ? this.drawing.nodes[0] : undefined;
-        this.look(root ? around(sight, this.drawing, root, width, height) : sight);
+        const first = this.box(this.first);
+        this.look(first ? around(sight, this.drawing, first, width, height) : sight);
+    }
+
+    /** The node that is shown first: that of the caret, otherwise the initial state, otherwise the first node. */
+    private get first(): number {
+        const { here, picture } = this;
+        if (here !== null) return this.nodeOf(here);
+        const initial = picture?.nodes.findIndex((node) => node.initial && node.kind === "state") ?? -1;
+        return initial >= 0 ? initial : (this.drawing?.nodes[0]?.index ?? -1);
+    }
+
+    /** The node of a part; that of a transition is its source. */
+    private nodeOf(part: Part): number {
+        if ("node" in part) return part.node;
+        const source = this.picture?.edges[part.edge]?.source;
+        return this.picture?.nodes.findIndex((node) => node.id === source) ?? -1;
+    }
+
+    private box(node: number): DrawnNode | undefined {
+        return this.drawing?.nodes.find(({ index }) => index === node);
+    }
+
+    /** Keep a node and the targets of its outgoing edges visible. */
+    private keepInView(node: number): void {
+        const { picture, drawing } = this;
+        const box = this.box(node);
+        if (!picture || !drawing || !box) return;
+        const id = picture.nodes[node]?.id;
+        const targets = new Set(picture.edges.filter(({ source }) => source === id).map(({ target }) => target));
+        const others = drawing.nodes.filter(({ index }) => targets.has(picture.nodes[index]?.id ?? ""));
+        const { width, height } = this.svg.getBoundingClientRect();
+        this.look(follow(this.sight, drawing, box, others, width, height));
+        this.reveal(node);
     }
 
     private zoom(factor: number, about?: { x: number; y: number }): void {
@@ -264,11 +314,7 @@ class View {
         this.here = here;
         for (const group of this.parts(here)) group.classList.add("here");
         if (here === null || !this.picture) return;
-        if ("node" in here) this.reveal(here.node);
-        else {
-            const edge = this.picture.edges[here.edge];
-            this.reveal(this.picture.nodes.findIndex((node) => node.id === edge?.source));
-        }
+        this.keepInView(this.nodeOf(here));
     }
 
     /** Highlight the node of the current step of a trace. */
@@ -278,6 +324,19 @@ class View {
         for (const [index, node] of this.scene?.nodes ?? [])
             node.classList.toggle("highlighted", index === highlighted);
         if (highlighted >= 0) this.reveal(highlighted);
+    }
+
+    /** Mark the leaves of a mock. */
+    private emphasiseNodes(ids: readonly string[]): void {
+        const { picture } = this;
+        for (const [index, node] of this.scene?.nodes ?? [])
+            node.classList.toggle("mocked", ids.includes(picture?.nodes[index]?.id ?? ""));
+        const first = picture?.nodes.findIndex(({ id }) => id === ids[0]) ?? -1;
+        if (first >= 0) this.reveal(first);
+    }
+
+    private showMocksState(): void {
+        this.mocksButton.setAttribute("aria-expanded", String(this.mocks.isOpen));
     }
 
     /** Show where a run is: active states, statuses of nodes, messages. */
@@ -421,6 +480,11 @@ class View {
 
     /** Handle a key; return whether the view uses it. */
     private key({ key, ctrlKey, metaKey, shiftKey }: KeyboardEvent): boolean {
+        if (this.mocks.pane.contains(document.activeElement)) {
+            if (key !== "Escape") return false;
+            this.svg.focus();
+            return true;
+        }
         const typing = document.activeElement === this.input;
         if (typing) {
             if (key === "Enter") this.search(true);
@@ -456,8 +520,18 @@ class View {
             made.addEventListener("click", () => void run());
             return made;
         };
+        this.mocks.words = words;
+        const { mocksButton } = this;
+        mocksButton.textContent = words.mocks;
+        mocksButton.title = words.mocks;
+        mocksButton.hidden = true;
+        mocksButton.addEventListener("click", () => {
+            this.mocks.toggle();
+            this.showMocksState();
+        });
         this.bar.replaceChildren(
             this.input,
+            mocksButton,
             button("+", words.zoomIn, () => {
                 this.zoom(ZOOM);
             }),

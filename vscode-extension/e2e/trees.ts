@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+import * as fs from "node:fs";
+import * as path from "node:path";
+import { ROOT } from "./support/paths";
+import type { Stage } from "./support/stage";
+import type { Window } from "./support/window";
+import { temporaryFolder, write } from "./support/workbench";
+
+const EXAMPLE = path.join(ROOT, "examples/fetch_tree");
+/** The trees of Nav2, which may be in a folder beside the project. */
+const NAV2 = path.resolve(ROOT, "../../shared/conformance/trees/nav2");
+
+const HIGH_CONTRAST = { "hc-dark": "Default High Contrast" };
+/** All themes are looked at when pictures are taken. */
+const THEMES =
+    process.env["AS2FM_PICTURES"] === undefined
+        ? HIGH_CONTRAST
+        : { light: "Default Light Modern", dark: "Default Dark Modern", ...HIGH_CONTRAST };
+
+/** Trees without mocks: those of Nav2 if they are at hand, and that of an example. */
+function trees(): string {
+    const folder = temporaryFolder("trees");
+    const sources = [path.join(EXAMPLE, "fetch.xml")];
+    for (const nav2 of [NAV2, path.resolve(ROOT, "../shared/conformance/trees/nav2")])
+        if (fs.existsSync(nav2)) sources.push(...fs.readdirSync(nav2).map((name) => path.join(nav2, name)));
+    for (const source of sources) {
+        const text = fs.readFileSync(source, "utf8");
+        if (text.includes("<BehaviorTree")) fs.writeFileSync(path.join(folder, path.basename(source)), text);
+    }
+    return folder;
+}
+
+function mocksOf(window: Window, tree: string): string {
+    return path.join(window.folder, tree.replace(/xml$/, "mocks"));
+}
+
+export function loneTrees(stage: Stage): void {
+    stage.use();
+
+    stage.test("every tree alone is verified with one click and debugged with F5", trees, async (window) => {
+        const { page } = window;
+        for (const tree of fs.readdirSync(window.folder).filter((name) => name.endsWith(".xml"))) {
+            await window.openFile(tree);
+            await window.running();
+            const lens = (text: string | RegExp) => page.locator(".codelens-decoration a", { hasText: text }).first();
+            await lens(/^Run$/).waitFor();
+            await window.repeat(() => lens(/^Verify$/).click(), lens(/^Verify · /));
+            await window.until(() => Promise.resolve(fs.existsSync(mocksOf(window, tree))));
+            await page.keyboard.press("F5");
+            await page.locator(".debug-toolbar").waitFor();
+            await page.getByText("step 0, 0.000 s").first().waitFor();
+            await page.keyboard.press("Shift+F5");
+            await page.locator(".debug-toolbar").waitFor({ state: "detached" });
+        }
+        await window.screenshot("tree-verified");
+    });
+
+    const example = (theme = "Default Light Modern") => {
+        const folder = temporaryFolder("tree");
+        fs.copyFileSync(path.join(EXAMPLE, "fetch.xml"), path.join(folder, "fetch.xml"));
+        write(path.join(folder, ".vscode/settings.json"), JSON.stringify({ "workbench.colorTheme": theme }));
+        return folder;
+    };
+    for (const [look, theme] of Object.entries(THEMES)) {
+        const themed = () => example(theme);
+        stage.test(`mocks are edited beside the picture, and verified again, ${look}`, themed, async (window) => {
+            const { page } = window;
+            await window.openFile("fetch.xml");
+            await window.running();
+            const lens = page.locator(".codelens-decoration a", { hasText: /^Mocks$/ }).first();
+            await lens.waitFor();
+            await window.repeat(() => lens.click(), page.locator('.tab[data-resource-name*="Behavior Tree"]'));
+            const view = await window.picture(".mock");
+            const row = view.locator(".mock", { hasText: "CloseGripper" });
+            await row.getByText("action, proposed:").waitFor();
+            const result = (text: string | RegExp) => view.locator(".mock-head output", { hasText: text }).waitFor();
+            await result("Not verified");
+            await window.screenshot(`mocks-proposed-${look}`);
+            const probability = row.locator('input[type="number"]').first();
+            await probability.fill("0");
+            await probability.press("Tab");
+            await result("succeeds: 0");
+            const kept = () => fs.readFileSync(mocksOf(window, "fetch.xml"), "utf8").includes("CloseGripper: 0 in 1 s");
+            await window.until(() => Promise.resolve(kept()));
+            await row.locator('input[type="range"]').focus();
+            for (let step = 0; step < 3; step++) await page.keyboard.press("ArrowRight");
+            await result(/succeeds: 0\.\d/);
+            await window.run("View: Focus Problems");
+            await page.locator(".panel .composite-bar .action-label", { hasText: "Properties" }).click();
+            const sentence = page.locator(".panel .monaco-list-row", { hasText: "The tree returns SUCCESS." });
+            await sentence.waitFor();
+            await sentence.click();
+            await page.keyboard.press("ArrowRight");
+            await page.locator(".panel .monaco-list-row", { hasText: "no expectation set" }).last().waitFor();
+            await window.screenshot(`mocks-edited-${look}`);
+        });
+    }
+
+    const broken = () => {
+        const folder = example();
+        fs.writeFileSync(path.join(folder, "fetch.mocks"), "CloseGripper: 7\n");
+        return folder;
+    };
+    stage.test("F5 that cannot start a run says why, without a dialog", broken, async (window) => {
+        await window.openFile("fetch.xml");
+        await window.running();
+        await window.page.keyboard.press("F5");
+        await window.notification("is not a probability from 0 to 1").waitFor();
+        await window.page.locator(".monaco-dialog-box").waitFor({ state: "detached" });
+    });
+}
