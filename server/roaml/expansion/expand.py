@@ -303,7 +303,7 @@ class _Expander:
     def _plain_input(self, document: Document, instance: ListedInstance) -> Iterator[TextEdit]:
         """The edits that remove from an input what plain system files do not have."""
         element = instance.element
-        if instance.is_plain and element.get("name") is None and element.get("namespace") is None:
+        if instance.is_plain:
             return
         first = next(iter(element.elements), None)
         place = first.name_span if first is not None else element.name_span

@@ -53,7 +53,8 @@ class ListedInstance(Record, frozen=True, eq=False):
     @property
     def is_plain(self) -> bool:
         """Whether the input uses nothing that plain system files do not have."""
-        return self.name is None and not self.namespace and not self.params and not self.remaps
+        extra = any(child.name in (PARAM, REMAP) for child in self.element.elements)
+        return not extra and self.element.get("name") is None and self.element.get("namespace") is None
 
 
 def instances(document: Document, problems: Problems) -> Iterator[ListedInstance]:
@@ -68,6 +69,9 @@ def instances(document: Document, problems: Problems) -> Iterator[ListedInstance
 
 
 def _instance(element: Element, section: SystemSection, src: Attribute, problems: Problems) -> ListedInstance:
+    if "$(var" in src.value:
+        message = "a path cannot contain a parameter, because the files of a system are the same for all values"
+        problems.add(ExpansionProblem.INSTANCE, src.value_span, message)
     name = name_of(element.get("name"))
     if name is not None and not _NAME.match(name.value):
         message = (
@@ -176,6 +180,10 @@ def instance_edits(document: Document, instance: ListedInstance, problems: Probl
         type_ = HL_SCXML.elements.get(element.name)
         if type_ is None:
             continue
+        if element.name in INTERFACE_ATTRIBUTES and (content := document.content(element)) is not None:
+            new = names.interface(content.text)
+            if new != content.text:
+                yield TextEdit(content.span(0, len(content.text)), new)
         for attribute in element.attributes:
             role = type_.attributes.get(attribute.name)
             if role is None or not attribute.value.strip():

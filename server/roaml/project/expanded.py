@@ -6,10 +6,12 @@ Everything that needs plain HL-SCXML (rules, linking, translation) uses this ana
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING
 
 from roaml.diagnostics import Finding, Fix, Related, Symbol
 from roaml.expansion import ExpandedText, SystemExpansion
+from roaml.facts import Facts
 from roaml.model.system import System
 from roaml.record import Record, replace
 from roaml.text import Location, Span, TextEdit
@@ -39,10 +41,24 @@ class Expanded(Record, frozen=True, eq=False):
         are left out."""
         text = self.expansion.texts.get(path)
         related = tuple(self._related(text, other) for other in finding.related)
+        finding = replace(finding, related=related, message=self._message(finding.message), facts=self._facts(finding))
         if text is None:
-            return replace(finding, related=related)
+            return finding
         fixes = tuple(fix for fix in (self._fix(text, fix) for fix in finding.fixes) if fix is not None)
-        return replace(finding, span=text.origin(finding.span), related=related, fixes=fixes)
+        return replace(finding, span=text.origin(finding.span), fixes=fixes)
+
+    def _message(self, message: str) -> str:
+        """A message that names the files of the user, not those of instances."""
+        for path, text in self.expansion.texts.items():
+            if path != text.source:
+                message = message.replace(f"{os.path.basename(path)}`", f"{os.path.basename(text.source)}`")
+        return message
+
+    def _facts(self, finding: Finding) -> Facts | None:
+        path = getattr(finding.facts, "path", None)
+        if finding.facts is None or path is None or path not in self.expansion.texts:
+            return finding.facts
+        return replace(finding.facts, path=self.expansion.source(path))
 
     def _related(self, text: ExpandedText | None, related: Related) -> Related:
         if isinstance(related.place, Symbol):

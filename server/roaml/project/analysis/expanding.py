@@ -83,9 +83,9 @@ class Expanding:
 
     def file(self, path: str, *, varied: bool = False) -> ExpandedFiles | None:
         """A machine or property file that is not in a system, with the values of its own parameters; `None` if it
-        declares none. For `varied`, see `system`."""
+        declares and uses none. For `varied`, see `system`."""
         source = self._sources.source(path)
-        if source is None or "<parameter" not in source.text:
+        if source is None or not ("<parameter" in source.text or "$(var" in source.text):
             return None
         if self._sources.kind(path) not in (FileKind.MACHINE, FileKind.XML_PROPERTIES):
             return None

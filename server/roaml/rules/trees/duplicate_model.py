@@ -71,11 +71,12 @@ def _finding(context: SystemContext, listed: ListedFile, before: ListedFile, nam
         same = f", so there would be two nodes `{name}`" if kind_name == "node" else ""
         remove = Fix("Remove this `<input>`", (removal(context.source.text, listed.input.element.span),), safe=True)
         severity = Severity.ERROR if kind_name == "node" else Severity.WARNING
-        message = f"`{src.value}` is listed twice{same}; remove this `<input>`"
+        named = ", or give it another `name`" if kind_name == "node" else ""
+        message = f"`{src.value}` is listed twice{same}; remove this `<input>`{named}"
         return RULE.at(src.span, message, remove, severity=severity, related=[first])
-    named = Related(Symbol(listed.path, SymbolKind.MACHINE, name), "named here")
+    place = Related(Symbol(listed.path, SymbolKind.MACHINE, name), "named here")
     message = f"there are two {kind_name}s `{name}`, here and in `{earlier.value}`; rename one of them"
-    return RULE.at(src.span, message, related=[first, named])
+    return RULE.at(src.span, message, related=[first, place])
 
 
 RULE = Rule("duplicate-model", Severity.ERROR, "Two machines of a system have the same name.", system=check)
