@@ -60,6 +60,14 @@ def test_the_expanded_files_have_the_same_translation(folder: Path, tmp_path: Pa
     assert run(["translate", str(folder / "main.xml"), "--expand", str(plain), *values]) == 0
 
 
+def test_values_in_python(folder: Path) -> None:
+    system = api.load(str(folder / "main.xml"), parameters={"capacity": 80, "loss": 0.25, "left.period": 2})
+    assert system.parameters == {"capacity": "80", "loss": "0.25"}
+    assert "".join(write(api.to_jani(system))) == jani(folder / "main.xml", capacity=80, loss="1 / 4", left__period=2)
+    with pytest.raises(api.ParameterError, match="no parameter `los`; did you mean `loss`"):
+        api.load(str(folder / "main.xml"), parameters={"los": 1})
+
+
 def test_values_from_outside_replace_those_of_the_files(folder: Path) -> None:
     default = jani(folder / "main.xml")
     assert default == jani(folder / "main.xml", capacity=100, left__period=0.5, right__period=1)

@@ -75,6 +75,7 @@ def load(
     settings: Settings | None = None,
     texts: Mapping[str, str | bytes] | None = None,
     overrides: Overrides = NO_OVERRIDES,
+    parameters: Mapping[str, bool | int | float | str] | None = None,
 ) -> LoadedSystem:
     """Read and check a system, to translate it.
 
@@ -82,6 +83,8 @@ def load(
         path: the system file.
         ros_paths, settings, texts: as for `check`.
         overrides: parameters that replace those in the system file.
+        parameters: name of a parameter that the models declare -> its value, such as `{"capacity": 80}`; the name
+            `INSTANCE.NAME` is that of one instance (docs/spec/parameters.md#values).
 
     Raises:
         PathError: the path cannot be read, or is not a system file.
@@ -91,8 +94,15 @@ def load(
     if settings is None:
         settings, _ = find_settings(os.path.abspath(path))
         settings = replace(settings, ament_prefixes=ament_prefixes())
+    overrides = with_parameters(overrides, parameters or {})
     snapshot = check([path], ros_paths, replace(settings, overrides=overrides), texts).snapshot
     return loaded(snapshot, os.path.abspath(path))
+
+
+def with_parameters(overrides: Overrides, parameters: Mapping[str, bool | int | float | str]) -> Overrides:
+    """Overrides with further values of parameters."""
+    texts = {name: str(value).lower() if isinstance(value, bool) else str(value) for name, value in parameters.items()}
+    return replace(overrides, values=(*overrides.values, *texts.items()))
 
 
 def loaded(snapshot: Snapshot, path: str) -> LoadedSystem:
