@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ import pytest
 from as2fm_lsp.cli.main import run
 from roaml import api
 from roaml.diagnostics import Severity, Symbol
+from roaml.ide.code_actions import new_parameter
 from roaml.ide.completion import complete
 from roaml.ide.describe import describe
 from roaml.ide.hover import hover
@@ -20,7 +22,7 @@ from roaml.ide.rename import RenameRefusal, Renaming, rename
 from roaml.jani.writer import write
 from roaml.project.workspace import Snapshot
 from roaml.roles import SymbolKind
-from roaml.text import apply_edits
+from roaml.text import Span, apply_edits
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "spec" / "parameters.md").read_text(encoding="utf-8")
@@ -184,6 +186,33 @@ def test_parameters_are_completed(file: str, before: str, typed: str, expected: 
     found = complete(snapshot(folder), str(folder / file), at + len(typed))
     assert found is not None
     assert {item.label for item in found.items if item.detail.startswith("parameter: ")} == expected
+
+
+@pytest.mark.parametrize(
+    ("file", "before", "name", "line"),
+    [
+        ("nodes/battery.ascxml", 'id="level" type="uint8" expr="', "initial_level", "initial_level"),
+        ("nodes/battery.ascxml", 'name="second" rate_hz="', "rate", 'rate_hz="rate"'),
+        ("nodes/battery.ascxml", "Math.max(level - ", "parameter", "Math.max(level - parameter, 0)"),
+        ("tree.xml", 'level="', "level_2", 'level="$(var level_2)"'),
+        ("properties.xml", "battery &lt;= ", "parameter", "battery &lt;= parameter</event>"),
+    ],
+)
+def test_a_number_becomes_a_parameter(file: str, before: str, name: str, line: str, tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "examples" / "delivery_robot", tmp_path / "robot")
+    main, path = tmp_path / "robot" / "main.xml", tmp_path / "robot" / file
+    before_jani = jani(main)
+    place = path.read_text().index(before) + len(before)
+    current = api.check([str(main)]).snapshot
+    found = list(new_parameter.actions(current.analysis, str(path), Span(place, place)))
+    assert [f"`{name}`" in action.title for action in found] == [True]
+    for changed, edits in found[0].make().edits.items():
+        edited = Path(changed)
+        edited.write_text(apply_edits(edited.read_text(), tuple(edits)))
+    assert line in path.read_text()
+    assert f'<parameter name="{name}" type="' in main.read_text()
+    assert not [d for d in api.check([str(main)]).diagnostics if d.severity >= Severity.WARNING]
+    assert jani(main) == before_jani
 
 
 def test_an_instance_is_a_definition(folder: Path) -> None:

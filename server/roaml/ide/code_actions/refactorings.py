@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.edit.elements import after, halts, last_in
-from roaml.ide.code_actions import convert_property, migrate, new_mocks, new_plugin, node_form
+from roaml.ide.code_actions import convert_property, migrate, new_mocks, new_parameter, new_plugin, node_form
 from roaml.ide.code_actions.action import EXTRACT, REWRITE, CodeAction, WorkspaceEdit, known
 from roaml.language import HL_SCXML
 from roaml.model.kinds import FileKind
@@ -34,6 +34,7 @@ def refactorings(snapshot: Snapshot, path: str, place: Span) -> Iterator[CodeAct
         yield from _nodes(analysis, path, place)
         yield from new_mocks.actions(snapshot, path, _node_at(analysis, path, place), _is_top(analysis, path, place))
     yield from convert_property.actions(analysis, path, place)
+    yield from new_parameter.actions(analysis, path, place)
     yield from migrate.actions(snapshot, path, place)
 
 
