@@ -152,8 +152,8 @@ def test_a_constant_in_a_guard_is_not_shared(tmp_path: Path) -> None:
     written = retry()
     written["automata"][0]["edges"][1]["guard"] = {"exp": op(">", "n", op("*", 10, "p"))}
     subject = ParametricJani(model(written), "")
-    assert subject.chances(["p"], (("q", "0"), ("tries", "3"))) is None
-    assert subject.chances(["q"], (("p", "0.5"), ("tries", "3"))) is not None
+    assert subject.chances({"p": (0.1, 0.9)}, (("q", "0"), ("tries", "3"))) is None
+    assert subject.chances({"q": (0.1, 0.9)}, (("p", "0.5"), ("tries", "3"))) is not None
 
 
 def test_estimates_do_not_depend_on_processes_or_interruptions(tmp_path: Path) -> None:

@@ -8,9 +8,17 @@ import json
 import os
 import sys
 from collections.abc import Sequence
+from concurrent.futures import Executor
 
 from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
-from as2fm_lsp.cli.experiment_arguments import TableFormat, computed_options, parsed, parser, units_in
+from as2fm_lsp.cli.experiment_arguments import (
+    TableFormat,
+    computed_options,
+    expectation_in,
+    parsed,
+    parser,
+    units_in,
+)
 from as2fm_lsp.cli.formats import Format, render
 from as2fm_lsp.cli.formats.report import shown_path
 from as2fm_lsp.cli.interrupts import Interrupts
@@ -22,13 +30,19 @@ from as2fm_lsp.cli.status_line import StatusLine
 from as2fm_lsp.cli.tree_semantics import semantics_of
 from as2fm_lsp.cli.workers import cluster
 from as2fm_lsp.kept_points import KeptPoints, KeptPointsError
-from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, outputs_of
+from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, OutputFiles, outputs_of
 from roaml import api
 from roaml.exhaustive import assert_never
+from roaml.experiments.enough import Met
+from roaml.experiments.grid import Grid
+from roaml.experiments.points import PointKind
 from roaml.experiments.results import ExperimentResult
 from roaml.experiments.sweeps import SweepError
+from roaml.figures.plot import LinePlot
 from roaml.jani.property_text import PropertyTextError
 from roaml.model.parameters import Overrides
+from roaml.record import replace
+from roaml.verification.expectations import Expectation
 
 __all__ = ["parser", "run"]
 
@@ -57,6 +71,7 @@ def run(arguments: Sequence[str]) -> int:
 def _run(options: argparse.Namespace, interrupts: Interrupts) -> int:
     units = units_in(options)
     computed = computed_options(options)
+    expectation = expectation_in(options)
     is_interrupted = False
     with StatusLine() as status, cluster(options.dask) as (executor, workers):
         status.stage("reading and translating")
@@ -64,13 +79,15 @@ def _run(options: argparse.Namespace, interrupts: Interrupts) -> int:
         grid = api.grid_of(
             options.main,
             options.set,
-            options.property or None,
+            [expectation.name] if expectation is not None else options.property or None,
             computed,
             ros_paths=options.ros_path,
             settings=settings_of(options.main),
             overrides=overrides,
         )
         outputs = outputs_of(options, grid.files)
+        if expectation is not None:
+            return _find(options, grid, expectation, outputs, workers or options.jobs, executor)
         kept = KeptPoints(options.resume, grid.digest)
         keys = grid.keys
         points = {key: kept.points[key] for key in keys if key in kept.points}
@@ -87,17 +104,60 @@ def _run(options: argparse.Namespace, interrupts: Interrupts) -> int:
         kept.write()
     known = tuple(points[key] for key in keys if key in points)
     result = ExperimentResult(os.path.basename(options.main), grid.sweeps, grid.properties, known, grid.options)
-    table = _table(result, options.format)
-    if options.output is None or options.output == STANDARD_OUTPUT_PATH:
-        print_text(table)
-    else:
-        outputs.write(options.output, table)
+    _write_table(options, outputs, _table(result, options.format))
     for path in options.plot:
         write_plots(outputs, path, result.plots(units), options.theme, result.page_title, result.to_html_table())
     if is_interrupted:
         complain(f"interrupted: {len(known):,} of {len(keys):,} points are known")
         return interrupts.status
     return CLEAN if all(point.has_value for point in known) else FOUND
+
+
+def _find(
+    options: argparse.Namespace,
+    grid: Grid,
+    expectation: Expectation,
+    outputs: OutputFiles,
+    jobs: int,
+    executor: Executor | None,
+) -> int:
+    """Print which values of a parameter are enough, below the points."""
+    answers, result = api.find_enough(
+        grid, options.find, expectation, is_assumed=options.assume_monotone, jobs=jobs, executor=executor
+    )
+    result = replace(result, path=os.path.basename(options.main))
+    sentences = [answer.text(f"{expectation.name} {expectation.text}") for answer in answers]
+    if any(point.kind is PointKind.ESTIMATE for point in result.points):
+        confidence = computed_options(options).sampling.confidence
+        sentences.append(f"the intervals of all points are right together with {confidence:g} confidence")
+    table = _table(result, options.format)
+    if options.format is TableFormat.TEXT:
+        table += "".join(f"{sentence}\n" for sentence in sentences)
+    elif options.format is TableFormat.MARKDOWN:
+        table += "".join(f"\n{sentence}.\n" for sentence in sentences)
+    elif options.format is TableFormat.JSON:
+        found = [
+            {"setting": dict(a.others), "values": {value: met.value for value, met in a.verdicts}} for a in answers
+        ]
+        table = json.dumps({**result.as_json(), "found": found, "assumed monotone": options.assume_monotone}, indent=2)
+        table += "\n"
+    _write_table(options, outputs, table)
+    for path in options.plot:
+        plots = [
+            replace(plot, guides=((expectation.threshold.number, expectation.text),))
+            if isinstance(plot, LinePlot)
+            else plot
+            for plot in result.plots(units_in(options))
+        ]
+        write_plots(outputs, path, plots, options.theme, result.page_title, result.to_html_table())
+    return CLEAN if any(met is Met.YES for answer in answers for _, met in answer.verdicts) else FOUND
+
+
+def _write_table(options: argparse.Namespace, outputs: OutputFiles, table: str) -> None:
+    if options.output is None or options.output == STANDARD_OUTPUT_PATH:
+        print_text(table)
+    else:
+        outputs.write(options.output, table)
 
 
 def _table(result: ExperimentResult, format_: TableFormat) -> str:

@@ -16,7 +16,7 @@ from as2fm_lsp.cli.model_arguments import UsageError
 from as2fm_lsp.cli.numbers import positive
 from as2fm_lsp.cli.times import add_reaction_time, time_of
 from as2fm_lsp.cli.tree_semantics import add_semantics
-from as2fm_lsp.cli.verify_arguments import add_sampling, limits_in, plot_file
+from as2fm_lsp.cli.verify_arguments import add_sampling, expectations_in, limits_in, plot_file
 from as2fm_lsp.outputs import InputPath, OutputPath
 from roaml.disk import MEGABYTE, required
 from roaml.exhaustive import Vocabulary
@@ -24,6 +24,7 @@ from roaml.experiments.grid import ExperimentOptions
 from roaml.figures.themes import AUTOMATIC, THEMES
 from roaml.suggest import close_names, did_you_mean
 from roaml.toml import TomlError, loads
+from roaml.verification.expectations import Expectation
 
 SUFFIX = ".experiment.toml"
 EXAMPLES = """\
@@ -32,6 +33,7 @@ examples:
   as2fm-lsp experiment main.xml --set capacity=20:200:20 --set loss=0,0.01,0.05 --plot battery.svg
   as2fm-lsp experiment model.jani --constant p=0.1:0.1:0.9 --format csv -o p.csv
   as2fm-lsp experiment main.xml --set loss=0:1/2:1/20 --exhaustive --plot loss.html
+  as2fm-lsp experiment main.xml --set capacity=20:200:20 --find capacity --meets "delivered >= 0.99"
   as2fm-lsp experiment battery.experiment.toml
 
 A parameter has a list of values (0,0.01,1/20) or a range: 20:200:20 and 20:20:200 are the numbers from 20 to 200 in
@@ -80,6 +82,10 @@ def parser() -> ArgumentParser:
     add("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages")
     add_semantics(result)
     add("--property", action="append", default=[], metavar="NAME", help="compute only this property; may be repeated")
+    add("--find", metavar="NAME", help="find the values of this parameter for which --meets is met")
+    add("--meets", metavar="'NAME >= P'", help="with --find: the expectation, with >=, <=, >, < or ==")
+    add("--assume-monotone", action="store_true", help="with --find: assume that the property only rises or only falls "
+        "with the parameter, so that few points are needed; without it, all values are computed")  # fmt: skip
     add("--scheduler", choices=("uniform",), help="the values under uniform choices, instead of the minimum or "
         "maximum over all schedulers")  # fmt: skip
     add("--exhaustive", "--exact", action="store_true", help="only exact values, however many states there are")
@@ -190,6 +196,26 @@ def computed_options(options: argparse.Namespace) -> ExperimentOptions:
         max_transitions=options.max_transitions,
         max_states=options.max_states,
     )
+
+
+def expectation_in(options: argparse.Namespace) -> Expectation | None:
+    """The expectation of `--find`; `None` if no value is to be found.
+
+    Raises:
+        UsageError: the options do not fit each other, or the expectation is not valid.
+    """
+    if (options.find is None) is not (options.meets is None):
+        raise UsageError("--find and --meets need each other: --find capacity --meets 'delivered >= 0.99'")
+    if options.find is None:
+        if options.assume_monotone:
+            raise UsageError("--assume-monotone needs --find")
+        return None
+    if options.property or options.resume is not None:
+        raise UsageError(
+            "--find takes the property from --meets, and keeps no points; leave out --property and --resume"
+        )
+    (expectation,) = expectations_in([options.meets])
+    return expectation
 
 
 def units_in(options: argparse.Namespace) -> dict[str, str]:

@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from roaml.api.checking import CheckResult, check, fix
     from roaml.api.drawing import DrawingError, DrawnPicture, draw
-    from roaml.api.experimenting import experiment, grid_of
+    from roaml.api.experimenting import experiment, find_enough, grid_of
     from roaml.api.jani_files import JaniError, PathError, read_jani
     from roaml.api.migrating import SharedFileError, migrate
     from roaml.api.simulating import session
@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from roaml.api.verifying import ConstantError, as_target, checker, target, verifier, verify
     from roaml.comparison import Comparison
     from roaml.diagnostics import Diagnostic, Severity
+    from roaml.experiments.enough import Enough, Met, Trend
     from roaml.experiments.grid import ExperimentOptions, Grid
     from roaml.experiments.points import ExperimentPoint, PointKind, Schedulers
     from roaml.experiments.results import ExperimentResult
@@ -116,7 +117,7 @@ else:
         "roaml.comparison": ("Comparison",),
         "roaml.api.checking": ("CheckResult", "check", "fix"),
         "roaml.api.drawing": ("DrawingError", "DrawnPicture", "draw"),
-        "roaml.api.experimenting": ("experiment", "grid_of"),
+        "roaml.api.experimenting": ("experiment", "find_enough", "grid_of"),
         "roaml.api.jani_files": ("JaniError", "PathError", "read_jani"),
         "roaml.api.migrating": ("SharedFileError", "migrate"),
         "roaml.api.simulating": ("session",),
@@ -134,6 +135,7 @@ else:
         "roaml.api.trees": ("propose_mocks",),
         "roaml.api.verifying": ("ConstantError", "as_target", "checker", "target", "verifier", "verify"),
         "roaml.diagnostics": ("Diagnostic", "Severity"),
+        "roaml.experiments.enough": ("Enough", "Met", "Trend"),
         "roaml.experiments.grid": ("ExperimentOptions", "Grid"),
         "roaml.experiments.points": ("ExperimentPoint", "PointKind", "Schedulers"),
         "roaml.experiments.results": ("ExperimentResult",),
@@ -179,7 +181,9 @@ else:
         "roaml.verification.refusal": ("Refusal",),
         "roaml.verification.results": (
             "Computed",
+            "Trend",
             "UnderAssumption",
+            "Enough",
             "Estimated",
             "Exact",
             "CutShort",
@@ -233,6 +237,7 @@ __all__ = [
     "DrawingError",
     "DrawnPicture",
     "End",
+    "Enough",
     "Estimated",
     "EstimationMethod",
     "EventState",
@@ -257,6 +262,7 @@ __all__ = [
     "LoadedSystem",
     "Location",
     "MachineState",
+    "Met",
     "Migration",
     "Mock",
     "MockError",
@@ -319,6 +325,7 @@ __all__ = [
     "TraceStep",
     "TraceVerdict",
     "Traces",
+    "Trend",
     "Undecided",
     "UnderAssumption",
     "Verdict",
@@ -334,6 +341,7 @@ __all__ = [
     "counterexample",
     "draw",
     "experiment",
+    "find_enough",
     "fix",
     "grid_of",
     "load",

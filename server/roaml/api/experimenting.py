@@ -4,22 +4,26 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from roaml.api.expanded_chances import expanded_chances
 from roaml.api.jani_files import read_jani
-from roaml.api.verifying import ConstantError, target
+from roaml.api.systems import LoadedSystem, load
+from roaml.api.verifying import ConstantError, as_target
+from roaml.experiments.enough import Enough, enough_of, together
 from roaml.experiments.grid import ExperimentOptions, Grid, ParametricModel
 from roaml.experiments.parametric import Chances, constant_chances
 from roaml.experiments.points import ExperimentPoint
 from roaml.experiments.results import ExperimentResult
-from roaml.experiments.sweeps import Setting, Sweep, SweepError, sweeps_of
+from roaml.experiments.sweeps import Setting, Sweep, SweepError, settings_of, sweeps_of
 from roaml.jani.constants import with_constants
 from roaml.jani.model import Model
 from roaml.jani.selection import select
 from roaml.model.parameters import NO_OVERRIDES, Overrides
 from roaml.project.settings import Settings
-from roaml.record import Record
+from roaml.record import Record, replace
+from roaml.verification.expectations import Expectation
 from roaml.verification.target import VerificationTarget, asking, target_of
 
 if TYPE_CHECKING:
@@ -39,8 +43,8 @@ class ParametricJani(Record, frozen=True):
             raise ConstantError(str(error)) from None
         return target_of(model, self.path, (self.path,))
 
-    def chances(self, names: Collection[str], fixed: Setting) -> Chances | None:
-        return constant_chances(self.target(fixed).model, names)
+    def chances(self, ranges: Mapping[str, tuple[float, float]], fixed: Setting) -> Chances | None:
+        return constant_chances(self.target(fixed).model, ranges)
 
 
 class ParametricSystem(Record, frozen=True):
@@ -52,12 +56,15 @@ class ParametricSystem(Record, frozen=True):
     overrides: Overrides = NO_OVERRIDES
 
     def target(self, setting: Setting) -> VerificationTarget:
-        if setting:
-            raise ConstantError(f"a system has no constants such as `{setting[0][0]}`; only JANI models have them")
-        return target(self.path, self.ros_paths, self.settings, overrides=self.overrides)
+        return as_target(self._loaded(setting))
 
-    def chances(self, names: Collection[str], fixed: Setting) -> Chances | None:
-        return None
+    def chances(self, ranges: Mapping[str, tuple[float, float]], fixed: Setting) -> Chances | None:
+        loaded = self._loaded(fixed)
+        return expanded_chances(loaded.analysis, loaded.path, ranges)
+
+    def _loaded(self, setting: Setting) -> LoadedSystem:
+        overrides = replace(self.overrides, values=(*self.overrides.values, *setting))
+        return load(self.path, self.ros_paths, self.settings, overrides=overrides)
 
 
 def experiment(
@@ -148,3 +155,63 @@ def parametric_model(
     if not path.endswith(".jani"):
         return ParametricSystem(path, tuple(ros_paths), settings, overrides)
     return ParametricJani(read_jani(path)[0], path)
+
+
+def find_enough(
+    grid: Grid,
+    parameter: str,
+    expectation: Expectation,
+    *,
+    is_assumed: bool = False,
+    jobs: int = 1,
+    executor: Executor | None = None,
+    watch: Callable[[ExperimentPoint, int, int], None] | None = None,
+) -> tuple[tuple[Enough, ...], ExperimentResult]:
+    """The values of a parameter for which a property meets an expectation, for each setting of the other parameters;
+    and the points that were computed.
+
+    Args:
+        grid: the grid, with one property.
+        parameter: the parameter. Its values must be numbers.
+        is_assumed: whether the property is assumed to be monotone in the parameter. Then few points are computed.
+        jobs, executor, watch: as for `experiment`.
+
+    Raises:
+        SweepError: the grid has not this parameter with several numbers, or not exactly one property.
+    """
+    swept = next((sweep for sweep in grid.sweeps if sweep.name == parameter), None)
+    if swept is None or swept.numbers is None or len(swept.values) < 2:
+        raise SweepError(
+            f"to find a value of `{parameter}`, give it a range of numbers, such as `--set {parameter}=20:200:20`"
+        )
+    if len(grid.properties) != 1:
+        raise SweepError("a value can be found for one property at a time; name it in the expectation")
+    name = grid.properties[0]
+    computed = together(grid.options, len(grid.settings))
+    grid = replace(grid, options=computed)
+    expected = expectation.threshold
+    points: dict[Setting, ExperimentPoint] = {}
+
+    def keep(each: Iterable[ExperimentPoint]) -> None:
+        for point in each:
+            points[point.setting] = point
+            if watch is not None:
+                watch(point, len(points), len(grid.settings))
+
+    if not is_assumed:
+        keep(grid.points((), jobs, executor))
+    answers = []
+    others = [sweep for sweep in grid.sweeps if sweep.name != parameter]
+    for rest in settings_of(others):
+
+        def point(value: str, rest: Setting = rest) -> ExperimentPoint:
+            known = {**dict(rest), parameter: value}
+            setting = tuple((sweep.name, known[sweep.name]) for sweep in grid.sweeps)
+            if setting not in points:
+                alone = tuple(Sweep(key, (text,)) for key, text in setting)
+                keep(replace(grid, sweeps=alone).points())
+            return points[setting]
+
+        answers.append(enough_of(swept, rest, point, expected, is_assumed=is_assumed))
+    known = tuple(points[setting] for setting in grid.settings if setting in points)
+    return tuple(answers), ExperimentResult(grid.files[0], grid.sweeps, (name,), known, computed)

@@ -11,13 +11,15 @@
 from __future__ import annotations
 
 import enum
+import itertools
 from collections.abc import Callable, Sequence
 
-from roaml.comparison import Comparison
 from roaml.experiments.grid import ExperimentOptions
 from roaml.experiments.points import ExperimentPoint, PointKind
 from roaml.experiments.sweeps import Setting, Sweep
+from roaml.jani.operators import BinaryOperator
 from roaml.record import Record, replace
+from roaml.smc.goal import Threshold
 
 _SLACK = 1e-9
 """The difference up to which an exact value is equal to the expected number; exact values have bounds."""
@@ -45,8 +47,8 @@ class Enough(Record, frozen=True):
 
     Attributes:
         others: the other parameters.
-        verdicts: the values in ascending order, with whether they meet the expectation. With the assumption, values that
-            were not computed have the verdict that follows from it.
+        verdicts: the values in ascending order, with whether they meet the expectation. With the assumption, values
+            that were not computed have the verdict that follows from it.
         is_assumed: whether the property was assumed to be monotone.
         trend: how the property changes over the values.
     """
@@ -91,6 +93,9 @@ class Enough(Record, frozen=True):
         name = self.parameter
         if met == len(values):
             answer = f"{expectation} is met for all values of {name} from {values[0]} to {values[-1]}"
+        elif met and self.open:
+            fitting = ", ".join(value for value, verdict in self.verdicts if verdict is Met.YES)
+            answer = f"{expectation} is met for {name} = {fitting}"
         elif met == 0:
             answer = f"{expectation} is met for no value of {name} from {values[0]} to {values[-1]}"
         elif self.first is not None and not self._meets_before(self.first):
@@ -126,33 +131,27 @@ def together(options: ExperimentOptions, points: int) -> ExperimentOptions:
     return replace(options, sampling=replace(sampling, confidence=1 - error))
 
 
-def meets(point: ExperimentPoint, expected: Comparison) -> Met:
+def meets(point: ExperimentPoint, expected: Threshold) -> Met:
     """Whether a point meets an expectation: for an exact value, by the value; otherwise, by the whole interval."""
     if not point.has_value:
         return Met.OPEN
     if point.kind is PointKind.EXACT:
         return Met.YES if _holds(point.value, expected, _SLACK) else Met.NO
     verdicts = {_holds(end, expected, 0.0) for end in (point.low, point.high)}
-    if expected.relation == "==" or len(verdicts) == 2:
+    if expected.relation is BinaryOperator.EQUAL or len(verdicts) == 2:
         return Met.OPEN
     return Met.YES if verdicts.pop() else Met.NO
 
 
-def _holds(value: float, expected: Comparison, slack: float) -> bool:
-    match expected.relation:
-        case ">=":
-            return value >= expected.number - slack
-        case "<=":
-            return value <= expected.number + slack
-        case ">":
-            return value > expected.number
-        case "<":
-            return value < expected.number
-    return abs(value - expected.number) <= slack
+def _holds(value: float, expected: Threshold, slack: float) -> bool:
+    return expected.met(value) or (
+        expected.relation in (BinaryOperator.GREATER_EQUAL, BinaryOperator.LESS_EQUAL, BinaryOperator.EQUAL)
+        and abs(value - expected.number) <= slack
+    )
 
 
 def enough_of(
-    sweep: Sweep, others: Setting, point: Callable[[str], ExperimentPoint], expected: Comparison, *, is_assumed: bool
+    sweep: Sweep, others: Setting, point: Callable[[str], ExperimentPoint], expected: Threshold, *, is_assumed: bool
 ) -> Enough:
     """The values of a parameter that meet an expectation.
 
@@ -195,7 +194,7 @@ def _bisected(values: Sequence[str], verdict: Callable[[str], Met]) -> list[Met]
 def _trend(points: Sequence[ExperimentPoint]) -> Trend:
     if any(point.kind is not PointKind.EXACT for point in points):
         return Trend.UNKNOWN
-    pairs = list(zip(points, points[1:], strict=False))
+    pairs = list(itertools.pairwise(points))
     if all(b.value >= a.value - _SLACK for a, b in pairs):
         return Trend.RISING
     return Trend.FALLING if all(b.value <= a.value + _SLACK for a, b in pairs) else Trend.MIXED

@@ -10,11 +10,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from typing import Protocol, TypeAlias
 
-from roaml.experiments.parametric import Chances, ParametricSpace, parametric_space
+from roaml.experiments.parametric import Chances, ParametricSpace, parametric_program, parametric_space
 from roaml.experiments.points import ExperimentPoint, estimated_point, exact_point, unknown_point
 from roaml.experiments.sweeps import Setting, Sweep, settings_of
 from roaml.explicit.space import StateLimits
@@ -29,7 +29,7 @@ from roaml.verification.exhaustive import UndecidedError, exact_values
 from roaml.verification.results import Exact, Refused
 from roaml.verification.small import LIMITS, SHARED_LIMITS, attempt
 from roaml.verification.target import VerificationTarget, asking
-from roaml.verification.verifier import checker_of, verifier_of
+from roaml.verification.verifier import Verifier, checker_of, verifier_of
 
 Key: TypeAlias = tuple[Setting, str]
 """A setting and the name of a property."""
@@ -45,8 +45,13 @@ class ParametricModel(Protocol):
             ValueError: a parameter does not exist, or cannot have its value; or the model has errors.
         """
 
-    def chances(self, names: Collection[str], fixed: Setting) -> Chances | None:
-        """The probabilities of the model that depend on parameters, if nothing else does; otherwise `None`."""
+    def chances(self, ranges: Mapping[str, tuple[float, float]], fixed: Setting) -> Chances | None:
+        """The probabilities of the model that depend on parameters, if nothing else does; otherwise `None`.
+
+        Args:
+            ranges: parameter -> its least and its greatest value.
+            fixed: the values of the other parameters.
+        """
 
 
 class ExperimentOptions(Record, frozen=True):
@@ -130,24 +135,48 @@ class Grid(Record, frozen=True):
         by_setting: dict[Setting, list[str]] = {}
         for setting, name in left:
             by_setting.setdefault(setting, []).append(name)
-        limits = self.options.limits(len(self.settings))
-        tasks = [_Task(self.model, setting, tuple(n), self.options, limits) for setting, n in by_setting.items()]
-        yield from _computed(tasks, jobs, executor)
+        yield from _computed(self._tasks(by_setting), jobs, executor)
 
-    def _parametric(self, name: str, settings: Sequence[Setting]) -> ParametricSpace | None:
-        """The states that the points of a property share; `None` if they share none."""
+    def _tasks(self, names: Mapping[Setting, Sequence[str]]) -> list[_Task]:
+        """The tasks for the properties of some settings."""
+        limits = self.options.limits(len(self.settings))
+        program = None
+        if not self.options.exact and not self.options.is_exhaustive and len(names) > 2:
+            shared = self._chances()
+            if shared is not None:
+                program = parametric_program(self.model.target, shared[0], self.properties, *shared[1:])
+        tasks = []
+        for setting, own in names.items():
+            checker = None if program is None else program.at(setting)
+            if program is not None and checker is not None:
+                target = replace(program.target, source_of=_no_source)
+                compiled: _Compiled | None = _Compiled(target, checker)
+            else:
+                compiled = None
+            tasks.append(_Task(self.model, setting, tuple(own), self.options, limits, compiled))
+        return tasks
+
+    def _chances(self) -> tuple[Chances, Mapping[str, tuple[float, float]], Setting] | None:
+        """The probabilities that depend on the parameters with several values, the ranges of these, and the other
+        parameters; `None` if something else depends on them."""
         ranges = {sweep.name: _range(sweep) for sweep in self.sweeps if len(sweep.values) > 1}
-        options = self.options
-        if len(settings) < 3 or not (options.exact or options.is_exhaustive):
-            return None
         numeric = {name: ends for name, ends in ranges.items() if ends is not None}
-        if len(numeric) < len(ranges):
+        if not numeric or len(numeric) < len(ranges):
             return None
         fixed = tuple((sweep.name, sweep.values[0]) for sweep in self.sweeps if len(sweep.values) == 1)
         chances = self.model.chances(numeric, fixed)
-        if chances is None:
+        return None if chances is None else (chances, numeric, fixed)
+
+    def _parametric(self, name: str, settings: Sequence[Setting]) -> ParametricSpace | None:
+        """The states that the points of a property share; `None` if they share none."""
+        options = self.options
+        if len(settings) < 3 or not (options.exact or options.is_exhaustive):
             return None
-        return parametric_space(self.model.target, chances, name, numeric, fixed, options.limits(1))
+        shared = self._chances()
+        if shared is None:
+            return None
+        chances, ranges, fixed = shared
+        return parametric_space(self.model.target, chances, name, ranges, fixed, options.limits(1))
 
 
 def _range(sweep: Sweep) -> tuple[float, float] | None:
@@ -181,14 +210,30 @@ def shared_points(
             )
 
 
+class _Compiled(Record, frozen=True):
+    """A model that is compiled for a setting already."""
+
+    target: VerificationTarget
+    checker: ModelChecker
+
+
+def _no_source(_: str) -> None:
+    """The files of the user are not sent to other processes."""
+
+
 class _Task(Record, frozen=True):
-    """The properties of one setting that are computed together."""
+    """The properties of one setting that are computed together.
+
+    Attributes:
+        compiled: the compiled model, for estimates; `None` if the model is read, translated and compiled.
+    """
 
     model: ParametricModel
     setting: Setting
     names: tuple[str, ...]
     options: ExperimentOptions
     limits: StateLimits
+    compiled: _Compiled | None = None
 
 
 def _computed(tasks: Sequence[_Task], jobs: int, executor: Executor | None) -> Iterator[ExperimentPoint]:
@@ -226,12 +271,16 @@ def _distributed(tasks: Sequence[_Task], count: int, executor: Executor) -> Iter
 
 def _measure(task: _Task) -> list[ExperimentPoint]:
     """The points of one setting."""
+    if task.compiled is not None:
+        verifier = Verifier(task.compiled.target, task.compiled.checker, task.options.sampling, only_uniform=True)
+        points = _estimated(task, verifier, task.names)
+        return [points[name] for name in task.names]
     try:
         target = asking(task.model.target(task.setting), task.names)
         checker = checker_of(target, task.names)
     except FaultError as fault:
         return [unknown_point(task.setting, name, fault.message) for name in task.names]
-    points: dict[str, ExperimentPoint] = {}
+    points = {}
     for name, refused in checker.refused.items():
         points[name] = unknown_point(task.setting, name, refused.message)
     for property_ in checker.compiled_properties:
@@ -240,7 +289,8 @@ def _measure(task: _Task) -> list[ExperimentPoint]:
             points[property_.question.name] = point
     rest = [name for name in task.names if name not in points]
     if rest:
-        points |= _estimated(task, target, rest)
+        verifier = verifier_of(target, rest, task.options.sampling, only_uniform=True)
+        points |= _estimated(task, verifier, rest)
     return [points[name] for name in task.names]
 
 
@@ -273,10 +323,9 @@ def _exact(task: _Task, checker: ModelChecker, property_: CompiledProperty) -> E
     )
 
 
-def _estimated(task: _Task, target: VerificationTarget, names: Sequence[str]) -> dict[str, ExperimentPoint]:
+def _estimated(task: _Task, verifier: Verifier, names: Sequence[str]) -> dict[str, ExperimentPoint]:
     """The points of properties with estimates from traces with uniform choices."""
     points = {}
-    verifier = verifier_of(target, names, task.options.sampling, only_uniform=True)
     with Pool(1) as pool:
         for result in verifier.verify_all(pool):
             if result.name not in names:

@@ -13,7 +13,9 @@ from __future__ import annotations
 
 import itertools
 import math
+from array import array
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from copy import copy
 from typing import Any, Protocol
 
 from roaml.experiments.sweeps import Setting
@@ -26,6 +28,8 @@ from roaml.jani.semantics import EvaluationError, Value, evaluate
 from roaml.jani.types import REAL, BoundedType
 from roaml.record import Record, replace
 from roaml.smc.fault import FaultError
+from roaml.smc.model import ModelChecker
+from roaml.smc.program import Program
 from roaml.verification.small import attempt
 from roaml.verification.target import VerificationTarget, asking
 from roaml.verification.verifier import checker_of
@@ -121,11 +125,7 @@ def parametric_space(
         fixed: the other parameters.
     """
     spaces, generic = [], []
-    for number, place in enumerate(_PLACES):
-        setting = fixed + tuple(
-            (parameter, repr(low + (high - low) * (place + 0.01 * index + 0.001 * number)))
-            for index, (parameter, (low, high)) in enumerate(ranges.items())
-        )
+    for setting in _generic_settings(ranges, fixed):
         try:
             values = chances.at(setting)
             if values is None or not all(0 < chance < 1 for chance in values):
@@ -235,3 +235,88 @@ def _monomial(values: tuple[float, float], chances: Sequence[Sequence[float]]) -
 
 def _agree(a: float, b: float) -> bool:
     return abs(a - b) <= _AGREEMENT * max(abs(a), abs(b))
+
+
+class ParametricProgram(Record, frozen=True):
+    """A compiled model for all values of some parameters, except where a probability is 0.
+
+    Attributes:
+        numbers: index of a destination -> how its probability depends on the probabilities of `chances`.
+    """
+
+    target: VerificationTarget
+    checker: ModelChecker
+    chances: Chances
+    numbers: Mapping[int, Monomial]
+
+    def at(self, setting: Setting) -> ModelChecker | None:
+        """The compiled model for a setting; `None` if it may be another one."""
+        values = self.chances.at(setting)
+        if values is None or not all(0 < value < 1 for value in values):
+            return None
+        program = self.checker.program
+        chances = _way_chances(program)
+        for way, monomial in self.numbers.items():
+            chances[way] = monomial.coefficient * math.prod(values[factor] for factor in monomial.factors)
+        sums = array("d", program.way_sum)
+        for first, end in itertools.pairwise(program.way_start):
+            if any(way in self.numbers for way in range(first, end)):
+                sums[first:end] = array("d", itertools.accumulate(chances[first:end]))
+                sums[end - 1] = 1.0
+        checker = copy(self.checker)
+        checker.program = replace(program, way_sum=sums)
+        return checker
+
+
+def parametric_program(
+    target: Callable[[Setting], VerificationTarget],
+    chances: Chances,
+    names: Sequence[str],
+    ranges: Mapping[str, tuple[float, float]],
+    fixed: Setting,
+) -> ParametricProgram | None:
+    """The compiled model for all values of some parameters; `None` if more than the probabilities of its destinations
+    differ. Arguments are those of `parametric_space`; `names` are those of the properties."""
+    targets, programs, generic = [], [], []
+    for setting in _generic_settings(ranges, fixed):
+        values = chances.at(setting)
+        if values is None or not all(0 < value < 1 for value in values):
+            return None
+        try:
+            targets.append(asking(target(setting), names))
+            programs.append(checker_of(targets[-1], names))
+        except (ValueError, FaultError):
+            return None
+        generic.append(values)
+    first, second = (checker.program for checker in programs)
+    others = (name for name in Program.__struct_fields__ if name != "way_sum")
+    if not all(getattr(first, name) == getattr(second, name) for name in others):
+        return None
+    numbers: dict[int, Monomial] = {}
+    for way, (low, high) in enumerate(zip(_way_chances(first), _way_chances(second), strict=True)):
+        if not _agree(low, high):
+            monomial = _monomial((low, high), generic)
+            if monomial is None:
+                return None
+            numbers[way] = monomial
+    return ParametricProgram(targets[0], programs[0], chances, numbers)
+
+
+def _way_chances(program: Program) -> list[float]:
+    """The probability of each destination; meaningless if it depends on the state."""
+    chances = []
+    for first, end in itertools.pairwise(program.way_start):
+        before = 0.0
+        for way in range(first, end):
+            chances.append(program.way_sum[way] - before)
+            before = program.way_sum[way]
+    return chances
+
+
+def _generic_settings(ranges: Mapping[str, tuple[float, float]], fixed: Setting) -> Iterator[Setting]:
+    """Settings at which two different products of probabilities are different."""
+    for number, place in enumerate(_PLACES):
+        yield fixed + tuple(
+            (parameter, repr(low + (high - low) * (place + 0.01 * index + 0.001 * number)))
+            for index, (parameter, (low, high)) in enumerate(ranges.items())
+        )
