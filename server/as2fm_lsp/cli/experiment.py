@@ -54,7 +54,7 @@ def run(arguments: Sequence[str]) -> int:
             return _run(parsed(arguments), interrupts)
         except (UsageError, SweepError, KeptPointsError, PropertyTextError, api.ConstantError) as error:
             complain(str(error))
-        except (api.PathError, api.PropertyError) as error:
+        except (api.PathError, api.PropertyError, api.ParameterError) as error:
             complain(str(error))
         except (api.ModelError, api.JaniError) as error:
             print_text(render(error_report(error), Format.TEXT), stream=sys.stderr)

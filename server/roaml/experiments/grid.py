@@ -280,6 +280,8 @@ def _measure(task: _Task) -> list[ExperimentPoint]:
         checker = checker_of(target, task.names)
     except FaultError as fault:
         return [unknown_point(task.setting, name, fault.message) for name in task.names]
+    except ValueError as error:  # the model cannot have these parameters; the other points are not affected
+        return [unknown_point(task.setting, name, str(error)) for name in task.names]
     points = {}
     for name, refused in checker.refused.items():
         points[name] = unknown_point(task.setting, name, refused.message)
