@@ -181,9 +181,7 @@ else:
         "roaml.verification.refusal": ("Refusal",),
         "roaml.verification.results": (
             "Computed",
-            "Trend",
             "UnderAssumption",
-            "Enough",
             "Estimated",
             "Exact",
             "CutShort",
