@@ -16,7 +16,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +25,7 @@ from dap_client import Client
 import conformance
 from both_kernels import difference
 from corpus.generated import generate
+from corpus.parts import compose
 from roaml import api
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -35,6 +36,8 @@ TRUE_MISTAKES = (
     "PeopleDetectorFilterComponent.ascxml:51",
 )
 """The mistakes in `uc3` that its authors made; an answer is missing where the request is lost."""
+COMPOSED = 6
+"""The number of systems of independent parts."""
 TOLERANCE = 1e-6
 METHODS: Mapping[str, tuple[str, ...]] = {
     "default": (),
@@ -91,6 +94,7 @@ def systems(folder: Path, sizes: Mapping[int, int]) -> Iterator[System]:
     for main in sorted((ROOT / "examples").glob("*/main*.xml")):
         yield System(f"{main.parent.name}/{main.name}", main)
     yield from generated(folder, sizes)
+    yield from composed(folder, range(COMPOSED))
     for main in conformance.systems():
         yield System(conformance.label(main), main, is_large=True)
     if REAL.is_dir():
@@ -103,6 +107,12 @@ def generated(folder: Path, sizes: Mapping[int, int]) -> Iterator[System]:
         made = generate(seed, guides)
         main = made.write(folder / f"generated_{seed}")
         yield System(f"generated {seed} with {guides} guides", main, made.values, is_large=guides > 5)
+
+
+def composed(folder: Path, seeds: Iterable[int]) -> Iterator[System]:
+    for seed in seeds:
+        made = compose(seed)
+        yield System(f"composed {seed}", made.write(folder / f"composed_{seed}"), made.values)
 
 
 # ----------------------------------------------------------------------- steps
