@@ -321,6 +321,7 @@ def test_lines_that_begin_at_0(client: Client) -> None:
         ({"program": str(BUG), "property": "nothing"}, "nothing"),
         ({"program": str(BUG), "seed": "x"}, "`seed` must be an integer"),
         ({"program": str(BUG), "maxTime": "soon"}, "`soon`"),
+        ({"program": str(BUG), "parameters": {"speed": 2}}, "the system declares no parameter `speed`"),
         ({"program": str(BUG), "against": 1, "inFavor": 1}, "exclude"),
         ({"program": str(BUG), "session": "nothing.json"}, "nothing.json"),
         ({}, "`program` must be a string"),

@@ -64,7 +64,7 @@ def test_the_expanded_files_have_the_same_translation(folder: Path, tmp_path: Pa
 
 def test_values_in_python(folder: Path) -> None:
     system = api.load(str(folder / "main.xml"), parameters={"capacity": 80, "loss": 0.25, "left.period": 2})
-    assert system.parameters == {"capacity": "80", "loss": "0.25"}
+    assert system.parameters == {"capacity": "80", "loss": "0.25", "left.period": "2"}
     assert "".join(write(api.to_jani(system))) == jani(folder / "main.xml", capacity=80, loss="1 / 4", left__period=2)
     with pytest.raises(api.ParameterError, match="no parameter `los`; did you mean `loss`"):
         api.load(str(folder / "main.xml"), parameters={"los": 1})

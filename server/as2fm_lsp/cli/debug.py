@@ -22,6 +22,7 @@ An editor starts this program; docs/debugging.md describes the configuration. Th
   stopOnEntry   whether the run stops at its start (true, except with `against` and `inFavor`)
   reactionTime  how long machines may wait before they take a possible step: "any", "instant", or "20 ms"
   maxTime       overrides <max_time> of the system, for example "100 s"
+  parameters    {"NAME": VALUE}, for parameters that the models of a system declare
   constants     {"NAME": VALUE}, for constants of a JANI model
   rosPath       folders with ROS interface packages
 

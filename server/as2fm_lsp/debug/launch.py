@@ -49,6 +49,7 @@ class Launch(Record, frozen=True):
         stops_on_entry: whether the run stops at its start.
         max_time: overrides the time limit of the system, in ns.
         reaction_time: overrides the reaction time of the system.
+        parameters: names and texts of values for parameters that the models of a system declare.
         constants: `NAME=VALUE` for constants of a JANI model.
         mocks: the mocks of leaves without a plugin, and the parameters of a tree without a system.
     """
@@ -58,6 +59,7 @@ class Launch(Record, frozen=True):
     stops_on_entry: bool
     max_time: int | None
     reaction_time: ReactionTime | None
+    parameters: tuple[tuple[str, str], ...]
     constants: tuple[str, ...]
     ros_paths: tuple[str, ...]
     mocks: MockDeclarations
@@ -104,6 +106,7 @@ def launch_of(arguments: Arguments) -> Launch:
         arguments.flag("stopOnEntry", not begin.nth),
         nanoseconds,
         reaction,
+        tuple(_values(arguments, "parameters").items()),
         tuple(f"{name}={value}" for name, value in _values(arguments, "constants").items()),
         tuple(arguments.texts("rosPath")),
         _mocks(arguments, os.path.dirname(program)),
@@ -173,7 +176,15 @@ def load(launch: Launch, log: Log, watch: Watch) -> Debugger:
         raise RequestError(_first(error.diagnostics, lambda _: source)) from None
     except OSError as error:
         raise RequestError(f"{error.filename or launch.program}: {error.strerror or error}") from None
-    except (StartError, RunError, MockError, api.PathError, api.PropertyError, api.ConstantError) as error:
+    except (
+        StartError,
+        RunError,
+        MockError,
+        api.ParameterError,
+        api.PathError,
+        api.PropertyError,
+        api.ConstantError,
+    ) as error:
         raise RequestError(str(error)) from None
     except FaultError as fault:
         raise RequestError(f"the model cannot be run: {fault.message}") from None
@@ -186,7 +197,7 @@ def _sources(launch: Launch, log: Log) -> Sources:
         raise RequestError(problems[0])
     settings = replace(settings, ament_prefixes=ament_prefixes())
     check_declarations(path, mocks)
-    overrides = Overrides(launch.max_time, None, launch.reaction_time)
+    overrides = Overrides(launch.max_time, None, launch.reaction_time, values=launch.parameters)
     if path.endswith(".jani"):
         return Sources(api.target(path, launch.ros_paths, settings, None, overrides, launch.constants))
     messages = MockMessages(lambda text: log(text, None), str, '`"mocks": ["*: 0.9 in 1 s"]`')
@@ -194,7 +205,8 @@ def _sources(launch: Launch, log: Log) -> Sources:
         settings = replace(settings, reaction_time=launch.reaction_time or settings.reaction_time)
         tree = load_mocked_tree(path, mocks, launch.max_time, settings, messages, counts=False, uses_proposal=True)
         return Sources(_with_one_property(tree.target, launch.start), tree=tree.mocked.tree)
-    texts = None if mocks.is_empty else mocked_system_texts(path, mocks, launch.ros_paths, settings, messages)
+    around = replace(settings, overrides=overrides)
+    texts = None if mocks.is_empty else mocked_system_texts(path, mocks, launch.ros_paths, around, messages)
     system = api.load(path, launch.ros_paths, settings, texts, overrides)
     return Sources(api.as_target(system), system.analysis)
 

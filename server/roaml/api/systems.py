@@ -65,7 +65,8 @@ class LoadedSystem(Record, frozen=True):
 
     @property
     def parameters(self) -> dict[str, str]:
-        """Name of a parameter of the system -> the text of its value (docs/spec/parameters.md#values)."""
+        """Name of a parameter of the system -> the text of its value; and `INSTANCE.NAME` -> a value that was given for
+        the parameter of an instance from outside of the files (docs/spec/parameters.md#values)."""
         return _parameters(self.analysis, self.path)
 
 
@@ -129,7 +130,10 @@ def loaded(snapshot: Snapshot, path: str) -> LoadedSystem:
 
 def _parameters(analysis: Analysis, path: str) -> dict[str, str]:
     expanded = analysis.expanded(path)
-    return {} if expanded is None else {name: p.text for name, p in expanded.expansion.parameters.items()}
+    if expanded is None:
+        return {}
+    expansion = expanded.expansion
+    return {**{name: value.text for name, value in expansion.parameters.items()}, **expansion.of_instances}
 
 
 def values_of_parameters(

@@ -82,6 +82,7 @@ class SystemExpansion(Record, frozen=True, eq=False):
         names: path of a file of the user -> the names of parameters and instances in it.
         renamed: path of a file of the user -> the names of interfaces and events in it, as written, that its instances
             call otherwise.
+        of_instances: `INSTANCE.PARAMETER` -> the text of a value that was given from outside.
     """
 
     system: str
@@ -93,6 +94,7 @@ class SystemExpansion(Record, frozen=True, eq=False):
     findings: Mapping[str, tuple[Finding, ...]] = field(default_factory=dict)
     names: Mapping[str, tuple[NamedPlace, ...]] = field(default_factory=dict)
     renamed: Mapping[str, frozenset[str]] = field(default_factory=dict)
+    of_instances: Mapping[str, str] = field(default_factory=dict)
 
     def source(self, path: str) -> str:
         """The path of the file of the user that is analysed under `path`."""
@@ -174,6 +176,7 @@ class _Expander:
         self.has_instances = False
         self.names: dict[str, dict[NamedPlace, None]] = {}
         self.renamed: dict[str, set[str]] = {}
+        self.of_instances: dict[str, str] = {}
 
     def problems_of(self, path: str) -> Problems:
         return self.problems.setdefault(path, Problems())
@@ -250,6 +253,7 @@ class _Expander:
             findings,
             names,
             {path: frozenset(renamed) for path, renamed in self.renamed.items() if renamed},
+            self.of_instances,
         )
 
     def _fresh(self, target: str, instance: ListedInstance) -> str:
@@ -423,6 +427,7 @@ class _Expander:
             for key in (f"*.{parameter}", f"{name}.{parameter}"):
                 if key in self.given:
                     given[parameter] = Given(self.given[key], None, SETTING)
+                    self.of_instances[f"{name}.{parameter}"] = self.given[key]
         return given
 
     def _expand_jani(self, source: str, scope: Scope) -> None:
