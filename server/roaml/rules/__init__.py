@@ -150,6 +150,7 @@ from roaml.rules.states import (
     probability_sum,
     shadowed_branch,
     shadowed_transition,
+    time_stops,
     transition_target,
     undefined_state,
     unreachable_state,

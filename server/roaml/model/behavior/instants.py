@@ -115,21 +115,8 @@ class _Solver(Record, eq=False, dict=True):
     def senders(
         self, automaton: SystemAutomaton, event: ProtocolEvent
     ) -> Iterator[tuple[SystemAutomaton, ProtocolEvent]]:
-        """The automata that may send the event that `automaton` receives as `event`, each with the event as this
-        automaton names it."""
-        if event.part is ProtocolPart.EVENT:
-            known = self.system.events.get(event.name)
-            for sender in {id(a): a for a, _ in known.senders}.values() if known else ():
-                yield sender, event
-            return
-        if event.part in (ProtocolPart.THREAD_START, ProtocolPart.THREAD_FREE):
-            yield automaton, event
-            return
-        channel = channel_of(self.system, automaton, event)
-        sending_kind = _SENDERS.get(event.part)
-        for endpoint in channel.endpoints if channel else ():
-            if endpoint.use.kind is sending_kind:
-                yield endpoint.automaton, ProtocolEvent(event.part, endpoint.use.handle)
+        """As `senders`; without the answers of servers, which need more than the event that causes them."""
+        return senders(self.system, automaton, event, answers=False)
 
     def causes(self, automaton: SystemAutomaton, sent: ProtocolEvent) -> Iterator[ProtocolEvent]:
         """The events after which an automaton sends `sent`."""
@@ -137,6 +124,34 @@ class _Solver(Record, eq=False, dict=True):
             for cause, event in chart.reactions:
                 if event == sent:
                     yield cause
+
+
+def senders(
+    system: System, automaton: SystemAutomaton, event: ProtocolEvent, *, answers: bool = True
+) -> Iterator[tuple[SystemAutomaton, ProtocolEvent]]:
+    """The automata that may send the event that `automaton` receives as `event`, each with the event as this automaton
+    names it.
+
+    Args:
+        answers: whether servers are included that send `event` as an answer.
+    """
+    if event.part is ProtocolPart.EVENT:
+        known = system.events.get(event.name)
+        for sender in {id(a): a for a, _ in known.senders}.values() if known else ():
+            yield sender, event
+        return
+    if event.part in (ProtocolPart.THREAD_START, ProtocolPart.THREAD_FREE):
+        yield automaton, event
+        return
+    channel = channel_of(system, automaton, event)
+    kind = _SENDERS.get(event.part)
+    for endpoint in channel.endpoints if channel else ():
+        if kind is not None and endpoint.use.kind is kind:
+            yield endpoint.automaton, ProtocolEvent(event.part, endpoint.use.handle)
+    if answers and kind is None and event.part in _ANSWERS:
+        server = server_of(system, automaton, event)
+        if server is not None:
+            yield from ((server.automaton, ProtocolEvent(part, server.use.handle)) for part in _ANSWERS[event.part])
 
 
 def channel_of(system: System, automaton: SystemAutomaton, event: ProtocolEvent) -> Channel | None:

@@ -90,6 +90,8 @@ class ChartOutline(Record, frozen=True):
         overlaps: pairs of an answer that the machine waits for and a request or goal that it may send meanwhile;
             `None` if there is no graph.
         unhurried: the answers that a plugin may wait for while it owes no answer to a tick or halt.
+        certain_reactions: pairs of events: whenever the machine handles the first, it sends the second before it
+            receives another event, whatever the conditions are.
     """
 
     promises: tuple[Promise, ...]
@@ -97,6 +99,7 @@ class ChartOutline(Record, frozen=True):
     repeats: tuple[tuple[ProtocolEvent, Needs], ...]
     overlaps: frozenset[tuple[Awaited, ProtocolEvent]] | None = None
     unhurried: frozenset[Awaited] = frozenset()
+    certain_reactions: frozenset[tuple[ProtocolEvent, ProtocolEvent]] = frozenset()
 
 
 UNKNOWN = ChartOutline((), frozenset(), ())
@@ -149,7 +152,12 @@ class _Summary:
             promise for duty in self._duties() for promise in self._promises(duty) if AT_ONCE not in promise.needs
         )
         return ChartOutline(
-            tuple(promises), self._reactions(), tuple(self._repeats()), frozenset(self._overlaps()), self._unhurried()
+            tuple(promises),
+            self._reactions(),
+            tuple(self._repeats()),
+            frozenset(self._overlaps()),
+            self._unhurried(),
+            frozenset(self._certain_reactions()),
         )
 
     def _overlaps(self) -> Iterator[tuple[Awaited, ProtocolEvent]]:
@@ -242,6 +250,33 @@ class _Summary:
             causes = before[edge.source] if edge.taken is None else {edge.taken}
             pairs |= {(cause, event) for cause in causes for event in edge.sent}
         return frozenset(pairs)
+
+    def _certain_reactions(self) -> Iterator[tuple[ProtocolEvent, ProtocolEvent]]:
+        outgoing = self.behavior.outgoing()
+        groups: dict[ProtocolEvent, list[list[BehaviorStep]]] = {}
+        for steps in outgoing:
+            by_event: dict[ProtocolEvent, list[BehaviorStep]] = {}
+            for step in steps:
+                if step.event is not None:
+                    by_event.setdefault(step.event, []).append(step)
+            for event, alternatives in by_event.items():
+                if not all(step.ignored for step in alternatives):
+                    groups.setdefault(event, []).append(alternatives)
+        for event, configurations in groups.items():
+            # If all handlers have conditions, the event may be discarded.
+            if all(any(step.handler.cond is None for step in alternatives) for alternatives in configurations):
+                always = [_always_sent(step, outgoing) for alternatives in configurations for step in alternatives]
+                yield from ((event, sent) for sent in frozenset.intersection(*always))
+
+
+def _always_sent(step: BehaviorStep, outgoing: Sequence[Sequence[BehaviorStep]]) -> frozenset[ProtocolEvent]:
+    """The events that are sent by a step, or by each of the eventless transitions that certainly follow it at once."""
+    if step.ignored:
+        return frozenset()
+    following = [after for after in outgoing[step.target] if after.event is None]
+    if not any(after.handler.cond is None for after in following):
+        return frozenset(step.sent)
+    return frozenset(step.sent) | frozenset.intersection(*(frozenset(after.sent) for after in following))
 
 
 def _meanwhile(awaited: set[Awaited], sent: Iterable[ProtocolEvent]) -> Iterator[tuple[Awaited, ProtocolEvent]]:

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from roaml.diagnostics import Finding, Related, Severity, Symbol
 from roaml.model.behavior.duties import distances, entering, unfinished
 from roaml.model.behavior.explore import Behavior, BehaviorStep
-from roaml.model.behavior.instants import EventDelay, Instants, channel_of, is_readable
+from roaml.model.behavior.instants import EventDelay, Instants, is_readable
 from roaml.model.behavior.phases import HALT, TICK, Duty, DutyKind, ProtocolEvent
 from roaml.model.machine import Handler
 from roaml.model.system import System, SystemAutomaton
@@ -16,6 +16,7 @@ from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.answers import behaviors, place, plugins
 from roaml.rules.support.asynchronous import rewritten
+from roaml.rules.support.event_names import channel_named, named
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -90,7 +91,7 @@ def _finding(
 ) -> Finding:
     reason = "; ".join(_reasons(system, delay))
     what = "status of a tick" if duty is TICK else "confirmation of a halt"
-    message = f"the {what} waits for {_named(system, automaton, delay.event)}"
+    message = f"the {what} waits for {named(system, automaton, delay.event)}"
     message += f", which takes time: {reason}" if reason else ""
     advice = "return RUNNING here, and the status at a later tick" if duty is TICK else "confirm the halt here"
     if _not_taken(delay):
@@ -110,10 +111,10 @@ def _reasons(system: System, delay: EventDelay | None) -> Iterator[str]:
     while delay is not None and delay.next is not None:
         then = delay.next
         timed = then.event.part is ProtocolPart.TICK
-        cause = f"its timer `{then.event.name}` fires" if timed else _named(system, then.automaton, then.event)
+        cause = f"its timer `{then.event.name}` fires" if timed else named(system, then.automaton, then.event)
         only = f"only {'when' if timed else 'after'} {cause}"
         if delay.promise is not None and delay.server is not None:
-            name, channel = delay.server.automaton.name, _channel(system, delay.automaton, delay.event)
+            name, channel = delay.server.automaton.name, channel_named(system, delay.automaton, delay.event)
             doing, state = _DOING[delay.event.part], delay.promise.state
             if not delay.promise.taken:
                 question = "request for" if delay.promise.duty.kind is DutyKind.REQUEST else "goal for"
@@ -130,39 +131,6 @@ _DOING = {
     ProtocolPart.GOAL_RESPONSE: "decides on the goals of",
     ProtocolPart.RESULT: "sends the result of",
 }
-_WHAT = {
-    ProtocolPart.RESPONSE: "the response of",
-    ProtocolPart.GOAL_RESPONSE: "the decision on a goal for",
-    ProtocolPart.RESULT: "the result of",
-    ProtocolPart.FEEDBACK: "feedback of",
-    ProtocolPart.MESSAGE: "a message on",
-    ProtocolPart.REQUEST: "a request for",
-    ProtocolPart.GOAL: "a goal for",
-    ProtocolPart.CANCEL: "a request to cancel a goal of",
-}
-
-
-def _channel(system: System, automaton: SystemAutomaton, event: ProtocolEvent) -> str:
-    channel = channel_of(system, automaton, event)
-    return f"`{channel.name if channel else event.name}`"
-
-
-def _named(system: System, automaton: SystemAutomaton, event: ProtocolEvent) -> str:
-    """A noun phrase for an event that an automaton waits for."""
-    match event.part:
-        case ProtocolPart.TICK:
-            return f"the timer `{event.name}`"
-        case ProtocolPart.EVENT:
-            return f"the event `{event.name}`"
-        case ProtocolPart.START:
-            return f"the start of `{automaton.name}`"
-        case ProtocolPart.BT_TICK | ProtocolPart.BT_HALT:
-            return f"the next {event.part.value[3:]} of `{automaton.name}`"
-        case ProtocolPart.THREAD_START:
-            return "the start of a thread"
-        case ProtocolPart.THREAD_FREE:
-            return "a thread that becomes free"
-    return f"{_WHAT.get(event.part, event.part.value)} {_channel(system, automaton, event)}"
 
 
 def _related(delay: EventDelay) -> Iterator[Related]:
