@@ -9,6 +9,7 @@ root=$(pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 python=$(find_python)
+missed=""
 
 say() {
     echo "== $*"
@@ -75,6 +76,26 @@ PATH="$work/compiled/bin:$work/tools/bin:$PATH" sh -c "
     ctest --test-dir '$work/package_build' --output-on-failure"
 test -s "$work/package_build/test_results/my_robot/as2fm.xunit.xml"
 
+say "VS Code extension for Linux, installed without network"
+if command -v npm >/dev/null 2>&1; then
+    (cd "$work/source/vscode-extension" && npm ci --silent && PYTHON="$work/tools/bin/python" npm run --silent package -- \
+        --target linux-x64) >"$work/vsix.log"
+    without_network=""
+    unshare -n true 2>/dev/null && without_network="unshare -n"
+    $without_network "$python" tests/packaging/vsix_offline.py "$work/source/vscode-extension/as2fm-linux-x64.vsix"
+else
+    missed="$missed; the VS Code extension (there is no npm)"
+fi
+
+say "the steps of the Dockerfile that need no Docker: the copied files are enough to build and to work"
+mkdir "$work/context"
+sed -n 's/^COPY \([^-].*\) \/source\/.*$/\1/p' Dockerfile | tr ' ' '\n' | while read -r copied; do
+    cp -r "$work/source/$copied" "$work/context"
+done
+fresh container
+pip container install "$work/context"
+"$work/container/bin/as2fm-lsp" --check "$work/source/examples/delivery_robot"
+
 say "man page and completion of shells"
 pip compiled install shtab==1.13.0 argparse-manpage==4.8
 mkdir "$work/shell"
@@ -84,4 +105,4 @@ grep -q -e --exhaustive "$work/shell/as2fm-lsp.bash"
 grep -q TH "$work/shell/as2fm-lsp.1"
 
 say "not run here: wheels for musl, arm64, macOS and Windows, signatures, uploads, Docker, conda, colcon, rosdep;"
-echo "   the VS Code extension is built and tried by tests/vscode.sh"
+echo "   the extension is also tried in a workbench by tests/vscode.sh$missed"

@@ -11,7 +11,7 @@ const dist = path.join(here, "dist");
 const production = process.argv.includes("--production");
 
 for (const name of fs.existsSync(dist) ? fs.readdirSync(dist) : []) {
-    if (name !== "wheel") fs.rmSync(path.join(dist, name), { recursive: true });
+    if (name !== "wheel" && name !== "packages") fs.rmSync(path.join(dist, name), { recursive: true });
 }
 const common = { absWorkingDir: here, bundle: true, minify: production, sourcemap: false, logLevel: "warning" };
 await esbuild.build({

@@ -12,7 +12,8 @@ const SOURCES = ["pyproject.toml", "setup.py", "MANIFEST.in", "README.md", "LICE
 const LEFT_OUT = /__pycache__|\.egg-info|\.(so|pyd|c|pyc)$/;
 
 const own = path.join(root, ".venv", "bin", "python");
-const python = process.env.PYTHON ?? (fs.existsSync(own) ? own : "python3");
+/** The Python that builds. */
+export const python = process.env.PYTHON ?? (fs.existsSync(own) ? own : "python3");
 const work = fs.mkdtempSync(path.join(os.tmpdir(), "as2fm-wheel-"));
 try {
     // Files that an earlier build left in the tree must not get into the wheel, so it is built from a copy.

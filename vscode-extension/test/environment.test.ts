@@ -48,6 +48,30 @@ test("an environment is created, the wheel installed and the mark written last",
     assert.deepEqual([...on.files.keys()], [`${HOME}/ready.json`]);
 });
 
+test("the packages in an extension for one platform are used before the index", async () => {
+    const local = "--no-index --find-links /packages";
+    const packages = "--require-hashes --only-binary :all: -r /requirements.txt";
+    const server = `${local} --find-links / --no-deps as2fm-lsp`;
+    const pip = `${INSIDE} -I -m pip install --disable-pip-version-check --no-input`;
+    for (const isComplete of [true, false]) {
+        const on = new FakeHost({
+            "/bin/python3": (args) => (args.includes("venv") ? {} : python("/bin/python3")(args)),
+            [INSIDE]: (args) => {
+                if (!args.includes("pip")) return { out: "as2fm-lsp 0.1.0" };
+                return { status: args.includes("--no-index") && args.includes("-r") && !isComplete ? 1 : 0 };
+            },
+        });
+        on.files.set("/packages/lxml-1-cp310-cp310-linux_x86_64.whl", "");
+        const found = await install(on);
+        assert.ok("origin" in found);
+        const fromIndex = isComplete ? [] : [`${pip} ${packages}`];
+        assert.deepEqual(
+            on.ran.filter((line) => line.includes("pip")),
+            [`${pip} ${local} ${packages}`, ...fromIndex, `${pip} ${server}`],
+        );
+    }
+});
+
 /** An environment that has been created, in which the attempt to compile has this result. */
 function made(ended: Partial<Ended>): { on: FakeHost; environment: PrivateEnvironment } {
     const on = new FakeHost({ [INSIDE]: () => ended });

@@ -5,13 +5,15 @@
  * - An environment is named after its wheel, so a new version of the extension creates a new one and removes the old
  *   one.
  * - It is valid only if it has a mark file, which is written as the last step: an interrupted installation is repeated.
- * - The packages that the server needs come from the index for which the user's pip is configured. Only files with
- *   known hashes are installed, and none of them runs code during its installation.
+ * - An extension for one platform contains the packages that the server needs, so that no network is necessary.
+ *   Otherwise, and for a Python for which it contains none, they come from the index for which the user's pip is
+ *   configured. Only files with known hashes are installed, and none of them runs code during its installation.
  */
 
 import * as path from "node:path";
 import type { Host } from "./host";
 import { pythons, type Python } from "./python";
+import type { Ended } from "./run";
 import type { Failure, Server } from "./server";
 
 const MARK = "ready.json";
@@ -79,10 +81,14 @@ export class PrivateEnvironment {
                 continue; // another Python may have the missing modules
             }
             onStep?.("packages");
-            for (const what of this.installed()) {
-                const pip = ["-I", "-m", "pip", "install", "--disable-pip-version-check", "--no-input", ...what];
-                const ended = await this.host.run(this.python, pip, limits);
-                if (ended.status !== 0) {
+            for (const alternatives of await this.installed()) {
+                let ended: Ended | undefined;
+                for (const what of alternatives) {
+                    const pip = ["-I", "-m", "pip", "install", "--disable-pip-version-check", "--no-input", ...what];
+                    ended = await this.host.run(this.python, pip, limits);
+                    if (ended.status === 0 || signal?.aborted) break;
+                }
+                if (ended !== undefined && ended.status !== 0) {
                     await this.host.remove(this.home);
                     return { kind: "no-packages", python: python.version, detail: words(ended.err, ended.out) };
                 }
@@ -104,10 +110,17 @@ export class PrivateEnvironment {
         await this.host.write(mark, JSON.stringify({ compiled: ended.status === 0 }));
     }
 
-    /** The arguments of the consecutive calls of `pip install`. */
-    private installed(): string[][] {
+    /** The arguments of the consecutive calls of `pip install`. Of the alternatives, the first that succeeds counts. */
+    private async installed(): Promise<string[][][]> {
         const packages = ["--require-hashes", "--only-binary", ":all:", "-r", this.requirements];
-        return [packages, ["--no-index", "--no-deps", this.wheel]];
+        const contained = path.join(path.dirname(this.requirements), "packages");
+        if ((await this.host.list(contained)).length === 0) {
+            return [[packages], [["--no-index", "--no-deps", this.wheel]]];
+        }
+        const local = ["--no-index", "--find-links", contained];
+        // A wheel with a compiled kernel for this Python is preferred to the wheel for every platform.
+        const server = [...local, "--find-links", path.dirname(this.wheel), "--no-deps", "as2fm-lsp"];
+        return [[[...local, ...packages], packages], [server]];
     }
 
     private async finish(python: Python): Promise<Server | Failure> {
