@@ -24,6 +24,7 @@ PLACES = (
     ("docs/packaging/conda/recipe.yaml", r"^(  version: )(.*)($)"),
     ("docs/packaging/ament_cmake_as2fm/package.xml", r"(<version>)(.*)(</version>)"),
     ("docs/packaging/README.md", r"(as2fm-lsp@v)(.*)(      # the repository)"),
+    ("docs/packaging/editors/mason.yaml", r"(as2fm-lsp@)(.*)($)"),
     ("CITATION.cff", r"^(version: )(.*)($)"),
 )
 """The places that state the version: the path of the file, and a pattern whose second group is the version."""
