@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+import runpy
 from pathlib import Path
 
 import pytest
@@ -40,6 +41,25 @@ def test_the_battery_monitor(
     names: dict[str, str] = {}
     exec(translating, names)
     assert f"{names['text']}\n" == (tmp_path / "main.jani").read_text(encoding="utf-8")
+
+
+def test_drawn_pictures_are_current(tmp_path: Path) -> None:
+    """`python docs/readme_pictures.py` makes them anew."""
+    script = runpy.run_path(str(README.parent / "docs/readme_pictures.py"))
+    script["main"](tmp_path)
+    drawn = sorted(tmp_path.iterdir())
+    assert len(drawn) == 4
+    for path in drawn:
+        assert path.read_bytes() == (script["PICTURES"] / path.name).read_bytes(), path.name
+
+
+def test_pictures_exist_in_light_and_dark() -> None:
+    shown = re.findall(r'srcset="(.+)">\n  <img .*src="(.+)">', README.read_text(encoding="utf-8"))
+    assert len(shown) == README.read_text(encoding="utf-8").count("<picture>") > 2
+    for dark, light in shown:
+        assert light == dark.replace("dark", "light")
+        assert (README.parent / dark).exists()
+        assert (README.parent / light).exists()
 
 
 def without_time(text: str) -> str:
