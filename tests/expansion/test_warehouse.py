@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from as2fm_lsp.cli.main import run
 from roaml import api
 from roaml.jani.writer import write
 
@@ -100,3 +101,15 @@ def test_copies_have_the_same_translation(copies: Path) -> None:
 def test_the_warehouse_is_clean() -> None:
     findings = api.check([str(FOLDER / "main.xml")]).diagnostics
     assert {finding.code for finding in findings} == {"not-in-reference"}
+
+
+def test_a_battery_is_empty_only_if_it_is_too_small(capsys: pytest.CaptureFixture[str]) -> None:
+    """With a use of 60 of 50, the first message of the battery says that it is empty."""
+    question = ["verify", str(FOLDER / "main.xml"), "--property", "robot_4_never_empty", "--format", "json"]
+    run([*question, "--set", "capacity=50", "--set", "battery_4.use=60", "--exhaustive"])
+    written = json.loads(capsys.readouterr().out)
+    assert written["results"][0]["exact"]["greatest"] == 0
+    assert written["parameters"]["battery_4.use"] == "60"
+    run([*question, "--scheduler", "uniform", "--max-traces", "20", "--jobs", "1"])
+    (result,) = json.loads(capsys.readouterr().out)["results"]
+    assert (result["passed"], result["failed"]) == (20, 0)
