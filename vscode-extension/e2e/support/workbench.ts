@@ -41,7 +41,7 @@ export class Workbench {
         const environment = {
             ...process.env,
             HOME: path.join(home, "user"),
-            PATH: `${hastyCompiler()}:${process.env["PATH"]}`,
+            PATH: [hastyCompiler(), ...pathWithoutServer()].join(":"),
             ...options.environment,
         };
         fs.mkdirSync(environment.HOME, { recursive: true });
@@ -140,6 +140,12 @@ export class Workbench {
             clearTimeout(timer);
         }
     }
+}
+
+/** The folders of PATH in which there is no server: the tests determine which server is found. */
+function pathWithoutServer(): string[] {
+    const folders = (process.env["PATH"] ?? "").split(":");
+    return folders.filter((folder) => !fs.existsSync(path.join(folder, "as2fm-lsp")));
 }
 
 /**
