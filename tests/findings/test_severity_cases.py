@@ -81,7 +81,7 @@ def test_an_optional_input_is_marked_by_a_comment(tmp_path: Path) -> None:
     text = text.replace("TOPIC", "/joystick").replace("TARGET", "a")
     assert set(split_files(text)) == {"main.xml", "properties.jani", "lamp.ascxml", "robot.ascxml"}
     diagnostics, _ = check_text(tmp_path, text)
-    assert {d.code for d in diagnostics} == {"unreachable-state", "ignored-element"}
+    assert {d.code for d in diagnostics} == {"unreachable-state", "unused-variable", "ignored-element"}
 
 
 @pytest.mark.parametrize(

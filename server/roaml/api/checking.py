@@ -10,7 +10,9 @@ from collections.abc import Iterable, Mapping
 from roaml.api.jani_files import PathError
 from roaml.diagnostics import Diagnostic
 from roaml.disk import UnreadableReason
+from roaml.model.dialect import dialect_of
 from roaml.model.kinds import FileKind
+from roaml.model.machine import Dialect
 from roaml.project.configuration import find_settings
 from roaml.project.fixing import fix_all, safe_fix
 from roaml.project.paths import is_below
@@ -34,6 +36,19 @@ class CheckResult(Record, frozen=True):
     files: tuple[str, ...]
     problems: tuple[str, ...]
     snapshot: Snapshot
+
+    @property
+    def ignored(self) -> tuple[str, ...]:
+        """The files of plain SCXML that no system lists: only their syntax is checked."""
+        return tuple(path for path in self.files if self._is_plain(path))
+
+    def _is_plain(self, path: str) -> bool:
+        analysis = self.snapshot.analysis
+        machine, document = analysis.machine(path), analysis.document(path)
+        if analysis.kind(path) is not FileKind.MACHINE or machine is None or document is None:
+            return False
+        is_listed = any(system is not None for system in analysis.systems_of(path))
+        return not is_listed and dialect_of(machine, document, None) in (Dialect.PLAIN, Dialect.FOREIGN)
 
     def source(self, path: str) -> SourceFile:
         """The text of a checked file."""

@@ -42,8 +42,10 @@ def parse(text: str, package: str, name: str, kind: Kind) -> tuple[Definition, t
     The definition always has all sections of its kind; those missing in the text are empty.
     """
     report = FileFindings()
-    sections = _Parser(text, package, kind, report).run()
-    return Definition(package, name, kind, sections), report.findings()
+    parser = _Parser(text, package, kind, report)
+    sections = parser.run()
+    is_complete = len(parser.sections) == len(SECTION_NAMES[kind])
+    return Definition(package, name, kind, sections, is_complete=is_complete), report.findings()
 
 
 class _Head(NamedTuple):

@@ -36,6 +36,7 @@ class Reason(enum.Enum):
     UNKNOWN_TYPE = "the package does not contain the type"
     UNREADABLE = "the file cannot be read"
     TOO_LARGE = "the type is too large"
+    SECTIONS = "the sections of the file cannot be distinguished"
 
 
 class NotFound(Record, frozen=True):
@@ -43,7 +44,8 @@ class NotFound(Record, frozen=True):
 
     `type_name` is the requested name. `close` are similar names of the same kind, `package/Name`, the nearest first.
     `other_kind` is set if the type exists but is of another kind, such as a service instead of a message. `looked_in`
-    are phrases for the places that were searched. `path` is the file that could not be read. `size` is a phrase for the
+    are phrases for the places that were searched. `path` is the file that could not be read, or
+    whose sections cannot be distinguished. `size` is a phrase for the
     size of a type that is too large.
     """
 
@@ -75,6 +77,8 @@ class NotFound(Record, frozen=True):
                 return f"the file `{self.path}`, which defines `{self.type_name}`, cannot be read"
             case Reason.TOO_LARGE:
                 return f"`{self.type_name}` is too large: with all nested messages, it has {self.size}"
+            case Reason.SECTIONS:
+                return f"the file `{self.path}`, which defines `{self.type_name}`, has wrong lines `---`"
 
 
 class Parsed(Record, frozen=True):

@@ -159,7 +159,8 @@ class Section(PartlyCompared, frozen=True):
 class Definition(Record, frozen=True):
     """A message, service or action type. It has all the sections of `SECTION_NAMES[kind]`, in that order.
 
-    `path` is the file that contains the definition; "" if the definition was not read from a file.
+    `path` is the file that contains the definition; "" if the definition was not read from a file. `is_complete` is
+    false if the file has too few or too many lines `---`, so that fields may be in the wrong section.
     """
 
     package: str
@@ -167,6 +168,7 @@ class Definition(Record, frozen=True):
     kind: Kind
     sections: tuple[Section, ...]
     path: str = ""
+    is_complete: bool = True
 
     @property
     def full_name(self) -> str:

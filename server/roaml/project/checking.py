@@ -400,7 +400,8 @@ class _Run:
         assert document is not None
         grammar = self._grammar()
         violations = () if grammar is None else self.analysis.violations(self.path, grammar)
-        return FileContext(self.source, document.findings, document, grammar, violations, self._older())
+        lone = self.kind is FileKind.TREE and self.system_path is None
+        return FileContext(self.source, document.findings, document, grammar, violations, self._older(), lone)
 
     def _interface_findings(self) -> tuple[Finding, ...]:
         name, _, extension = self.path.replace("\\", "/").rpartition("/")[2].rpartition(".")

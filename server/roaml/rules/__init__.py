@@ -16,6 +16,8 @@ from roaml.rules import expansion_rules, parser_rules, property_rules
 from roaml.rules.answers import (
     answer_needs_time,
     cancel_without_goal,
+    discarded_answer,
+    endless_node,
     invalid_status,
     repeated_answer,
     running_condition,
@@ -54,6 +56,7 @@ from roaml.rules.events import (
     event_never_received,
     event_never_sent,
     event_type_conflict,
+    handler_without_effect,
     late_event_data,
     removed_bt_event,
     unknown_event_parameter,

@@ -6,13 +6,38 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 
-from roaml.diagnostics import Finding, Severity
+from roaml.diagnostics import Finding, Fix, Severity
 from roaml.rules.rule import FileContext, Rule
+from roaml.text import TextEdit
 
 
 def parser_findings(code: str, context: FileContext) -> Iterator[Finding]:
     """The findings of the parsers in a file that have the code `code`."""
     return (finding for finding in context.findings if finding.code == code)
+
+
+_ESCAPES = ("&amp;", "&lt;")
+
+
+def xml_syntax(context: FileContext) -> Iterator[Finding]:
+    """The violations of well-formedness. Characters that must be escaped are one warning in a tree that only
+    BehaviorTree.CPP reads, because its parser accepts them."""
+    findings = list(parser_findings("xml-syntax", context))
+    unescaped = [finding for finding in findings if context.is_lone_tree and _is_unescaped(finding)]
+    yield from (finding for finding in findings if finding not in unescaped)
+    if unescaped:
+        edits = tuple(edit for finding in unescaped for edit in finding.fixes[0].edits)
+        characters = "a character is" if len(edits) == 1 else f"{len(edits)} characters are"
+        message = (
+            f"not well-formed XML: {characters} not escaped; BehaviorTree.CPP accepts this, other programs do not; "
+            "write `&amp;` for `&` and `&lt;` for `<`"
+        )
+        fix = Fix("Escape all characters of the file", edits, safe=True)
+        yield XML_SYNTAX.at(unescaped[0].span, message, fix, severity=Severity.WARNING)
+
+
+def _is_unescaped(finding: Finding) -> bool:
+    return any(fix.plan == (TextEdit(finding.span, text),) for fix in finding.fixes for text in _ESCAPES)
 
 
 def _parser_rule(code: str, severity: Severity, summary: str) -> Rule:
@@ -43,7 +68,7 @@ TOML_SYNTAX = _parser_rule("toml-syntax", Severity.ERROR, "A configuration file 
 UNDEFINED_ENTITY = _parser_rule(
     "undefined-entity", Severity.ERROR, "An entity is not one of the five predefined entities."
 )
-XML_SYNTAX = _parser_rule("xml-syntax", Severity.ERROR, "The file is not well-formed XML.")
+XML_SYNTAX = Rule("xml-syntax", Severity.ERROR, "The file is not well-formed XML.", file=xml_syntax)
 
 RULES = (
     DUPLICATE_ATTRIBUTE,

@@ -50,6 +50,7 @@ class FileContext(Record, frozen=True):
         grammar: the grammar of a supported kind of XML file, otherwise `None`.
         violations: the violations of `grammar` in the file.
         older: whether the file is checked in the older dialect.
+        is_lone_tree: whether the file contains trees and belongs to no system, so that BehaviorTree.CPP executes it.
     """
 
     source: SourceFile
@@ -58,6 +59,7 @@ class FileContext(Record, frozen=True):
     grammar: Grammar | None = None
     violations: tuple[Violation, ...] = ()
     older: bool = False
+    is_lone_tree: bool = False
 
 
 class MachineContext(Record, frozen=True):

@@ -87,6 +87,7 @@ class CheckReport(Record, frozen=True):
 
     Attributes:
         checked: the number of checked files.
+        ignored: the number of these files that are plain SCXML, in which only the syntax is checked.
         limit: the least severity that makes the check fail.
         color: whether the output goes to a terminal with colors.
         has_summary: whether text ends with the numbers of findings and files.
@@ -97,6 +98,7 @@ class CheckReport(Record, frozen=True):
     limit: Severity = Severity.ERROR
     color: bool = False
     has_summary: bool = True
+    ignored: int = 0
 
 
 def entry(diagnostic: Diagnostic, source_of: Callable[[str], SourceFile], shown: Callable[[str], str]) -> Entry:

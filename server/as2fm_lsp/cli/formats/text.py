@@ -30,8 +30,16 @@ def summary(report: CheckReport) -> str:
         for severity, count in counts.items()
         if count
     ]
-    files = f"{report.checked} {'file' if report.checked == 1 else 'files'} checked"
-    return f"{files}: {', '.join(parts) or 'no diagnostics'}"
+    checked = report.checked - report.ignored
+    files = [f"{_files(checked)} checked"] if checked or not report.ignored else []
+    if report.ignored:
+        files.append(f"{_files(report.ignored)} ignored (plain SCXML)")
+    found = f": {', '.join(parts) or 'no diagnostics'}" if parts or checked or not report.ignored else ""
+    return ", ".join(files) + found
+
+
+def _files(count: int) -> str:
+    return f"{count} {'file' if count == 1 else 'files'}"
 
 
 def _paint(text: str, color: str) -> str:

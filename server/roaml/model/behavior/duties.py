@@ -13,7 +13,7 @@ from typing import TypeAlias
 from roaml.expr.tree import Name
 from roaml.model.behavior.explore import UNKNOWN_STATE, Behavior, BehaviorStep, ChartConfiguration
 from roaml.model.behavior.phases import Duty, DutyKind, GoalStatus, Phase, ProtocolEvent
-from roaml.model.machine import RosSend
+from roaml.model.machine import RosSend, State
 from roaml.roles import ProtocolPart
 
 Possible: TypeAlias = Callable[[BehaviorStep], bool]
@@ -127,7 +127,7 @@ def moves(behavior: Behavior, step: BehaviorStep) -> bool:
 def is_suspicious(behavior: Behavior) -> bool:
     """Whether the chart may contain an error: its graph has a fault, an answer that may never be sent, or a tick or
     halt that may never be handled. The result is also true if the chart starts threads, because their numbers may be
-    wrong."""
+    wrong, and if it may stay in a state while it owes an answer, because no condition holds."""
     known = behavior.chart.__dict__.setdefault("suspicion", {})
     if behavior not in known:
         events = {step.event for step in behavior.steps if step.event is not None}
@@ -140,8 +140,15 @@ def is_suspicious(behavior: Behavior) -> bool:
             or any(unfinished(behavior, duty) for duty in duties)
             or any(untaken(behavior, duty) for duty in tree_duties)
             or any(event.part is ProtocolPart.THREAD_START for step in behavior.steps for event in step.sent)
+            or (bool(duties) and any(map(_may_stay, behavior.chart.states)))
         )
     return bool(known[behavior])
+
+
+def _may_stay(state: State) -> bool:
+    """Whether a state has eventless handlers, all of them with conditions, so that a machine may stay in it."""
+    eventless = [handler for handler in state.handlers if handler.effective and handler.trigger is None]
+    return bool(eventless) and all(handler.cond is not None for handler in eventless)
 
 
 def entering(behavior: Behavior, configurations: frozenset[int]) -> Iterator[BehaviorStep]:

@@ -117,10 +117,17 @@ class Fault(Record, frozen=True):
 
 
 class ChartConfiguration(Record, frozen=True):
+    """A configuration of a chart.
+
+    Attributes:
+        resting: whether no condition of the eventless handlers holds, so that the machine stays until an event arrives.
+    """
+
     state: str
     phases: Phases = ()
     ids: HeldIds = ()
     knowledge: Knowledge = NOTHING
+    resting: bool = False
 
     def phase(self, subject: Subject, handle: str = "") -> Phase | None:
         return phase_in(self.phases, subject, handle)
@@ -160,7 +167,7 @@ class BehaviorStep(Record, frozen=True, eq=False):
         handler: the handler that is executed; if no condition holds, the last one that was tried.
         choice: the index of the handler's target that is taken.
         ignored: whether no condition holds, so that the event is consumed without effect
-            (docs/spec/semantics.md#discarded-events).
+            (docs/spec/semantics.md#discarded-events), or, without an event, the machine stays in its state.
         sent: the events that are sent, in order.
         faults: the faults of the statements that are executed.
         certain: whether the target is the same whatever the conditions inside the bodies are.
@@ -376,6 +383,7 @@ class _Explorer(Record, eq=False, dict=True):
         self.facts = ConditionFacts(integers, logical, followed, counted)
         self.status_facts = ConditionFacts(integers, logical, followed, counted, STATUSES)
         self.counts_down = bool(self.counts) and self._counts_down()
+        self.deciding = self._deciding()
         self.goal_ids = self._goal_ids()
         self.may_be_ids = self._may_be_ids() if self.goal_ids else frozenset()
         self.declarations: dict[Handler | RosSend, Declaration | None] = {}
@@ -461,6 +469,12 @@ class _Explorer(Record, eq=False, dict=True):
         """The variables that hold thread numbers."""
         started = (s.thread_id.tree for s in self.chart.statements if isinstance(s, RosSend) and s.thread_id)
         return variables_in(started)
+
+    def _deciding(self) -> frozenset[str]:
+        """The handles of the actions whose goal responses the machine receives (docs/spec/ros.md#action-client)."""
+        handlers = (h for chart in self.machine.charts for state in chart.states for h in state.handlers)
+        responses = (find_handle(self.machine, h) for h in handlers if h.trigger is ProtocolPart.GOAL_RESPONSE)
+        return frozenset(d.handle.value for d in responses if d is not None and d.handle is not None)
 
     def _goal_ids(self) -> frozenset[str]:
         """The variables that hold the ids of goals."""
@@ -566,7 +580,8 @@ class _Explorer(Record, eq=False, dict=True):
 
     def _from(self, configuration: ChartConfiguration, number: int) -> None:
         for group in self._groups(configuration.state):
-            if group.event is None or self._may_come(configuration, group.event):
+            comes = not configuration.resting if group.event is None else self._may_come(configuration, group.event)
+            if comes:
                 self._react(configuration, number, group)
 
     def _groups(self, name: str) -> list[_Group]:
@@ -598,9 +613,11 @@ class _Explorer(Record, eq=False, dict=True):
             if isinstance(statement, RosSend):
                 declaration = self.declaration(statement)
                 handle = declaration.handle.value if declaration and declaration.handle else ""
-                cancels = statement.part is ProtocolPart.CANCEL
+                awaits = statement.part is ProtocolPart.GOAL and handle not in self.deciding
                 touched |= {
-                    (subject, handle) for subject in _OF_INTERFACES if cancels or subject is not Subject.OUTCOME
+                    (subject, handle)
+                    for subject in _OF_INTERFACES
+                    if awaits or statement.part is ProtocolPart.CANCEL or subject is not Subject.OUTCOME
                 }
         return frozenset(touched)
 
@@ -652,7 +669,8 @@ class _Explorer(Record, eq=False, dict=True):
         outside = tuple(entry for entry in taken.phases if entry[0] not in group.touched)
         for state, path, handler, choice, ignored in self.reactions[key]:
             phases = tuple(sorted((*outside, *path.phases))) if outside else path.phases
-            target = self._number(ChartConfiguration(state, phases, path.ids, path.knowledge))
+            rests = ignored and group.event is None
+            target = self._number(ChartConfiguration(state, phases, path.ids, path.knowledge, rests))
             step = (number, target, group.event, handler, choice, ignored, path.sent, path.faults, path.certain)
             if step not in self.steps:
                 self.steps[step] = BehaviorStep(*step)
@@ -692,7 +710,7 @@ class _Explorer(Record, eq=False, dict=True):
             holding = [known for way in ways for known in facts.assume(way, tree, True)]
             self._execute(group, handler, [taken._replace(knowledge=way) for way in holding])
             ways = [known for way in ways for known in facts.assume(way, tree, False)]
-        if matters:
+        if matters or (self.fine and event is None):
             assert group.state.id is not None
             for way in ways:
                 # If the conditions enumerate values, no other value is ever sent, and the event is not discarded.
@@ -901,7 +919,7 @@ class _Explorer(Record, eq=False, dict=True):
             case ProtocolPart.REQUEST:
                 return self._awaiting(path, Subject.RESPONSE, handle)
             case ProtocolPart.GOAL:
-                return self._awaiting(path, Subject.DECISION, handle)
+                return self._awaiting(path, Subject.DECISION if handle in self.deciding else Subject.OUTCOME, handle)
             case ProtocolPart.CANCEL:
                 is_accepted = path.phase(Subject.OUTCOME, handle) is not None
                 return path if is_accepted else path.wrong(FaultKind.NO_GOAL, Duty(DutyKind.RESULT, handle), statement)

@@ -96,11 +96,14 @@ class ChartValues(Record, frozen=True, eq=False):
         states: state that is entered -> the values of variables while the machine waits in it.
         conditions: the place of a condition -> its results; conditions in parts that are not executed are left out.
         seen: the place of an expression -> its values; expressions in parts that are not executed are left out.
+        uncovered: the place of the last condition of the handlers of a state for one event, all of which have
+            conditions -> the values with which none of the conditions holds; left out if one of them always holds.
     """
 
     states: Mapping[str, Mapping[str, ValueSet]]
     conditions: Mapping[Span, ConditionValues]
     seen: Mapping[Span, ValueSet]
+    uncovered: Mapping[Span, Mapping[str, ValueSet]]
 
     def at(self, expr: Expr) -> ValueSet | None:
         """The values of an expression; `None` if it is not evaluated on any path."""
@@ -112,16 +115,21 @@ class MachineValues(Record, frozen=True, eq=False):
 
     Attributes:
         charts: scope of a chart -> its values. A chart with an unreadable part is left out.
+        arriving: what can arrive at the machine.
         sent: what the machine sends.
         complete: whether all charts are contained, so that `sent` contains everything.
     """
 
     charts: Mapping[str, ChartValues]
+    arriving: Arriving
     sent: Sent
     complete: bool
 
 
-NO_VALUES = MachineValues({}, {}, complete=False)
+NO_VALUES = MachineValues({}, {}, {}, complete=False)
+
+RESULT_CODE = ".code"
+"""The key in `Fields` of the code of a result, which is not one of its fields."""
 
 
 def analyse(
@@ -150,7 +158,7 @@ def analyse(
             charts[chart.scope] = interpreter.run()
             for channel, fields in interpreter.sent.items():
                 sent[channel] = merged(sent[channel], fields) if channel in sent else fields
-    return MachineValues(charts, sent, len(charts) == len(machine.charts))
+    return MachineValues(charts, arriving, sent, len(charts) == len(machine.charts))
 
 
 def merged(first: Fields, second: Fields) -> Fields:
@@ -223,6 +231,7 @@ class _Interpreter(Record, eq=False, dict=True):
     entered: dict[str, Valuation] = field(default_factory=dict)
     conditions: dict[Span, ConditionValues] = field(default_factory=dict)
     sent: dict[DataChannel, Fields] = field(default_factory=dict)
+    uncovered: dict[Span, Valuation] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         chart = self.chart
@@ -274,7 +283,7 @@ class _Interpreter(Record, eq=False, dict=True):
         for name in self.entered:
             for _ in self._from(name, self.entered[name]):
                 pass
-        return ChartValues(dict(self.entered), self.conditions, self.evaluator.seen)
+        return ChartValues(dict(self.entered), self.conditions, self.evaluator.seen, self.uncovered)
 
     def _ascend(self, initial: str) -> bool:
         """Follow all transitions until no set grows; the result states whether sets were widened."""
@@ -389,7 +398,8 @@ class _Interpreter(Record, eq=False, dict=True):
                 declaration = find_handle(self.machine, handler)
                 name = declaration.handle.value if declaration and declaration.handle else ""
             for path, values in self.arriving.get(DataChannel(part, name), {}).items():
-                data[f"{_DATA_OF[part]}.{path}" if path else _DATA_OF[part]] = values
+                if path != RESULT_CODE:
+                    data[f"{_DATA_OF[part]}.{path}" if path else _DATA_OF[part]] = values
         return data
 
     def _from(self, name: str, known: Valuation) -> Iterable[tuple[str, Valuation]]:
@@ -418,6 +428,17 @@ class _Interpreter(Record, eq=False, dict=True):
                 yield from self._take(state, handler, taken)
             if left is not None and not chooses(handler):
                 left = None if handler.cond is None else self._unless(left, handler.cond)
+        if left is not None and self.evaluator.records:
+            self._uncover(group.handlers, left)
+
+    def _uncover(self, handlers: tuple[Handler, ...], left: Valuation | None) -> None:
+        conditions = [handler.cond for handler in handlers if handler.cond is not None]
+        if len(conditions) < len(handlers):
+            return
+        for cond in conditions:  # a later condition may have excluded values of an earlier one
+            left = None if left is None else self._unless(left, cond)
+        if left is not None:
+            self.uncovered[conditions[-1].span] = left
 
     def _condition(self, cond: Expression, alone: Valuation, left: Valuation | None) -> Valuation | None:
         """The values where a condition holds, if it is tested with `left`."""
@@ -556,6 +577,8 @@ class _Interpreter(Record, eq=False, dict=True):
                 fields = self._fields(statement.fields, known)
                 for path, type_ in self.typed.unset.get(statement.element, ()):
                     fields.setdefault(path, default_of(type_))
+                if statement.part is ProtocolPart.RESULT:
+                    fields[RESULT_CODE] = exactly(statement.type.code)
                 for argument in (statement.goal_id, statement.thread_id):
                     self._given(argument, known)
                 self._add(DataChannel(statement.part, name), fields)

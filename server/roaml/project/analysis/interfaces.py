@@ -41,6 +41,8 @@ class Interfaces:
         definition = self.registry.resolve(*key)
         if isinstance(definition, NotFound):
             return definition
+        if not definition.is_complete:
+            return NotFound(Reason.SECTIONS, key[0], name, path=definition.path)
         parts = tuple(self.closure(definition))
         extent = self._memo.get("interface extent", key, parts, lambda: extent_of(parts))
         if extent.is_too_large:

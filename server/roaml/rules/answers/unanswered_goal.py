@@ -57,7 +57,7 @@ def _message(path: OpenPath) -> str:
         return f"{lost}; store the ids of all running goals, or reject a goal while another one is running"
     never = "is never ended" if ends else "is neither accepted nor rejected"
     if step.ignored:
-        reason = "events are dropped while this condition does not hold, so a goal"
+        reason = f"{path.dropped}, so a goal"
         return f"{reason} {never} and its client waits for ever; add a `{tag}` without `cond` after it"
     how = never if path.certain and not path.choice else f"{never} on some path"
     results = "`<ros_action_succeed>`, `<ros_action_aborted>` or `<ros_action_canceled>`"

@@ -12,6 +12,7 @@ from roaml.model.behavior.explore import Behavior
 from roaml.model.behavior.phases import HALT, Phase
 from roaml.model.machine import State
 from roaml.model.system import SystemAutomaton
+from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support import misspelled
 from roaml.rules.support.answers import (
@@ -21,6 +22,7 @@ from roaml.rules.support.answers import (
     is_spelled,
     missed,
     plugins,
+    running_without,
     unhandled_states,
 )
 from roaml.xml_syntax import Element
@@ -35,7 +37,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     plugin, parent = halted[0][0].outline.plugin, halted[0][1].outline.name
     root, name = context.machine.element, context.machine.name
     if not plugin.halted:
-        if not misspelled.is_hidden(root, "bt_halt", HL_SCXML):
+        if root.complete and not misspelled.is_hidden(root, "bt_halt", HL_SCXML):
             message = f"the plugin has no `<bt_halt>`, but `{parent}` halts it; add a `<bt_halt>` to its states"
             yield RULE.at(name.span if name else root.name_span, message, *_add_handlers(context, root))
         return
@@ -65,7 +67,7 @@ def _missed(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
 
 def _message(path: OpenPath) -> str:
     if path.step.ignored:
-        reason = "events are dropped while this condition does not hold, so the halt is never confirmed,"
+        reason = f"{path.dropped}, so the halt is never confirmed,"
         tag = f"<{path.step.handler.element.name}>"
         return f"{reason} and the tree waits for ever; add a `{tag}` without `cond` after it"
     where = "a halt that is handled here" if path.receives else "the halt that is pending here"
@@ -76,7 +78,9 @@ def _message(path: OpenPath) -> str:
 
 def _not_taken(context: MachineContext, behavior: Behavior, automata: list[SystemAutomaton]) -> Iterator[Finding]:
     """Report the states without `<bt_halt>` in which the plugin waits."""
+    reported: set[str] = set()
     for waiting in unhandled_states(context, behavior, automata, HALT):
+        reported.add(waiting.name)
         if waiting.needs_time:
             message = (
                 f"a halt that arrives in the state `{waiting.name}` is not handled before time has passed, but the "
@@ -88,6 +92,13 @@ def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Syste
             message += "ever; add a `<bt_halt>`"
         fixes = _add_handler(context, waiting.state)
         yield RULE.at(waiting.span, message, *fixes, severity=Severity.WARNING)
+    for state in running_without(behavior, ProtocolPart.BT_HALT):
+        if state.id is not None and state.id.value not in reported:
+            message = (
+                f"the plugin is running in the state `{state.id.value}`, which does not handle a halt, unlike its "
+                "other states; if a node above it interrupts it, the tree waits for ever; add a `<bt_halt>`"
+            )
+            yield RULE.at(state.id.span, message, *_add_handler(context, state), severity=Severity.WARNING)
 
 
 def _add_handlers(context: MachineContext, root: Element) -> Iterator[Fix]:

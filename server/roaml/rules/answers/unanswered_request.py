@@ -43,7 +43,7 @@ def _message(path: OpenPath) -> str:
     if step.ignored:
         reason = f"a request for `{name}` that arrives while this condition does not hold is dropped and"
         if not path.receives:
-            reason = f"events are dropped while this condition does not hold, so the request for `{name}` is"
+            reason = f"{path.dropped}, so the request for `{name}` is"
         tag = f"<{step.handler.element.name}>"
         return f"{reason} never answered, and the client waits for ever; add a `{tag}` without `cond` after it"
     where = "a request that is handled here" if path.receives else f"the request for `{name}` that is pending here"

@@ -11,6 +11,7 @@ from roaml.language import HL_SCXML
 from roaml.model.behavior.explore import Behavior
 from roaml.model.behavior.phases import TICK, Phase
 from roaml.model.system import SystemAutomaton
+from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support import misspelled
 from roaml.rules.support.answers import (
@@ -20,6 +21,7 @@ from roaml.rules.support.answers import (
     is_spelled,
     missed,
     plugins,
+    running_without,
     unhandled_states,
 )
 
@@ -33,7 +35,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         return
     plugin, name, root = automata[0].outline.plugin, context.machine.name, context.machine.element
     if not plugin.ticked:
-        if not misspelled.is_hidden(root, "bt_tick", HL_SCXML):
+        if root.complete and not misspelled.is_hidden(root, "bt_tick", HL_SCXML):
             message = "the plugin does not handle ticks: it has no `<bt_tick>`; add one to its states"
             yield RULE.at(name.span if name else root.name_span, message, *_add_handler(context))
         return
@@ -56,7 +58,7 @@ def _message(path: OpenPath) -> str:
         tag = f"<{path.step.handler.element.name}>"
         reason = "a tick that arrives while this condition does not hold is dropped and no status is returned,"
         if not path.receives:
-            reason = "events are dropped while this condition does not hold, so no status is returned for the tick,"
+            reason = f"{path.dropped}, so no status is returned for the tick,"
         return f"{reason} and the tree waits for ever; add a `{tag}` without `cond` after it"
     tick = "a tick that is handled here" if path.receives else "the tick that is pending here"
     how = "does not return a status on every path" if path.choice or not path.certain else "never returns a status"
@@ -66,7 +68,9 @@ def _message(path: OpenPath) -> str:
 
 def _not_taken(context: MachineContext, behavior: Behavior, automata: list[SystemAutomaton]) -> Iterator[Finding]:
     """Report the states without `<bt_tick>` in which the plugin waits."""
+    reported: set[str] = set()
     for waiting in unhandled_states(context, behavior, automata, TICK):
+        reported.add(waiting.name)
         if waiting.needs_time:
             message = (
                 f"a tick that arrives in the state `{waiting.name}` is not handled before time has passed, but the "
@@ -80,6 +84,13 @@ def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Syste
         severity = Severity.WARNING if waiting.needs_time or waiting.tree_status is Phase.ENDED else None
         fixes = _take(context, waiting.state.element)
         yield RULE.at(waiting.span, message, *fixes, severity=severity)
+    for state in running_without(behavior, ProtocolPart.BT_TICK):
+        if state.id is not None and state.id.value not in reported:
+            message = (
+                f"the plugin is running in the state `{state.id.value}`, which does not handle a tick, unlike its "
+                "other states; a tick that arrives there is not answered in time; add a `<bt_tick>` that returns RUNNING"
+            )
+            yield RULE.at(state.id.span, message, *_take(context, state.element), severity=Severity.WARNING)
 
 
 def _take(context: MachineContext, state: object) -> Iterator[Fix]:

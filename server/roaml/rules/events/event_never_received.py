@@ -30,7 +30,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     close = close_names(event.name, awaited)
                     message = f"no machine has a transition for the event `{event.name}`, so it has no effect"
                     message += did_you_mean(close)
-                    yield RULE.at(statement.event.span, message, *replacements(statement.event.span, close))
+                    severity = None if close else Severity.WARNING  # event-never-sent reports the pair of names
+                    fixes = replacements(statement.event.span, close)
+                    yield RULE.at(statement.event.span, message, *fixes, severity=severity)
 
 
 RULE = Rule("event-never-received", Severity.HINT, "No machine receives an event that is sent.", machine=check)

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import last_in
+from roaml.model.behavior.phases import Duty, DutyKind
 from roaml.model.gaps import InterfaceAct
 from roaml.model.machine import Declaration
 from roaml.model.ros import InterfaceType
@@ -14,7 +15,9 @@ from roaml.model.system import Channel, ChannelEndpoint, System, SystemAutomaton
 from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.answers import behaviors, missed
 from roaml.rules.support.interfaces import declared, find_use, name_span, response
+from roaml.text import Span
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -27,7 +30,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for declaration, automaton, channel in declared(context, SymbolKind.ACTION_SERVER):
         clients = [c for c in channel.users if ProtocolPart.GOAL in c.use.sends]
         if clients and not _may_do_more(context.system, automaton, SymbolKind.ACTION_SERVER, channel):
-            yield from _action(declaration, automaton, channel, clients)
+            yield from _action(context, declaration, automaton, channel, clients)
 
 
 def _may_do_more(system: System, automaton: SystemAutomaton, kind: SymbolKind, channel: Channel) -> bool:
@@ -56,21 +59,26 @@ def _service(
     subject = f"the service `{channel.name}` is called but"
     if not sends(automaton, declaration, ProtocolPart.RESPONSE):
         message = f"{subject} never answers: `<ros_service_send_response>` is missing"
-        yield RULE.at(name_span(declaration), message, *_answer(context, declaration), related=related)
+        span = _lost(context, declaration, DutyKind.REQUEST)
+        yield RULE.at(span, message, *_answer(context, declaration), related=related)
     elif not receives(automaton, declaration, ProtocolPart.REQUEST):
         message = f"{subject} does not handle requests: `<ros_service_handle_request>` is missing"
         yield RULE.at(name_span(declaration), message, related=related)
 
 
 def _action(
-    declaration: Declaration, automaton: SystemAutomaton, channel: Channel, clients: list[ChannelEndpoint]
+    context: MachineContext,
+    declaration: Declaration,
+    automaton: SystemAutomaton,
+    channel: Channel,
+    clients: list[ChannelEndpoint],
 ) -> Iterator[Finding]:
     related = [Related(clients[0].symbol, "a client")]
     if not sends(automaton, declaration, ProtocolPart.GOAL_ACCEPTED):
         rejects = sends(automaton, declaration, ProtocolPart.GOAL_REJECTED)
         omission = "accepts no goal" if rejects else "neither accepts nor rejects its goals"
         message = f"the action `{channel.name}` {omission}: `<ros_action_accept_goal>` is missing"
-        yield RULE.at(name_span(declaration), message, related=related)
+        yield RULE.at(_lost(context, declaration, DutyKind.GOAL), message, related=related)
     elif not receives(automaton, declaration, ProtocolPart.GOAL):
         message = f"the action `{channel.name}` does not handle goals: `<ros_action_handle_goal>` is missing"
         yield RULE.at(name_span(declaration), message, related=related)
@@ -80,9 +88,17 @@ def _action(
             f"the action `{channel.name}` never ends its goals: `<ros_action_succeed>`, `<ros_action_canceled>` or "
             "`<ros_action_aborted>` is missing"
         )
-        yield RULE.at(
-            name_span(declaration), message, related=[Related(waiting[0].symbol, "this client waits for the result")]
-        )
+        related = [Related(waiting[0].symbol, "this client waits for the result")]
+        yield RULE.at(_lost(context, declaration, DutyKind.RESULT), message, related=related)
+
+
+def _lost(context: MachineContext, declaration: Declaration, kind: DutyKind) -> Span:
+    """The first place where an answer is missing; the name of the service or action if nothing is received."""
+    if declaration.handle is not None:
+        for behavior in behaviors(context):
+            for path in missed(context, behavior, Duty(kind, declaration.handle.value)):
+                return path.span
+    return name_span(declaration)
 
 
 def _answer(context: MachineContext, declaration: Declaration) -> Iterator[Fix]:

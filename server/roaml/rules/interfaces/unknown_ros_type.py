@@ -25,6 +25,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
         if not isinstance(interface_type, NotFound):
             yield from _with_kind(declaration.type.value, span)
             continue
+        if interface_type.reason is Reason.SECTIONS:
+            continue  # reported in the file of the type
         if interface_type.reason is Reason.UNKNOWN_PACKAGE:
             yield _unknown_package(interface_type, span)
         else:

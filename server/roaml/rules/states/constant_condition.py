@@ -22,6 +22,9 @@ from roaml.rules.rule import MachineContext, Rule, close_names
 from roaml.rules.support.assignments import is_unchanged
 from roaml.text import Span, TextEdit
 
+_FROM_SENDERS = ("_msg.", "_event.data.")
+"""The beginnings of the places of data that machines send without being asked."""
+
 MAX_NAMED = 3
 """The maximum number of variables whose values a message states."""
 
@@ -44,6 +47,7 @@ def _never_sent(context: MachineContext, reported: Collection[Span]) -> Iterator
     """Report comparisons with a text that no machine sends, if a similar one is sent and no text is ever equal. Other
     conditions that no message of the system makes true are not reported, because machines of the environment often
     answer in one way only."""
+    yield from _numbers_never_sent(context, reported)
     compared: dict[tuple[Chart, str], list[tuple[String, ValueSet]]] = {}
     for value in context.typed.values:
         chart = context.values.charts.get(value.place.chart.scope)
@@ -66,6 +70,27 @@ def _never_sent(context: MachineContext, reported: Collection[Span]) -> Iterator
                 quote = context.source.text[text.span.start]
                 fix = Fix(f"Change to `'{close[0]}'`", (TextEdit(text.span, f"{quote}{close[0]}{quote}"),))
                 yield RULE.at(text.span, message, fix)
+
+
+def _numbers_never_sent(context: MachineContext, reported: Collection[Span]) -> Iterator[Finding]:
+    """Report the comparisons of a field of a message or event with a number that no machine sends."""
+    for value in context.typed.values:
+        chart = context.values.charts.get(value.place.chart.scope)
+        tree = value.value.tree if isinstance(value.value, Expression) else None
+        if chart is None or tree is None or value.value.span in reported:
+            continue
+        for node in walk(tree):
+            if isinstance(node, Binary) and node.operator is Operator.EQUAL:
+                for number, other in ((node.left, node.right), (node.right, node.left)):
+                    place, known, constant = place_of(other), chart.at(other), chart.at(number)
+                    if place is None or not place.startswith(_FROM_SENDERS) or known is None or constant is None:
+                        continue
+                    if not known.only or constant.value is None or known.includes(constant.value):
+                        continue
+                    message = (
+                        f"`{place}` is never {described(constant)} here: no machine sends it, only {described(known)}"
+                    )
+                    yield RULE.at(node.span, message)
 
 
 def _findings(context: MachineContext, machine: MachineValues) -> dict[Span, Finding]:

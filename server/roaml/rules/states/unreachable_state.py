@@ -17,13 +17,21 @@ def check(context: MachineContext) -> Iterator[Finding]:
         if reached is None:
             continue
         sources = _sources(chart)
+        severity = None if context.system is not None and _is_whole(chart) else Severity.INFORMATION
         for state in chart.states:
             if state.id is not None and state.id.value not in reached:
                 message = (
                     f"no path of transitions leads from the initial state to `{state.id.value}`, so it is never entered"
                 )
                 fixes = _remove(context, state, sources.get(state.id.value, []))
-                yield RULE.at(state.id.span, message, *fixes, tags=(Tag.UNNECESSARY,))
+                yield RULE.at(state.id.span, message, *fixes, severity=severity, tags=(Tag.UNNECESSARY,))
+
+
+def _is_whole(chart: Chart) -> bool:
+    """Whether all transitions lead to states that exist."""
+    names = {state.id.value for state in chart.states if state.id}
+    targets = [target.state for state in chart.states for handler in state.handlers for target in handler.targets]
+    return all(target is not None and target.value in names for target in targets)
 
 
 def _remove(context: MachineContext, state: State, sources: list[State]) -> Iterator[Fix]:
@@ -59,4 +67,4 @@ def _reached(chart: Chart) -> set[str] | None:
     return reached
 
 
-RULE = Rule("unreachable-state", Severity.INFORMATION, "A state is never entered.", machine=check)
+RULE = Rule("unreachable-state", Severity.WARNING, "A state is never entered.", machine=check)

@@ -145,6 +145,13 @@ class OpenPath(Record, frozen=True, eq=False):
         return f"if a {what} for `{between.event.name}`{name} arrives while the {due}{asker} is pending"
 
     @property
+    def dropped(self) -> str:
+        """Why the answer is missing if no condition holds, as a clause."""
+        if self.step.event is None:
+            return "the machine stays in this state while no condition holds"
+        return "events are dropped while this condition does not hold"
+
+    @property
     def severity(self) -> Severity | None:
         """The severity of a finding, `None` for that of the rule: a warning if the loss depends on a condition or on
         the order in which several clients act."""
@@ -191,7 +198,11 @@ def missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[
     for handler, of_handler in lost.items():
         if all(loss.step.ignored for loss in of_handler) and has_shadowed(context.machine, behavior.chart, handler):
             continue
-        unexplained = [loss for loss in of_handler if not _may_be_unread(context, behavior, loss)]
+        unexplained = [
+            loss
+            for loss in of_handler
+            if not _may_be_unread(context, behavior, loss) and _may_stay(context, behavior, loss.step)
+        ]
         choices = {loss.step.choice for loss in unexplained if not loss.step.ignored}
         if handler.is_probabilistic and choices and len(choices) < len(handler.targets):
             for choice in sorted(choices):
@@ -208,6 +219,14 @@ def _worst(of_handler: list[Loss], choice: bool) -> OpenPath:
 
     worst = min(of_handler, key=rank)
     return OpenPath(worst, worst.step.certain and not worst.step.ignored, choice)
+
+
+def _may_stay(context: MachineContext, behavior: Behavior, step: BehaviorStep) -> bool:
+    """Whether no condition holds for some values that are possible, if a step stays in its state without an event."""
+    values = context.local_values.charts.get(behavior.chart.scope)
+    if step.event is not None or not step.ignored or step.handler.cond is None or values is None:
+        return True
+    return step.handler.cond.span in values.uncovered
 
 
 def place(handler: Handler, statement: Statement | None = None) -> Span:
@@ -404,6 +423,25 @@ def unhandled_states(
                 if state not in seen and state.id is not None:
                     seen.add(state)
                     yield UnhandledState(state, state.id.value, state.id.span, tree_status, needs_time)
+
+
+def running_without(behavior: Behavior, missing: ProtocolPart) -> Iterator[State]:
+    """The state of a plugin that handles only halts or only ticks while the node is running, although every other state
+    that handles one of both handles both; none if there are several such states.
+
+    Args:
+        missing: what the state does not handle: `BT_TICK` or `BT_HALT`.
+    """
+    other = ProtocolPart.BT_HALT if missing is ProtocolPart.BT_TICK else ProtocolPart.BT_TICK
+    handling = [state for state in behavior.chart.states if _handles(state, other)]
+    running = {c.state for c in behavior.configurations if c.tree is Phase.RUNNING}
+    without = [state for state in handling if not _handles(state, missing)]
+    if len(without) == 1 and len(handling) > 1 and without[0].id is not None and without[0].id.value in running:
+        yield without[0]
+
+
+def _handles(state: State, part: ProtocolPart) -> bool:
+    return any(handler.effective and handler.trigger is part for handler in state.handlers)
 
 
 def _unhandled_by(

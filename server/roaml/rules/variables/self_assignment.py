@@ -13,7 +13,7 @@ from roaml.model.syntax import Expression
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.assignments import is_unchanged
 from roaml.rules.support.elements import stands_alone
-from roaml.text import Span, TextEdit
+from roaml.text import TextEdit
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -30,8 +30,7 @@ def _fixes(context: MachineContext, chart: Chart, statement: Assign, text: str) 
     """Counting, for an integer; without the assignment, conditions on the variable may never change their results."""
     types = context.typed.variables.get(chart.scope, {})
     if is_kind(types.get(text, UNKNOWN), ScalarKind.INT) and isinstance(statement.value, Expression):
-        end = statement.value.span.end
-        yield Fix(f"Change to `{text} + 1`", (TextEdit(Span(end, end), " + 1"),), preferred=False)
+        yield Fix(f"Change to `{text} + 1`", (TextEdit(statement.value.span, f"{text} + 1"),), preferred=False)
     if not stands_alone(context.document, statement.element):
         yield remove(context.document, statement.element, "Remove the assignment")
 

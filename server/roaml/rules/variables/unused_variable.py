@@ -5,10 +5,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Fix, Severity, Tag
+from roaml.diagnostics import Finding, Fix, Related, Severity, Tag
 from roaml.edit.elements import removal, remove
-from roaml.expr.tree import Name, walk
-from roaml.model.machine import CallChild, Chart, Data, ReturnStatus
+from roaml.expr.tree import Name, access_path, walk
+from roaml.model.machine import Assign, CallChild, Chart, Data, ReturnStatus
 from roaml.model.syntax import Expression, Value
 from roaml.rules.rule import MachineContext, Rule
 from roaml.text import Span
@@ -20,10 +20,17 @@ def check(context: MachineContext) -> Iterator[Finding]:
         if any(isinstance(value, Expression) and value.broken for value in values):
             continue  # the part that cannot be read may use the variable
         used = _used(values, chart)
+        written = _only_written(values, chart) if context.system is not None else {}
         for data in chart.data:
-            if data.id is not None and data.id.value not in used:
+            if data.id is None:
+                continue
+            if data.id.value not in used:
                 message = f"the variable `{data.id.value}` is never used"
                 yield RULE.at(data.id.span, message, _remove(context, data), tags=(Tag.UNNECESSARY,))
+            elif data.id.value in written:
+                message = f"the variable `{data.id.value}` is assigned, but its value is never read"
+                related = [Related(span, "assigned here") for span in written[data.id.value]]
+                yield RULE.at(data.id.span, message, severity=Severity.INFORMATION, related=related)
 
 
 def _remove(context: MachineContext, data: Data) -> Fix:
@@ -35,6 +42,28 @@ def _remove(context: MachineContext, data: Data) -> Fix:
     return Fix(title, (removal(text, Span(start, data.element.span.end)),))
 
 
+def _only_written(values: list[Value], chart: Chart) -> dict[str, list[Span]]:
+    """Variable that is assigned and read nowhere else than in its own assignments -> the places of the assignments."""
+    assigned: dict[str, list[Span]] = {}
+    own: dict[Span, str] = {}
+    for statement in chart.statements:
+        if isinstance(statement, Assign) and statement.location is not None:
+            root = (access_path(statement.location.tree) or ("",))[0]
+            assigned.setdefault(root, []).append(statement.location.span)
+            own[statement.location.span] = root
+            if isinstance(statement.value, Expression):
+                own[statement.value.span] = root
+    read = {
+        node.name
+        for value in values
+        if isinstance(value, Expression)
+        for node in walk(value.tree)
+        if isinstance(node, Name) and own.get(value.span) != node.name
+    }
+    read |= _named(chart)
+    return {name: spans for name, spans in assigned.items() if name not in read}
+
+
 def _used(values: list[Value], chart: Chart) -> set[str]:
     used = {
         node.name
@@ -43,12 +72,17 @@ def _used(values: list[Value], chart: Chart) -> set[str]:
         for node in walk(value.tree)
         if isinstance(node, Name)
     }
+    return used | _named(chart)
+
+
+def _named(chart: Chart) -> set[str]:
+    """The variables in attributes that contain a name instead of an expression."""
+    named = {handler.child.value for state in chart.states for handler in state.handlers if handler.child}
     for statement in chart.statements:
         match statement:
             case ReturnStatus(status=name) | CallChild(child=name) if name is not None:
-                used.add(name.value)
-    used.update(handler.child.value for state in chart.states for handler in state.handlers if handler.child)
-    return used
+                named.add(name.value)
+    return named
 
 
 RULE = Rule("unused-variable", Severity.HINT, "A variable is never used.", machine=check)

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The rule `discarded-answer`, which discarded_answer.md describes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.edit.elements import after
+from roaml.model.behavior.explore import Behavior
+from roaml.model.behavior.phases import Subject
+from roaml.model.machine import Handler, State
+from roaml.model.value_types import GOAL_STATUSES, find_handle
+from roaml.model.values.analyse import RESULT_CODE, DataChannel
+from roaml.model.values.describe import described
+from roaml.roles import ProtocolPart
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.answers import behaviors
+
+_HANDLERS = {
+    4: "ros_action_handle_success_result",
+    5: "ros_action_handle_canceled_result",
+    6: "ros_action_handle_aborted_result",
+}
+"""The code of a result -> the element that handles it (docs/spec/ros.md#action-client)."""
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    """Report states that handle some of the answers that can arrive in them, and discard others."""
+    if context.system is None:
+        return
+    for behavior in behaviors(context):
+        for state in behavior.chart.states:
+            yield from _results(context, behavior, state)
+            yield from _responses(context, behavior, state)
+
+
+def _results(context: MachineContext, behavior: Behavior, state: State) -> Iterator[Finding]:
+    for name, handlers in _by_handle(context, state, ProtocolPart.RESULT).items():
+        sent = context.values.arriving.get(DataChannel(ProtocolPart.RESULT, name), {}).get(RESULT_CODE)
+        handled = {handler.type.code for handler in handlers}
+        if sent is None or sent.only is None or 0 in handled or not _is_awaited(behavior, state, name):
+            continue
+        if not any(_has_effect(state, handler) for handler in handlers):
+            continue  # the state expects results of earlier goals, and discards them on purpose
+        for code in sorted(code for code in sent.only if isinstance(code, int) and code not in handled):
+            if code in _HANDLERS and not _is_reported(context, name, code):
+                message = (
+                    f"a result with the code {code} ({GOAL_STATUSES[code]}), which the server sends, is discarded in "
+                    f"this state, so the machine waits for ever; add a `<{_HANDLERS[code]}>`"
+                )
+                assert state.id is not None
+                yield RULE.at(state.id.span, message, *_fixes(context, handlers, code))
+
+
+def _is_reported(context: MachineContext, name: str, code: int) -> bool:
+    """Whether unhandled-canceled-result reports that no state handles a result; it concerns canceled goals only."""
+    if code != 5:
+        return False
+    return not any(
+        handler.trigger is ProtocolPart.RESULT and handler.type.code == code
+        for chart in context.machine.charts
+        for state in chart.states
+        for handler in state.handlers
+    )
+
+
+def _responses(context: MachineContext, behavior: Behavior, state: State) -> Iterator[Finding]:
+    values = context.values.charts.get(behavior.chart.scope)
+    for handlers in _by_handle(context, state, ProtocolPart.RESPONSE).values():
+        cond = handlers[-1].cond
+        left = values.uncovered.get(cond.span) if values is not None and cond is not None else None
+        if left is None or cond is None or any(s.ignored and s.handler is handlers[-1] for s in behavior.steps):
+            continue  # unanswered-tick and unanswered-request report responses that are discarded for other reasons
+        known = {place: v for place, v in left.items() if place.startswith("_res.") and v.only}
+        compared = [place for place in known if place in cond.text]
+        if compared:
+            place = compared[0]
+            message = (
+                f"a response whose `{place.removeprefix('_res.')}` is {described(known[place])} is discarded: no "
+                f"condition in this state holds, so the machine waits for ever; handle it after this condition"
+            )
+            yield RULE.at(cond.span, message)
+
+
+def _by_handle(context: MachineContext, state: State, part: ProtocolPart) -> dict[str, list[Handler]]:
+    result: dict[str, list[Handler]] = {}
+    for handler in state.handlers:
+        if handler.effective and handler.trigger is part and state.id is not None:
+            declaration = find_handle(context.machine, handler)
+            if declaration is not None and declaration.handle is not None:
+                result.setdefault(declaration.handle.value, []).append(handler)
+    return result
+
+
+def _is_awaited(behavior: Behavior, state: State, name: str) -> bool:
+    return any(
+        state.id is not None and c.state == state.id.value and c.phase(Subject.OUTCOME, name) is not None
+        for c in behavior.configurations
+    )
+
+
+def _has_effect(state: State, handler: Handler) -> bool:
+    return any(
+        target.body or (target.state is not None and state.id is not None and target.state.value != state.id.value)
+        for target in handler.targets
+    )
+
+
+def _fixes(context: MachineContext, handlers: list[Handler], code: int) -> Iterator[Fix]:
+    """A fix that handles the result like the last one that the state handles, without its body."""
+    last = handlers[-1]
+    target = last.targets[0].state if last.targets else None
+    if last.handle is not None and target is not None and last.element.complete:
+        line = f'<{_HANDLERS[code]} name="{last.handle.value}" target="{target.value}" />'
+        yield Fix(f"Add `<{_HANDLERS[code]}>`", (after(context.document, last.element, line),), preferred=False)
+
+
+RULE = Rule(
+    "discarded-answer",
+    Severity.WARNING,
+    "A state that waits for an answer discards some of the answers.",
+    machine=check,
+)
