@@ -164,7 +164,7 @@ class Forest(Record, frozen=True, eq=False, dict=True):
                     entry = known.nodes.get(name)
                     if entry is None or name in self.trees:
                         continue
-                    if name in self.models and not _is_model_of(self.models[name], entry):
+                    if name in self.models and not is_model_of(self.models[name], entry):
                         continue
                     if name not in _COMMON_NAMES:
                         return True
@@ -192,7 +192,7 @@ class Forest(Record, frozen=True, eq=False, dict=True):
         library's node. A library that the settings name is always meant."""
         if node.name not in self._own_nodes:
             beside = [node_of(m) for m in self.models_beside if m.id is not None and m.id.value == node.name]
-            is_other = bool(beside) and not any(_is_model_of(model, node) for model in beside)
+            is_other = bool(beside) and not any(is_model_of(model, node) for model in beside)
             if not beside and node.name in _COMMON_NAMES:
                 uses = [use for _, _, use in self.all_nodes if use.plugin is not None and use.plugin.value == node.name]
                 ports = [name for use in uses for name in (setting.attribute.name for setting in ports_of(use))]
@@ -216,7 +216,7 @@ class Forest(Record, frozen=True, eq=False, dict=True):
         for known in self.libraries:
             for name, model in self.models.items():
                 entry = known.nodes.get(name)
-                if entry is not None and _is_model_of(model, entry):
+                if entry is not None and is_model_of(model, entry):
                     described[name] = replace(
                         model,
                         ports=tuple(_completed(port, entry) for port in model.ports),
@@ -313,7 +313,7 @@ def _is_old(node: TreeNode) -> bool:
     )
 
 
-def _is_model_of(model: Node, node: Node) -> bool:
+def is_model_of(model: Node, node: Node) -> bool:
     """Whether a model describes a node of a library: its kind is the same, and the library has all its ports."""
     return model.kind is node.kind and all(node.port(port.name) is not None for port in model.ports)
 

@@ -353,6 +353,17 @@ _KEYS: dict[str, _Reader] = {
 }
 
 
+SETTING_NAMES = tuple(_KEYS)
+"""The names of all settings, in the order of the documentation."""
+
+VALUES_OF_SETTINGS: Mapping[str, tuple[str, ...]] = {
+    "warnings-as-errors": ("true", "false"),
+    "tree-libraries": tuple(LIBRARIES),
+    "tree-semantics": tuple(SEMANTICS),
+}
+"""The values of those settings that have few."""
+
+
 def enclosing_root(path: str) -> str | None:
     """The folder of `path`, or its nearest enclosing folder, that is a repository or contains an `as2fm.toml`; `None`
     if there is none."""

@@ -17,6 +17,7 @@ from roaml.ide.completion.documents import documents
 from roaml.ide.completion.elements import elements
 from roaml.ide.completion.item import CompletionItem, Completions, ItemKind, Rank, escaped, plain
 from roaml.ide.completion.json_documents import in_json
+from roaml.ide.completion.line_documents import in_lines
 from roaml.ide.completion.place import AttributeName, AttributeValue, Content, EndTag, Place, StartTag, place_at
 from roaml.ide.completion.request import CompletionSubject, Request
 from roaml.ide.completion.values import in_attribute, in_text
@@ -40,6 +41,9 @@ def complete(snapshot: Snapshot, path: str, offset: int, trigger: str = "") -> C
         trigger: the character after which the editor requests completion automatically; "" if the user requested it.
     """
     file = xml_file(snapshot.analysis, path)
+    lines = in_lines(snapshot.analysis, path, offset) if trigger in ("", '"', "/", "_") else None
+    if lines is not None and (source := snapshot.analysis.source(path)) is not None:
+        return _shortened(source.text, offset, *lines)
     if file is None:
         json = in_json(snapshot.analysis, path, offset) if trigger != " " else None
         source = snapshot.analysis.source(path)

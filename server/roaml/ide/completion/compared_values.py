@@ -14,18 +14,22 @@ from roaml.ide.completion.item import CompletionItem, ItemKind, Rank
 from roaml.ide.completion.request import Request
 from roaml.interfaces.registry import NotFound
 from roaml.interfaces.types import SECTION_NAMES, Constant, Kind
+from roaml.model.machine import Assign
+from roaml.model.syntax import Expression
 from roaml.model.value_types import GOAL_STATUSES, find_handle
 from roaml.model.values.analyse import DataChannel, data_place
 from roaml.model.values.domain import Constant as ConstantValue
-from roaml.model.values.domain import ValueSet
+from roaml.model.values.domain import ValueSet, joined
+from roaml.model.values.evaluate import literal
 from roaml.project.values import arriving_at
 from roaml.text import Decoded
 
-_COMPARED = re.compile(r"((?:[A-Za-z_]\w*\.)+)([A-Za-z_]\w*)\s*[=!]==?\s*\w*\Z", re.ASCII)
+_COMPARED = re.compile(r"((?:[A-Za-z_]\w*\.)*)([A-Za-z_]\w*)\s*[=!]==?\s*\w*\Z", re.ASCII)
 
 
 def compared_values(request: Request, start: int, scope: Mapping[str, Type]) -> Iterator[CompletionItem]:
-    """Values for the right side of a comparison with a field of event data. The caret is behind the operator.
+    """Values for the right side of a comparison with a field of event data or with a variable. The caret is behind the
+    operator.
 
     Args:
         start: the offset at which the expression begins.
@@ -35,6 +39,9 @@ def compared_values(request: Request, start: int, scope: Mapping[str, Type]) -> 
     if compared is None:
         return
     owner, name = compared[1][:-1], compared[2]
+    if not owner:
+        yield from _of_variable(request, name)
+        return
     named: dict[ConstantValue | None, str] = {c.value: c.name for c in _constants(request, owner, name, scope)}
     if (owner, name) == ("_wrapped_result", "code"):
         named.update((code, text) for code, text in GOAL_STATUSES.items())
@@ -44,6 +51,22 @@ def compared_values(request: Request, start: int, scope: Mapping[str, Type]) -> 
             text = f"'{value}'" if isinstance(value, str) else str(value)
             detail = named.get(value, "is sent")
             yield CompletionItem(text, ItemKind.VALUE, detail=detail, rank=Rank.BEST, filter=f"{text} {detail}")
+
+
+def _of_variable(request: Request, name: str) -> Iterator[CompletionItem]:
+    """The constants that a machine assigns to a variable. The condition at the caret is incomplete, so the values that
+    follow from all conditions are not known."""
+    if request.chart is None:
+        return
+    given = [data.value for data in request.chart.data if data.id is not None and data.id.value == name]
+    for statement in request.chart.statements:
+        if isinstance(statement, Assign) and statement.location is not None and statement.location.text.strip() == name:
+            given.append(statement.value)
+    constants = [dict(literal("", value.tree)).get("") for value in given if isinstance(value, Expression)]
+    known = joined(values for values in constants if values is not None)
+    for value in sorted((v for v in known.only or () if not isinstance(v, bool)), key=str):
+        text = f"'{value}'" if isinstance(value, str) else str(value)
+        yield CompletionItem(text, ItemKind.VALUE, detail=f"assigned to {name}", rank=Rank.BEST)
 
 
 def _constants(request: Request, owner: str, field: str, scope: Mapping[str, Type]) -> list[Constant]:

@@ -35,6 +35,7 @@ from roaml.ide.completion.compared_values import compared_values
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
 from roaml.ide.completion.model_parameters import parameters_in_scope
 from roaml.ide.completion.request import CompletionSubject, Request
+from roaml.ide.completion.struct_keys import struct_keys
 from roaml.ide.names.occurrence import variable
 from roaml.model.syntax import PortRead
 from roaml.model.value_types import STATUS, bindings, find_handle, interface_part, port_type
@@ -122,7 +123,12 @@ def in_expression(
     Returns:
         The span that the items replace, and the items; `None` if there are none.
     """
-    begun = beginning(request.file.document.text, start, request.offset)
+    text = request.file.document.text
+    if "{" in text[start : request.offset]:
+        keys = struct_keys(text, start, request.offset, _required_type(request, subject, part))
+        if keys is not None:
+            return keys
+    begun = beginning(text, start, request.offset)
     if begun is None:
         return None
     events = _event_variables(request, part)

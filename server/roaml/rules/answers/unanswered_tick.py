@@ -88,7 +88,7 @@ def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Syste
         if state.id is not None and state.id.value not in reported:
             message = (
                 f"the plugin is running in the state `{state.id.value}`, which does not handle a tick, unlike its "
-                "other states; a tick that arrives there is not answered in time; add a `<bt_tick>` that returns RUNNING"
+                "other states; a tick that arrives there waits; add a `<bt_tick>` that returns RUNNING"
             )
             yield RULE.at(state.id.span, message, *_take(context, state.element), severity=Severity.WARNING)
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.forest.entries import is_autoremapped
-from roaml.forest.forest import CPP
+from roaml.forest.forest import CPP, is_model_of
 from roaml.forest.ports import missing_ports, probable_ports
 from roaml.libraries import LIBRARIES, Node, Port, library
 from roaml.model.tree import TreeNode
@@ -32,7 +32,8 @@ def check(context: TreeContext) -> Iterator[Finding]:
         if known.library or known.kind is NodeKind.SUBTREE:
             yield from _missing(node, known, known)
         elif not forest.is_partly_described(known):
-            library_node = next((other for name in LIBRARIES if (other := library(name).nodes.get(known.name))), None)
+            of_libraries = [library(name).nodes.get(known.name) for name in LIBRARIES]
+            library_node = next((other for other in of_libraries if other and is_model_of(known, other)), None)
             yield from _missing(node, known, library_node) if library_node else _without_value(node, known)
 
 

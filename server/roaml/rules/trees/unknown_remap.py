@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal
+from roaml.forest.forest import Forest
 from roaml.model.expand import node_at, stray_remaps
 from roaml.rules.rule import Rule, TreeContext, did_you_mean, listing, replacements
 
@@ -19,6 +20,8 @@ def check(context: TreeContext) -> Iterator[Finding]:
         setting = next((s for s in node.ports if s.key.value == stray.key), None) if node else None
         if node is None or node.plugin is None or setting is None:
             continue
+        if not stray.meant and context.forest is not None and _has_unknown_nodes(context.forest):
+            continue  # a node of the program may read the entry
         known = f"; it has {listing(stray.names[:6])}" if stray.names else ""
         message = f"the subtree `{node.plugin.value}` has no variable `{stray.key}`{did_you_mean(stray.meant) or known}"
         drop = (
@@ -29,6 +32,14 @@ def check(context: TreeContext) -> Iterator[Finding]:
         fixes = replacements(setting.key.span, stray.meant)
         severity = Severity.ERROR if stray.meant else Severity.WARNING
         yield RULE.at(setting.key.span, message, *fixes, *drop, severity=severity)
+
+
+def _has_unknown_nodes(forest: Forest) -> bool:
+    """Whether trees contain nodes that no model describes, which may read any entry of the blackboard."""
+    return any(
+        node.plugin is not None and not node.is_subtree and forest.node(node.plugin.value) is None
+        for _, _, node in forest.all_nodes
+    )
 
 
 RULE = Rule("unknown-remap", Severity.ERROR, "A subtree does not have a variable that is passed to it.", tree=check)

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Completion in files that are read line by line, and in comments: codes of rules in `as2fm: ignore[…]`, settings and
+their values in `as2fm.toml`, types in ROS interface definitions, and names of nodes in files of mocks."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+
+from roaml.diagnostics import Symbol
+from roaml.ide.completion.item import CompletionItem, ItemKind, Rank
+from roaml.interfaces import PRIMITIVES
+from roaml.model.config_files import CONFIG_FILE
+from roaml.model.kinds import MOCKS_EXTENSION, FileKind
+from roaml.model.tree import nodes
+from roaml.project.analysis import Analysis
+from roaml.project.settings import SETTING_NAMES, SEVERITIES, VALUES_OF_SETTINGS
+from roaml.roles import SymbolKind
+from roaml.rules import RULES
+from roaml.text import Span
+
+_IN_SUPPRESSION = re.compile(r"as2fm:\s*ignore\s*\[[^\]<>]*\Z")
+_WORD_BEFORE = re.compile(r"[\w/-]*\Z", re.ASCII)
+_WORD_AFTER = re.compile(r"[\w/-]*", re.ASCII)
+_KEY = re.compile(r"\s*([\w-]*)\Z", re.ASCII)
+_VALUE = re.compile(r"^\s*([\w-]+)\s*=[^=]*\Z", re.ASCII)
+_CODE_SETTINGS = ("select", "ignore", "severity")
+
+
+def in_lines(analysis: Analysis, path: str, offset: int) -> tuple[Span, list[CompletionItem]] | None:
+    """The completions at a caret, and the span that they replace; `None` if the caret is not in a place that this
+    module knows."""
+    source = analysis.source(path)
+    if source is None:
+        return None
+    text = source.text
+    line = text[text.rfind("\n", 0, offset) + 1 : offset]
+    if _IN_SUPPRESSION.search(line):
+        return _word(text, offset), list(_codes())
+    if os.path.basename(path) == CONFIG_FILE:
+        items = list(_in_configuration(text[:offset], line))
+        return (_word(text, offset), items) if items else None
+    if path.endswith(MOCKS_EXTENSION):
+        return (_word(text, offset), list(_nodes(analysis, path))) if ":" not in line and "#" not in line else None
+    if analysis.kind(path) is FileKind.INTERFACE and re.fullmatch(r"\s*[\w/]*", line, re.ASCII):
+        return _word(text, offset), list(_message_types(analysis))
+    return None
+
+
+def _word(text: str, offset: int) -> Span:
+    before, after = _WORD_BEFORE.search(text, 0, offset), _WORD_AFTER.match(text, offset)
+    assert before is not None
+    assert after is not None
+    return Span(before.start(), after.end())
+
+
+def _codes() -> Iterator[CompletionItem]:
+    for rule in RULES:
+        yield CompletionItem(rule.code, ItemKind.VALUE, detail=rule.summary)
+
+
+def _in_configuration(before: str, line: str) -> Iterator[CompletionItem]:
+    """Settings at the beginning of a line; codes and other words where a setting has them as values."""
+    table = re.findall(r"^\s*\[\s*([\w.-]+)\s*\]", before, re.MULTILINE)
+    section = table[-1] if table else ""
+    value = _VALUE.match(_statement(before))
+    if value is not None:
+        if value[1] in _CODE_SETTINGS:
+            yield from _codes()
+        for word in VALUES_OF_SETTINGS.get(value[1], ()):
+            insert = word if '"' in line or word in ("true", "false") else f'"{word}"'
+            yield CompletionItem(word, ItemKind.VALUE, insert)
+        if section == "severity":
+            for word in SEVERITIES:
+                yield CompletionItem(word, ItemKind.VALUE, word if '"' in line else f'"{word}"')
+    elif _KEY.fullmatch(line):
+        if section == "severity":
+            yield from _codes()
+        elif not section:
+            for name in SETTING_NAMES:
+                yield CompletionItem(name, ItemKind.ATTRIBUTE)
+
+
+def _statement(before: str) -> str:
+    """The text from the beginning of the last statement: an array may continue over several lines."""
+    start = len(before)
+    while start > 0:
+        start = before.rfind("\n", 0, start - 1) + 1 if start > 1 else 0
+        statement = before[start:]
+        if "=" in statement or statement.count("]") > statement.count("["):
+            return statement if _is_open(statement) else before[before.rfind("\n") + 1 :]
+    return before
+
+
+def _is_open(statement: str) -> bool:
+    """Whether a statement continues at the caret: it has one line, or an array that is not closed."""
+    return "\n" not in statement or statement.count("[") > statement.count("]")
+
+
+def _nodes(analysis: Analysis, path: str) -> Iterator[CompletionItem]:
+    """The names and types of the nodes of the tree that a file of mocks belongs to."""
+    file = analysis.tree(f"{path.removesuffix(MOCKS_EXTENSION)}.xml")
+    names: dict[str, str] = {}
+    for tree in file.trees if file is not None else ():
+        for node in nodes(tree):
+            if node.plugin is not None and not node.is_subtree and not node.children:
+                names.setdefault(node.plugin.value, "node")
+    for name, detail in names.items():
+        yield CompletionItem(name, ItemKind.PLUGIN, detail=detail)
+
+
+def _message_types(analysis: Analysis) -> Iterator[CompletionItem]:
+    for name in sorted(PRIMITIVES):
+        yield CompletionItem(name, ItemKind.TYPE, rank=Rank.LIKELY)
+    for package, kinds in analysis.registry.search_path.packages().items():
+        for name in kinds["msg"]:
+            label = f"{package}/{name}"
+            about = Symbol("", SymbolKind.ROS_TYPE, label, "msg")
+            yield CompletionItem(label, ItemKind.TYPE, about=about)
