@@ -15,6 +15,7 @@ from types import ModuleType
 from roaml.rules import expansion_rules, parser_rules, property_rules
 from roaml.rules.answers import (
     answer_needs_time,
+    answer_never_requested,
     cancel_without_goal,
     discarded_answer,
     endless_node,

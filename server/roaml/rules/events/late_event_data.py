@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Severity
+from roaml.diagnostics import Finding, Related, Severity
 from roaml.expr.tree import Expr, Name, walk
 from roaml.model.behavior.instants import can_arrive_again
 from roaml.model.behavior.phases import ProtocolEvent
@@ -33,13 +33,20 @@ _ANSWERS = {
 def check(context: MachineContext) -> Iterator[Finding]:
     """Report event data that may be overwritten before they are read: they are shared variables, read when the step is
     executed (docs/spec/machines.md#event-data-lifetime)."""
+    branches: dict[Handler, list[tuple[TypedValue, Name]]] = {}
     for value in context.typed.values:
         if not value.place.late or not isinstance(value.value, Expression):
             continue
         known = known_here(value.place)
         name = next((n for n in _names(value.value.tree) if n.name in known), None) if known else None
         if name is not None and _may_be_newer(context, value.place, name.span.start):
-            yield RULE.at(name.span, _message(value, name.name), severity=_severity(value))
+            if value.use is ValueUse.BRANCH and value.place.handler is not None:
+                branches.setdefault(value.place.handler, []).append((value, name))
+            else:
+                yield RULE.at(name.span, _message(value, name.name), severity=_severity(value))
+    for (value, name), *others in branches.values():
+        related = [Related(other.span, "also in this condition") for _, other in others]
+        yield RULE.at(name.span, _message(value, name.name), severity=_severity(value), related=related)
 
 
 def _may_be_newer(context: MachineContext, place: ValuePlace, at: int) -> bool:

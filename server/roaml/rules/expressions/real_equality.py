@@ -42,7 +42,8 @@ def _is_exact(context: MachineContext, value: TypedValue, problem: RealEquality)
     if all(side is not None and side.only is not None for side in sides):
         return not any(_is_rounded(values.at(side)) for side in (problem.left, problem.right) if _is_computed(side))
     whole = any(side is not None and isinstance(side.value, int | float) and side.value % 1 == 0 for side in sides)
-    return whole and ANYTHING in sides
+    passed_on = any(values.at(side) == ANYTHING and not _is_computed(side) for side in (problem.left, problem.right))
+    return whole and passed_on
 
 
 def _is_computed(expr: Expr) -> bool:

@@ -93,11 +93,13 @@ def _action(
 
 
 def _lost(context: MachineContext, declaration: Declaration, kind: DutyKind) -> Span:
-    """The first place where an answer is missing; the name of the service or action if nothing is received."""
+    """The first place where an answer is missing; the name of the service or action if nothing is received. A goal is
+    decided on where it arrives."""
     if declaration.handle is not None:
         for behavior in behaviors(context):
             for path in missed(context, behavior, Duty(kind, declaration.handle.value)):
-                return path.span
+                is_decision = kind is DutyKind.GOAL and path.loss.path
+                return path.loss.path[0].handler.element.name_span if is_decision else path.span
     return name_span(declaration)
 
 

@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Collection, Iterable, Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
-from roaml.expr.operators import Operator
+from roaml.expr.operators import Operator, OperatorKind
 from roaml.expr.tree import Binary, Expr, Member, Name, String, walk
 from roaml.model.behavior.explore import condition_facts
 from roaml.model.behavior.knowledge import NOTHING, ConditionFacts, variables_in
@@ -16,8 +18,8 @@ from roaml.model.triggers import trigger
 from roaml.model.values.analyse import ChartValues, MachineValues, analyse
 from roaml.model.values.arriving import arriving_by_type
 from roaml.model.values.describe import described, is_informative
-from roaml.model.values.domain import FALSE, TRUE, ValueSet
-from roaml.model.values.evaluate import place_of
+from roaml.model.values.domain import FALSE, TRUE, Origin, ValueSet
+from roaml.model.values.evaluate import compared, place_of
 from roaml.rules.rule import MachineContext, Rule, close_names
 from roaml.rules.support.assignments import is_unchanged
 from roaml.text import Span, TextEdit
@@ -61,10 +63,13 @@ def _never_sent(context: MachineContext, reported: Collection[Span]) -> Iterator
                     if isinstance(text, String) and place is not None and known is not None:
                         compared.setdefault((value.place.chart, place), []).append((text, known))
     for (_, place), comparisons in compared.items():
-        if any(known.includes(text.value) for text, known in comparisons):
-            continue
+        is_sent = any(known.includes(text.value) for text, known in comparisons)
         for text, known in comparisons:
+            if known.includes(text.value):
+                continue
             close = close_names(text.value, [sent for sent in known.only or () if isinstance(sent, str)])
+            if is_sent:  # other texts differ in a number: they name similar things
+                close = tuple(sent for sent in close if _letters(sent) != _letters(text.value))
             if close:
                 message = f"`{place}` is never `'{text.value}'`; did you mean `'{close[0]}'`?"
                 quote = context.source.text[text.span.start]
@@ -72,25 +77,46 @@ def _never_sent(context: MachineContext, reported: Collection[Span]) -> Iterator
                 yield RULE.at(text.span, message, fix)
 
 
+def _letters(text: str) -> str:
+    return re.sub(r"\d", "", text)
+
+
 def _numbers_never_sent(context: MachineContext, reported: Collection[Span]) -> Iterator[Finding]:
-    """Report the comparisons of a field of a message or event with a number that no machine sends."""
+    """Report the comparisons of a field of a message or event with a constant whose result is the same for all numbers
+    that machines send."""
     for value in context.typed.values:
         chart = context.values.charts.get(value.place.chart.scope)
         tree = value.value.tree if isinstance(value.value, Expression) else None
         if chart is None or tree is None or value.value.span in reported:
             continue
         for node in walk(tree):
-            if isinstance(node, Binary) and node.operator is Operator.EQUAL:
-                for number, other in ((node.left, node.right), (node.right, node.left)):
-                    place, known, constant = place_of(other), chart.at(other), chart.at(number)
-                    if place is None or not place.startswith(_FROM_SENDERS) or known is None or constant is None:
-                        continue
-                    if not known.only or constant.value is None or known.includes(constant.value):
-                        continue
-                    message = (
-                        f"`{place}` is never {described(constant)} here: no machine sends it, only {described(known)}"
-                    )
-                    yield RULE.at(node.span, message)
+            if isinstance(node, Binary) and node.operator.kind in (OperatorKind.EQUALITY, OperatorKind.ORDER):
+                for place, other in ((node.left, node.right), (node.right, node.left)):
+                    yield from _compared_with_sent(chart, node, place, other, tree)
+
+
+def _reached(values: ValueSet) -> ValueSet:
+    """The values without the bounds that only widening or a type gives."""
+    if values.only is not None:
+        return values
+    low = values.low if values.low_from is Origin.REACHED else -math.inf
+    high = values.high if values.high_from is Origin.REACHED else math.inf
+    return ValueSet(None, low, high, values.low_from, values.high_from)
+
+
+def _compared_with_sent(chart: ChartValues, node: Binary, field: Expr, constant: Expr, tree: Expr) -> Iterator[Finding]:
+    place, known, number = place_of(field), chart.at(field), chart.at(constant)
+    if place is None or not place.startswith(_FROM_SENDERS) or known is None or number is None or number.value is None:
+        return
+    sides = (_reached(known), number) if field is node.left else (number, _reached(known))
+    result = compared(node.operator, *sides)
+    what = f"the values that machines send here are {described(known)}"
+    if result == FALSE:
+        yield RULE.at(node.span, f"this comparison is never true: {what}")
+    elif result == TRUE and node.operator is not Operator.NOT_EQUAL:
+        conditions = chart.conditions.get(tree.span)
+        if conditions is None or (node is tree and conditions.alone == TRUE):
+            yield RULE.at(node.span, f"this comparison is always true: {what}")
 
 
 def _findings(context: MachineContext, machine: MachineValues) -> dict[Span, Finding]:

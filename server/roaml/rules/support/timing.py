@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
 
@@ -57,17 +58,25 @@ class Drift(Record, frozen=True):
 
 
 def drift(hertz: Fraction, others: Iterable[TimerRate], end: int | None) -> Drift | None:
-    """The drift of a timer whose rate has no exact period, against the first timer with an exact period whose rate is
-    a multiple or a part of its rate; `None` if there is none before `end`, the end of the traces in ns."""
+    """The drift of a timer whose rate has no exact period, against the timer with an exact period that it should meet
+    first; `None` if there is none before `end`, the end of the traces in ns."""
     exact, rounded = NANOSECONDS_PER_SECOND / hertz, period(hertz).nanoseconds
     if exact == rounded or end is None:
         return None
+    meetings: list[tuple[Fraction, TimerRate]] = []
     for other in others:
-        at = max(exact, NANOSECONDS_PER_SECOND / other.hertz)  # one of the periods is a multiple of the other
-        is_exact = other.period.nanoseconds == NANOSECONDS_PER_SECOND / other.hertz
-        if is_exact and are_multiples(hertz, other.hertz) and at == int(at) <= end:
-            return Drift(other, int(at), at - at / exact * rounded)
-    return None
+        if other.period.nanoseconds == NANOSECONDS_PER_SECOND / other.hertz:
+            meetings.append((_common_multiple(exact, NANOSECONDS_PER_SECOND / other.hertz), other))
+    at, first = min(meetings, key=lambda meeting: meeting[0], default=(None, None))
+    if at is None or first is None or at > end:
+        return None
+    return Drift(first, int(at), at - at / exact * rounded)
+
+
+def _common_multiple(first: Fraction, second: Fraction) -> Fraction:
+    """The least common multiple of two durations."""
+    denominator = math.lcm(first.denominator, second.denominator)
+    return Fraction(math.lcm(int(first * denominator), int(second * denominator)), denominator)
 
 
 def are_multiples(hertz: Fraction, other: Fraction) -> bool:
