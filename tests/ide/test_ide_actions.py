@@ -390,12 +390,12 @@ CLOCKS = """
 </roaml>
 -- lidar.ascxml --
 <ascxml name="Lidar" version="1.0" initial="s">
-  <ros_time_rate name="scan" rate_hz="3" />
+  <ros_time_rate name="scan" rate_hz="31.25" />
   <state id="s"><ros_rate_callback name="scan" target="s" /></state>
 </ascxml>
 -- drive.ascxml --
 <ascxml name="Drive" version="1.0" initial="s">
-  <ros_time_rate name="control" rate_hz="10" />
+  <ros_time_rate name="control" rate_hz="40" />
   <state id="s"><ros_rate_callback name="control" target="s" /></state>
 </ascxml>
 -- p.jani --
@@ -404,7 +404,7 @@ CLOCKS = """
 
 
 def test_a_rate_with_a_larger_clock_step() -> None:
-    after = done(CLOCKS, "Change the rate of `scan` to 3.33 Hz")
+    after = done(CLOCKS, "Change the rate of `scan` to 26.666 Hz")
     assert list(after) == ["lidar.ascxml"]
     snapshot = opened(CLOCKS)[0]
     assert "small-clock-step" in {d.code for d in found(snapshot)}
@@ -415,26 +415,25 @@ def test_a_rate_with_a_larger_clock_step() -> None:
 @pytest.mark.parametrize(
     ("rates", "rate"),
     [
-        (("30", "20"), "`scan` to 33.333 Hz"),
-        (("60", "25"), "`control` to 30.001 Hz"),
-        (("7", "10"), "`scan` to 6.66 Hz"),
-        (("3", "4"), "`control` to 4.5 Hz"),
-        (("100", "30"), "`control` to 33.333 Hz"),
+        (("31.25", "40"), "`scan` to 26.666 Hz"),
+        (("80", "31.25"), "`control` to 26.666 Hz"),
         (("13", "17"), "`control` to 19.5 Hz"),
     ],
 )
 def test_the_nearest_rate_with_the_largest_steps(rates: tuple[str, str], rate: str) -> None:
-    """Large steps come first: 50 ms for 7 Hz and 10 Hz, although 142.5 ms is nearer to the period of 7 Hz. Periods are
-    rounded down, so two periods of 60 Hz are 33,332 µs."""
-    written = CLOCKS.replace('rate_hz="3"', f'rate_hz="{rates[0]}"').replace('rate_hz="10"', f'rate_hz="{rates[1]}"')
+    """Large steps come first: 37.5 ms is not the nearest to 32 ms, but 1.5 times 25 ms."""
+    written = CLOCKS.replace('rate_hz="31.25"', f'rate_hz="{rates[0]}"')
+    written = written.replace('rate_hz="40"', f'rate_hz="{rates[1]}"')
     assert f"Change the rate of {rate}" in titles(written, "quickfix")
 
 
-@pytest.mark.parametrize(("rates", "rate"), [(("30", "10"), "20"), (("60", "10"), "50"), (("3", "1"), "2")])
+@pytest.mark.parametrize(
+    ("rates", "rate"), [(("30", "10"), "20"), (("60", "10"), "50"), (("3", "1"), "2"), (("7", "10"), "5")]
+)
 def test_the_next_lower_rate_that_stays_in_step(rates: tuple[str, str], rate: str) -> None:
     """The period of 30 Hz is not a whole number of microseconds, so the timer drifts away from one with 10 Hz."""
-    written = CLOCKS.replace("‸", "").replace('rate_hz="10"', f'rate_hz="{rates[1]}"')
-    written = written.replace('rate_hz="3"', f'rate_hz="‸{rates[0]}"')
+    written = CLOCKS.replace("‸", "").replace('rate_hz="40"', f'rate_hz="{rates[1]}"')
+    written = written.replace('rate_hz="31.25"', f'rate_hz="‸{rates[0]}"')
     after = done(written, f"Change to {rate} Hz")
     assert list(after) == ["lidar.ascxml"]
     assert f'rate_hz="{rate}"' in after["lidar.ascxml"]

@@ -18,13 +18,16 @@ A mistake is *found* if an error or warning that the system without it does not 
 found *elsewhere* if there are only other new errors or warnings, otherwise *silent*. The table `[[true]]` (`system`,
 `file`, `code`, `line`) lists findings in unchanged systems that are true; all other errors and warnings there are
 false.
+
+The first fix of each new finding is applied, and the system is checked again. A fix *restores* if the file is as it was
+before the mistake, except for white space, and *mends* if no new error or warning is left. It must not add one.
 """
 
 from __future__ import annotations
 
 import sys
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -33,8 +36,12 @@ from typing import Any
 import conformance
 from bench.report import Benchmark, Row, listed
 from roaml import api
+from roaml.api.checking import CheckResult
 from roaml.diagnostics import Diagnostic, Severity
+from roaml.ide.code_actions import quick_fixes
+from roaml.ide.code_actions.action import CodeAction
 from roaml.project.settings import Settings
+from roaml.text import apply_edits
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -146,9 +153,12 @@ def sound(main: Path) -> tuple[Diagnostic, ...]:
 
 
 def _checked(main: Path, texts: dict[str, str]) -> tuple[Diagnostic, ...]:
+    return tuple(d for d in _result(main, texts).diagnostics if d.severity >= Severity.WARNING)
+
+
+def _result(main: Path, texts: dict[str, str]) -> CheckResult:
     paths = (str(conformance.INTERFACES),) if conformance.PRESENT else ()
-    diagnostics = api.check([str(main)], paths, Settings(), texts).diagnostics
-    return tuple(d for d in diagnostics if d.severity >= Severity.WARNING)
+    return api.check([str(main)], paths, Settings(), texts)
 
 
 def systems() -> Iterator[str]:
@@ -184,14 +194,61 @@ def false_findings() -> Row:
     return Row("false findings per 1,000 lines", f"{rate:.2f}", "≤ 0.3", how)
 
 
+def first_fix(mistake: Planted, finding: Diagnostic) -> CodeAction | None:
+    """The first quick fix that an editor offers for a finding and that creates no file; `None` if there is none."""
+    snapshot = _result(mistake.main, {str(mistake.file): mistake.edited()}).snapshot
+    actions = quick_fixes(snapshot, finding.path, finding)
+    return next((action for action in actions if not action.resources), None)
+
+
+def fixed(mistake: Planted, finding: Diagnostic, fix: CodeAction, new: Sequence[Diagnostic]) -> str:
+    """What the fix of a finding does: `restores`, `mends`, `removes` only this finding, `keeps` it, or `adds` a
+    finding."""
+    texts = {str(mistake.file): mistake.edited()}
+    for changed, edits in fix.make().edits.items():
+        path = next((known for known in texts if Path(known).resolve() == Path(changed).resolve()), changed)
+        before = texts.get(path) or Path(path).read_text(encoding="utf-8")
+        texts[path] = apply_edits(before, tuple(sorted(edits)))
+    original = mistake.file.read_text(encoding="utf-8")
+    if "".join(texts[str(mistake.file)].split()) == "".join(original.split()):
+        return "restores"
+    known = Counter(_place(diagnostic) for diagnostic in (*sound(mistake.main), *new))
+    left = Counter(_place(diagnostic) for diagnostic in _checked(mistake.main, texts))
+    if left - known:
+        return "adds"
+    if not left - Counter(_place(diagnostic) for diagnostic in sound(mistake.main)):
+        return "mends"
+    return "removes" if left[_place(finding)] < known[_place(finding)] else "keeps"
+
+
+def _place(diagnostic: Diagnostic) -> tuple[str, str]:
+    return (str(Path(diagnostic.path).resolve()), diagnostic.code)
+
+
+def first_fixes(found: Iterable[tuple[Planted, Sequence[Diagnostic]]]) -> Row:
+    effects: Counter[str] = Counter()
+    for mistake, new in found:
+        for finding in new:
+            fix = first_fix(mistake, finding)
+            if fix is not None:
+                effect = fixed(mistake, finding, fix, new)
+                effects[effect] += 1
+                if effect not in ("restores", "mends"):
+                    print(f"fix {effect}: {mistake}: {finding.code}: {fix.title}", file=sys.stderr)
+    good, count = effects["restores"] + effects["mends"], sum(effects.values())
+    figure = f"{good} of {count} restore or mend, {effects['adds']} add a finding"
+    return Row("first fixes of planted mistakes", figure, "≥ 9 of 10, 0 add", "each applied alone, and checked again")
+
+
 def planted() -> list[Row]:
-    """All mistakes of all classes, and the false findings in the same systems without mistakes."""
-    rows = []
+    """All mistakes of all classes, their first fixes, and the false findings in the same systems without mistakes."""
+    rows, found = [], []
     for group in groups():
         verdicts: dict[str, list[Planted]] = {"found": [], "elsewhere": [], "silent": []}
         for mistake in mistakes(group):
             verdict, new = judged(mistake)
             verdicts[verdict].append(mistake)
+            found.append((mistake, new))
             if verdict != "found":
                 print(f"{verdict}: {mistake}", file=sys.stderr)
                 for diagnostic in new:
@@ -199,7 +256,7 @@ def planted() -> list[Row]:
         count = sum(map(len, verdicts.values()))
         figure = listed(f"{len(of_kind)} {verdict}" for verdict, of_kind in verdicts.items())
         rows.append(Row(f"planted mistakes: {group}", figure, "", f"{count} mistakes, one at a time"))
-    return [*rows, false_findings()]
+    return [*rows, first_fixes(found), false_findings()]
 
 
 BENCHMARKS: dict[str, Benchmark] = {"planted": planted}

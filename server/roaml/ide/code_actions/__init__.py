@@ -3,16 +3,17 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 
-from roaml.diagnostics import Diagnostic, Fix
+from roaml.diagnostics import Diagnostic, Fix, Severity
 from roaml.ide.code_actions.action import EXTRACT, FIX_ALL, QUICK_FIX, REWRITE, CodeAction, WorkspaceEdit, text_edits
 from roaml.ide.code_actions.quick_fixes import repairs
 from roaml.ide.code_actions.refactorings import refactorings
 from roaml.project.fixing import Choice, fix_all, preferred_fix, safe_fix
 from roaml.project.workspace import Snapshot
-from roaml.text import Span
+from roaml.text import Span, apply_edits
 
 
 def actions(snapshot: Snapshot, path: str, place: Span, is_requested: Callable[[str], bool]) -> Iterator[CodeAction]:
@@ -41,11 +42,35 @@ def quick_fixes(snapshot: Snapshot, path: str, diagnostic: Diagnostic) -> Iterat
     """All fixes of a diagnostic: first those of its rule, then those of `code_actions.quick_fixes`, which a rule cannot
     offer."""
     for fix in diagnostic.fixes:
+        if diagnostic.code in _CHECKED_BEFORE and _adds_findings(snapshot, path, fix):
+            continue
         yield CodeAction(fix.title, QUICK_FIX, partial(_made, path, fix), diagnostic, fix.preferred)
     titles = {fix.title for fix in diagnostic.fixes}
     for action in repairs(snapshot, diagnostic):
         if action.title not in titles:
             yield action
+
+
+_CHECKED_BEFORE = frozenset(
+    (
+        *("unanswered-goal", "unanswered-halt", "unanswered-request", "unanswered-tick", "silent-client"),
+        *("discarded-answer", "silent-server", "undeclared-handle", "undeclared-variable", "unreachable-state"),
+    )
+)
+"""The rules whose fixes depend on other paths or other parts of the machine: a fix is offered if it adds no finding."""
+
+
+def _adds_findings(snapshot: Snapshot, path: str, fix: Fix) -> bool:
+    """Whether a file has an additional error or warning after a fix."""
+    source = snapshot.analysis.source(path)
+    if source is None:
+        return False
+    after = snapshot.with_texts({path: apply_edits(source.text, tuple(sorted(fix.edits)))})
+    return bool(_problems(after, path) - _problems(snapshot, path))
+
+
+def _problems(snapshot: Snapshot, path: str) -> Counter[str]:
+    return Counter(d.code for d in snapshot.checker.diagnostics(path) if d.severity >= Severity.WARNING)
 
 
 def _made(path: str, fix: Fix) -> WorkspaceEdit:

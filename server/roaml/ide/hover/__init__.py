@@ -17,6 +17,7 @@ from roaml.ide.hover.listed_file import listed_file
 from roaml.ide.hover.lone_tree import of_library
 from roaml.ide.hover.markup import in_markup
 from roaml.ide.hover.place import Place, place_at
+from roaml.ide.hover.possible_values import possible_values
 from roaml.ide.hover.property_file import global_variable, in_json
 from roaml.ide.hover.tree import tree_node
 from roaml.ide.hover.xml_property_file import compared_number, property_tag
@@ -51,7 +52,7 @@ def hover(analysis: Analysis, path: str, offset: int) -> Hover | None:
             span = span or described
             is_second = place.kind is FileKind.PROPERTIES and text
             text = f"{more}{SEPARATOR}{text}" if is_second else paragraphs(text, more)
-    return Hover(span, text) if span is not None else None
+    return Hover(span, paragraphs(text, possible_values(place))) if span is not None else None
 
 
 def _descriptions(place: Place) -> Iterator[tuple[Span, str]]:

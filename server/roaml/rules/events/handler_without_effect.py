@@ -15,13 +15,12 @@ _DISCARDED = {
     ProtocolPart.MESSAGE: "messages of the topic",
     ProtocolPart.FEEDBACK: "feedback",
     ProtocolPart.EVENT: "events",
-    ProtocolPart.TICK: "ticks of the timer",
 }
 """What is discarded in a state without a handler, so that a handler without effect is useless."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report messages, events and timers all of whose handlers do nothing."""
+    """Report messages and events all of whose handlers do nothing."""
     if context.system is None:
         return
     handlers: dict[Trigger, list[tuple[State, Handler]]] = {}

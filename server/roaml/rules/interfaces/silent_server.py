@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import last_in
 from roaml.model.behavior.phases import Duty, DutyKind
 from roaml.model.gaps import InterfaceAct
-from roaml.model.machine import Declaration
+from roaml.model.machine import Declaration, RosSend
 from roaml.model.ros import InterfaceType
 from roaml.model.system import Channel, ChannelEndpoint, System, SystemAutomaton
 from roaml.model.value_types import find_handle
@@ -114,7 +114,18 @@ def _answer(context: MachineContext, declaration: Declaration) -> Iterator[Fix]:
         if handler.trigger is ProtocolPart.REQUEST and find_handle(context.machine, handler) is declaration
         for target in handler.targets
     ]
-    if not places or not isinstance(interface, InterfaceType) or not all(place.complete for place in places):
+    answers = (s for chart in context.machine.charts for s in chart.statements if isinstance(s, RosSend))
+    is_misnamed = any(
+        statement.part is ProtocolPart.RESPONSE and place.span.contains(statement.element.span.start)
+        for statement in answers
+        for place in places
+    )
+    if (
+        is_misnamed
+        or not places
+        or not isinstance(interface, InterfaceType)
+        or not all(place.complete for place in places)
+    ):
         return
     lines = response(declaration, interface)
     edits = tuple(last_in(context.document, place, *lines) for place in places)
