@@ -120,8 +120,7 @@ def check(options: argparse.Namespace, name: str = "--check") -> int:
     strict = options.warnings_as_errors or settings.warnings_as_errors
     color = options.output is None and takes_color(sys.stdout)
     limit = Severity.WARNING if strict else Severity.ERROR
-    ignored = len(result.ignored)
-    report = CheckReport(entries, len(result.files), limit, color, has_summary=not is_quiet(), ignored=ignored)
+    report = CheckReport(entries, len(result.files), limit, color, not is_quiet(), len(result.ignored))
     try:
         _write(options, outputs, report)
     except OSError as error:
