@@ -163,6 +163,7 @@ from roaml.rules.systems import (
     beyond_max_time,
     inexact_max_time,
     input_count,
+    lost_messages,
     missing_parameter,
     model_too_large,
     repeated_parameter,
