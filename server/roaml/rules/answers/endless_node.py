@@ -32,13 +32,13 @@ def _endless(behavior: Behavior) -> Iterator[Finding]:
     endless = {n for n, c in enumerate(behavior.configurations) if c.tree is Phase.RUNNING} - backward(ending, steps)
     first = next((step for step in steps if step.target in endless and step.source not in endless), None)
     again = [step for step in steps if step.source in endless and _returns(behavior, step, endless)]
-    if again:
+    if again and first is not None and first.handler is not again[0].handler:
         step = again[0]
         message = (
             "the plugin returns RUNNING here and never SUCCESS or FAILURE, so the node never ends; add a path that "
             "returns another status"
         )
-        related = [Related(first.handler.element.name_span, "the node begins here")] if first is not None else []
+        related = [Related(first.handler.element.name_span, "the node begins here")]
         yield RULE.at(step.handler.element.name_span, message, related=related)
 
 

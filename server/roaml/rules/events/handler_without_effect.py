@@ -13,7 +13,6 @@ from roaml.rules.rule import MachineContext, Rule
 
 _DISCARDED = {
     ProtocolPart.MESSAGE: "messages of the topic",
-    ProtocolPart.FEEDBACK: "feedback",
     ProtocolPart.EVENT: "events",
 }
 """What is discarded in a state without a handler, so that a handler without effect is useless."""
@@ -30,13 +29,17 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 key = trigger(context.machine, handler)
                 if handler.effective and handler.trigger in _DISCARDED and key is not None:
                     handlers.setdefault(key, []).append((state, handler))
+    if not any(
+        _has_effect(state, h) for chart in context.machine.charts for state in chart.states for h in state.handlers
+    ):
+        return  # the machine represents the receivers of the messages
     for pairs in handlers.values():
         event = pairs[0][1].event
         is_observed = event is not None and context.system.is_observed(event.value)
         if not is_observed and not any(_has_effect(state, handler) for state, handler in pairs):
             handler = pairs[0][1]
             what = _DISCARDED[handler.trigger] if handler.trigger else ""
-            message = f"the machine receives these {what} and does nothing; use them, or remove the handler"
+            message = f"the machine receives {what} and does nothing; use the data, or remove the handler"
             yield RULE.at(handler.element.name_span, message)
 
 

@@ -15,17 +15,19 @@ from roaml.model.behavior.knowledge import NOTHING, ConditionFacts, variables_in
 from roaml.model.machine import Assign, Chart, Handler, If, State
 from roaml.model.syntax import Expression
 from roaml.model.triggers import trigger
-from roaml.model.values.analyse import ChartValues, MachineValues, analyse
+from roaml.model.value_types import find_handle
+from roaml.model.values.analyse import ChartValues, DataChannel, MachineValues, analyse
 from roaml.model.values.arriving import arriving_by_type
 from roaml.model.values.describe import described, is_informative
 from roaml.model.values.domain import FALSE, TRUE, Origin, ValueSet
 from roaml.model.values.evaluate import compared, place_of
+from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule, close_names
 from roaml.rules.support.assignments import is_unchanged
 from roaml.text import Span, TextEdit
 
-_FROM_SENDERS = ("_msg.", "_event.data.")
-"""The beginnings of the places of data that machines send without being asked."""
+_FROM_SENDERS = {ProtocolPart.MESSAGE: "_msg.", ProtocolPart.EVENT: "_event.data."}
+"""What machines send without being asked -> the beginning of the places of its data."""
 
 MAX_NAMED = 3
 """The maximum number of variables whose values a message states."""
@@ -91,8 +93,10 @@ def _numbers_never_sent(context: MachineContext, reported: Collection[Span]) -> 
             continue
         for node in walk(tree):
             if isinstance(node, Binary) and node.operator.kind in (OperatorKind.EQUALITY, OperatorKind.ORDER):
-                for place, other in ((node.left, node.right), (node.right, node.left)):
-                    yield from _compared_with_sent(chart, node, place, other, tree)
+                for field, other in ((node.left, node.right), (node.right, node.left)):
+                    sent = _sent(context, value.place.handler, field)
+                    if sent is not None:
+                        yield from _compared_with_sent(chart, node, field, other, tree, sent)
 
 
 def _reached(values: ValueSet) -> ValueSet:
@@ -104,13 +108,29 @@ def _reached(values: ValueSet) -> ValueSet:
     return ValueSet(None, low, high, values.low_from, values.high_from)
 
 
-def _compared_with_sent(chart: ChartValues, node: Binary, field: Expr, constant: Expr, tree: Expr) -> Iterator[Finding]:
-    place, known, number = place_of(field), chart.at(field), chart.at(constant)
-    if place is None or not place.startswith(_FROM_SENDERS) or known is None or number is None or number.value is None:
+def _sent(context: MachineContext, handler: Handler | None, field: Expr) -> ValueSet | None:
+    """The values of a field of a message or event that machines send; `None` for other expressions."""
+    place = place_of(field)
+    prefix = _FROM_SENDERS.get(handler.trigger) if handler is not None and handler.trigger is not None else None
+    if handler is None or handler.trigger is None or prefix is None or place is None or not place.startswith(prefix):
+        return None
+    declaration = find_handle(context.machine, handler)
+    name = declaration.handle if declaration is not None else handler.event
+    fields = context.values.arriving.get(DataChannel(handler.trigger, name.value if name is not None else ""), {})
+    return fields.get(place.removeprefix(prefix))
+
+
+def _compared_with_sent(
+    chart: ChartValues, node: Binary, field: Expr, constant: Expr, tree: Expr, known: ValueSet
+) -> Iterator[Finding]:
+    number = chart.at(constant)
+    if number is None or number.value is None:
         return
+    if known.value is not None:
+        return  # machines that represent the environment often send one value only
     sides = (_reached(known), number) if field is node.left else (number, _reached(known))
     result = compared(node.operator, *sides)
-    what = f"the values that machines send here are {described(known)}"
+    what = f"the values that machines send are {described(known)}"
     if result == FALSE:
         yield RULE.at(node.span, f"this comparison is never true: {what}")
     elif result == TRUE and node.operator is not Operator.NOT_EQUAL:

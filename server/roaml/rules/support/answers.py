@@ -17,7 +17,7 @@ from roaml.language import HL_SCXML
 from roaml.model.behavior.duties import Possible, always, is_suspicious, untaken
 from roaml.model.behavior.explore import Behavior, BehaviorStep, FaultKind, explore
 from roaml.model.behavior.instants import Instants, is_readable
-from roaml.model.behavior.phases import Duty, DutyKind, Phase
+from roaml.model.behavior.phases import HALT, Duty, DutyKind, Phase
 from roaml.model.machine import Handler, If, Machine, RosSend, State, Statement, statements
 from roaml.model.obligations.losses import Loss, losses, waiting_behind
 from roaml.model.obligations.protocols import ClientProtocols
@@ -427,14 +427,19 @@ def unhandled_states(
 
 def running_without(behavior: Behavior, missing: ProtocolPart) -> Iterator[State]:
     """The state of a plugin that handles only halts or only ticks while the node is running, although every other state
-    that handles one of both handles both; none if there are several such states.
+    that handles one of both handles both; none if there are several such states. If it does not handle halts, no answer
+    ends it.
 
     Args:
         missing: what the state does not handle: `BT_TICK` or `BT_HALT`.
     """
     other = ProtocolPart.BT_HALT if missing is ProtocolPart.BT_TICK else ProtocolPart.BT_TICK
     handling = [state for state in behavior.chart.states if _handles(state, other)]
-    running = {c.state for c in behavior.configurations if c.tree is Phase.RUNNING}
+    waiting: Iterable[int] = range(behavior.size)
+    if missing is ProtocolPart.BT_HALT:
+        waiting = untaken(behavior, HALT)  # an answer may end the state before a halt arrives
+    configurations = (behavior.configurations[number] for number in waiting)
+    running = {configuration.state for configuration in configurations if configuration.tree is Phase.RUNNING}
     without = [state for state in handling if not _handles(state, missing)]
     if len(without) == 1 and len(handling) > 1 and without[0].id is not None and without[0].id.value in running:
         yield without[0]
