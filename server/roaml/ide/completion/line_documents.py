@@ -4,7 +4,6 @@ their values in `as2fm.toml`, types in ROS interface definitions, and names of n
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Iterator
 
@@ -15,6 +14,7 @@ from roaml.model.config_files import CONFIG_FILE
 from roaml.model.kinds import MOCKS_EXTENSION, FileKind
 from roaml.model.tree import nodes
 from roaml.project.analysis import Analysis
+from roaml.project.paths import name_of
 from roaml.project.settings import SETTING_NAMES, SEVERITIES, VALUES_OF_SETTINGS
 from roaml.roles import SymbolKind
 from roaml.rules import RULES
@@ -38,7 +38,7 @@ def in_lines(analysis: Analysis, path: str, offset: int) -> tuple[Span, list[Com
     line = text[text.rfind("\n", 0, offset) + 1 : offset]
     if _IN_SUPPRESSION.search(line):
         return _word(text, offset), list(_codes())
-    if os.path.basename(path) == CONFIG_FILE:
+    if name_of(path) == CONFIG_FILE:
         items = list(_in_configuration(text[:offset], line))
         return (_word(text, offset), items) if items else None
     if path.endswith(MOCKS_EXTENSION):
