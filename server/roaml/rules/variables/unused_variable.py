@@ -30,7 +30,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
             elif data.id.value in written:
                 message = f"the variable `{data.id.value}` is assigned, but its value is never read"
                 related = [Related(span, "assigned here") for span in written[data.id.value]]
-                yield RULE.at(data.id.span, message, severity=Severity.INFORMATION, related=related)
+                yield RULE.at(data.id.span, message, related=related)
 
 
 def _remove(context: MachineContext, data: Data) -> Fix:
