@@ -181,12 +181,12 @@ class RuleRunner:
             findings = [f for f in findings if _own_severity(f) is Severity.ERROR or (f.code, f.span) in always]
         return tuple(dict.fromkeys((*own, *findings)))
 
-    def _expanded(self, path: str, system: str | None, *, varied: bool) -> Expanded | None:
+    def _expanded(self, path: str, system: str | None, *, varied: bool) -> Expanded[Analysis] | None:
         if system is not None:
             return self.analysis.expanded(system, varied=varied)
         return self.analysis.expanded_file(path, varied=varied)
 
-    def _mapped_findings(self, expanded: Expanded, path: str, system: str | None) -> Iterator[Finding]:
+    def _mapped_findings(self, expanded: Expanded[Analysis], path: str, system: str | None) -> Iterator[Finding]:
         runner = RuleRunner(expanded.analysis, self.settings)
         for variant in expanded.expansion.paths(path):
             for finding in runner.findings(variant, system):
@@ -222,7 +222,7 @@ _UNKNOWN_NAMES = ("undeclared-variable", "property-condition", "invalid-rate", "
 """The codes of findings at a name that may be a misspelled parameter."""
 
 
-def _meant_parameter(expanded: Expanded, path: str, finding: Finding) -> Finding:
+def _meant_parameter(expanded: Expanded[Analysis], path: str, finding: Finding) -> Finding:
     """A finding about an unknown name with a suggestion, if the name is similar to that of a parameter."""
     if finding.code not in _UNKNOWN_NAMES or finding.fixes:
         return finding

@@ -7,24 +7,40 @@ Everything that needs plain HL-SCXML (rules, linking, translation) uses this ana
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
 from roaml.diagnostics import Finding, Fix, Related, Symbol
 from roaml.expansion import ExpandedText, SystemExpansion
 from roaml.facts import Facts
 from roaml.model.system import System
 from roaml.record import Record, replace
-from roaml.text import Location, Span, TextEdit
+from roaml.text import Location, SourceFile, Span, TextEdit
 
 if TYPE_CHECKING:
     from roaml.lower.library_tree import LibraryTree
-    from roaml.project.analysis import Analysis
 
 
-class Expanded(Record, frozen=True, eq=False):
+class ExpandedAnalysis(Protocol):
+    """What is read from the analysis of expanded texts."""
+
+    @property
+    def source(self) -> Callable[[str], SourceFile | None]: ...
+
+    @property
+    def system(self) -> Callable[[str], System | None]: ...
+
+    @property
+    def library_tree(self) -> Callable[[str], LibraryTree | None]: ...
+
+
+A = TypeVar("A", bound=ExpandedAnalysis)
+
+
+class Expanded(Record, Generic[A], frozen=True, eq=False):
     """An expanded system, or file without a system. `analysis` analyses the expanded texts."""
 
-    analysis: Analysis
+    analysis: A
     expansion: SystemExpansion
 
     def location(self, location: Location) -> Location:

@@ -144,7 +144,7 @@ class Analysis:
         return self._systems.memberships
 
 
-def _analysed(registry: Registry, overrides: Overrides, trees: TreeSettings, expanded: ExpandedFiles) -> Expanded:
-    reading = registry.reading(expanded.files.text)
-    inner = Analysis(expanded.files, reading, expanded.memo, expanded.systems, overrides, trees, expands=False)
-    return Expanded(inner, expanded.expansion)
+def _analysed(registry: Registry, overrides: Overrides, trees: TreeSettings, made: ExpandedFiles) -> Expanded[Analysis]:
+    reading = registry.reading(made.files.text)
+    inner = Analysis(made.files, reading, made.memo, made.systems, overrides, trees, expands=False)
+    return Expanded(inner, made.expansion)
