@@ -50,7 +50,7 @@ export function loneTrees(stage: Stage): void {
             await page.locator(".debug-toolbar").waitFor();
             await page.getByText("step 0, 0.000 s").first().waitFor();
             await page.keyboard.press("Shift+F5");
-            await page.locator(".debug-toolbar").waitFor({ state: "detached" });
+            await page.locator(".debug-toolbar").waitFor({ state: "hidden" });
         }
         await window.screenshot("tree-verified");
     });
@@ -69,7 +69,7 @@ export function loneTrees(stage: Stage): void {
             await window.running();
             const lens = page.locator(".codelens-decoration a", { hasText: /^Mocks$/ }).first();
             await lens.waitFor();
-            await window.repeat(() => lens.click(), page.locator('.tab[data-resource-name*="Behavior Tree"]'));
+            await window.repeat(() => lens.click(), page.locator(".tab", { hasText: "Behavior Tree" }));
             const view = await window.picture(".mock");
             const row = view.locator(".mock", { hasText: "CloseGripper" });
             await row.getByText("action, proposed:").waitFor();
