@@ -69,6 +69,7 @@ export function activate(context: vscode.ExtensionContext): void {
     server.onState((state) => {
         status.show(state);
     });
+    pictures.onVerified(() => void tests.refresh());
     const shown = { plain, jani, pictures, tests, counterexamples, debugging };
     registerCommands({ context, log, server, activation, status, documents, tasks, ...shown });
     context.subscriptions.push(vscode.tasks.registerTaskProvider(Tasks.type, tasks));

@@ -38,6 +38,9 @@ export class PicturePanels implements vscode.Disposable {
     private highlights: readonly Highlight[] = [];
     private activeNodes: readonly ActiveNode[] = [];
     private activeEdges: Activity["edges"] = [];
+    private readonly verified = new vscode.EventEmitter<undefined>();
+    /** A tree was verified after a change of its mocks. */
+    readonly onVerified = this.verified.event;
 
     constructor(
         private readonly context: vscode.ExtensionContext,
@@ -71,6 +74,9 @@ export class PicturePanels implements vscode.Disposable {
             panel.showActivity(this.activeNodes, this.activeEdges);
             panel.highlighted = this.highlights.find((highlight) => highlight.kind === kind);
             this.panels.set(kind, panel);
+            panel.onVerified = () => {
+                this.verified.fire(undefined);
+            };
             panel.onDispose(() => this.panels.delete(kind));
         }
         await panel.show(uri);
@@ -104,7 +110,7 @@ export class PicturePanels implements vscode.Disposable {
 
     dispose(): void {
         clearTimeout(this.timer);
-        for (const disposable of [...this.subscriptions, ...this.panels.values()]) disposable.dispose();
+        for (const disposable of [...this.subscriptions, this.verified, ...this.panels.values()]) disposable.dispose();
     }
 
     private refreshSoon(): void {
@@ -146,6 +152,7 @@ class PicturePanel implements vscode.Disposable {
     private mocks: Mocks | null = null;
     private isVerifying = false;
     private mustVerify = false;
+    onVerified: () => void = () => undefined;
     /** The ids of the nodes whose descendants are hidden, and the file that they belong to. */
     private readonly collapsed = new Set<string>();
     private collapsedIn = "";
@@ -257,6 +264,7 @@ class PicturePanel implements vscode.Disposable {
         } finally {
             this.isVerifying = false;
         }
+        this.onVerified();
         await this.refresh();
     }
 
