@@ -15,11 +15,6 @@ from typing import Any, TypeAlias
 from roaml.record import Record
 from roaml.text import LineIndex, Position, Span
 
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
-
 Path: TypeAlias = "tuple[str | int, ...]"
 """Keys of tables and indices of arrays, from the outermost to the innermost."""
 
@@ -44,6 +39,15 @@ class TomlError(ValueError):
 _WHERE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)\Z")
 
 
+def _parsed(text: str) -> dict[str, Any]:
+    # Most commands read no TOML.
+    if sys.version_info >= (3, 11):
+        import tomllib  # noqa: PLC0415
+    else:
+        import tomli as tomllib  # noqa: PLC0415
+    return tomllib.loads(text)
+
+
 def loads(text: str) -> dict[str, Any]:
     """The values of a document.
 
@@ -52,7 +56,7 @@ def loads(text: str) -> dict[str, Any]:
     """
     _check_keys(text)
     try:
-        return tomllib.loads(text)
+        return _parsed(text)
     except RecursionError:
         raise TomlError("Values are nested too deeply", Span(0, min(1, len(text)))) from None
     except ValueError as error:
@@ -245,5 +249,5 @@ def _decoded(key: str) -> str:
     if key[0] == "'":
         return key[1:-1]
     if key[0] == '"':
-        return str(next(iter(tomllib.loads(f"{key} = 0")))) if "\\" in key else key[1:-1]
+        return str(next(iter(_parsed(f"{key} = 0")))) if "\\" in key else key[1:-1]
     return key
