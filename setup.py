@@ -23,6 +23,7 @@ COMPILED = (
     "roaml.smc.states",
     "roaml.explicit.ample",
     "roaml.explicit.search",
+    "roaml.explicit.chain",
     "roaml.explicit.elimination",
     "roaml.explicit.solver",
 )

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 from bench import (
+    asked,
     check,
     debug,
     growth,
@@ -27,6 +28,7 @@ from bench import (
 from bench.report import Benchmark, machine, table
 
 BENCHMARKS: dict[str, Benchmark] = {
+    **asked.BENCHMARKS,
     **check.BENCHMARKS,
     **debug.BENCHMARKS,
     **growth.BENCHMARKS,

@@ -12,7 +12,11 @@ from roaml import api
 
 @pytest.mark.parametrize(
     ("tosses", "shown"),
-    [(0, "p: = 1 for all"), (1, "p: less than 1 by at most 1e-10 for all"), (3, "p: less than 1 for all")],
+    [
+        (0, "p: = 1 for all"),
+        (1, "p: less than 1 by at most 1e-10 for all"),
+        (3, "p: less than 1 by at most 2e-16 for all"),
+    ],
 )
 def test_a_failing_trace_excludes_1(tosses: int, shown: str) -> None:
     """A trace fails if each of the tosses fails."""

@@ -104,7 +104,7 @@ def test_wheel_checks_the_example(tmp_path: Path, c_code: Path, objects: Path, m
     assert said.startswith(str(installed))
 
 
-MODULES = ("ample", "counts", "elimination", "kernel", "packing", "search", "solver", "states")
+MODULES = ("ample", "chain", "counts", "elimination", "kernel", "packing", "search", "solver", "states")
 PLAIN = [f"{module}.{ending}" for module in MODULES for ending in ("pxd", "py")]
 CARRIED = sorted([*PLAIN, *(f"{module}.c" for module in MODULES)])
 VERIFY = "import sys; sys.path.insert(0, sys.argv.pop(1)); from as2fm_lsp.__main__ import main; sys.exit(main())"

@@ -29,6 +29,7 @@ MODULES = (
     "smc/states",
     "explicit/ample",
     "explicit/search",
+    "explicit/chain",
     "explicit/elimination",
     "explicit/solver",
 )

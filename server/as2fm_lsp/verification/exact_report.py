@@ -132,9 +132,18 @@ def estimate_row(computed: Computed) -> dict[str, Any]:
 def _below_one(exact: Exact) -> str:
     """The words for a minimum that would be shown as 1 although a trace fails; "" for all other values."""
     fails = exact.shortest(FALSE)
-    if fails is None or fails.compiled_property.question.is_reward or _number(exact.minimum) != "1":
+    if fails is None or fails.compiled_property.question.is_reward:
         return ""
-    return f"less than 1 by at most {1 - exact.minimum.lower:.1g}" if exact.minimum.lower < 1 else "less than 1"
+    is_shown_as_one = f"{exact.minimum.upper:.7g}" == "1" == f"{exact.least:.7g}"
+    if not is_shown_as_one:
+        return ""
+    return f"less than 1 by at most {_upwards(1 - exact.minimum.lower)}" if exact.minimum.lower < 1 else "less than 1"
+
+
+def _upwards(value: float) -> str:
+    """A small positive number with one digit, rounded up unless the difference is negligible."""
+    exponent = math.floor(math.log10(value))
+    return f"{math.ceil(value / 10**exponent - 1e-6) * 10**exponent:.1g}"
 
 
 def _number(bounds: Bounds) -> str:

@@ -7,18 +7,25 @@
 - The bounds are proved; they do not rely on the accuracy of the elimination. Let `g` be at least one more than its
   mean after any choice (an upper bound of the number of steps). If one step changes the values `x` by at most `r`,
   then `x - r g` does not decrease and `x + r g` does not increase; hence they enclose the solution.
+- If each state has one choice, and for policies of many states, the equations are solved by `chain`, which bounds the
+  error also where `g` is great.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
+from roaml.explicit.chain import Chain
 from roaml.smc.memory import flat
 
 MAXIMUM, MINIMUM = 0, 1
 INFINITE = float("inf")
 MAX_ROUNDS = 200
 """The maximum number of policies; in most cases there are fewer than ten."""
+MAX_SPARSE_ROUNDS = 12
+"""The maximum number of policies of a process with more than `MAX_DENSE_STATES` states."""
+MAX_DENSE_STATES = 2_500
+"""The maximum number of states whose equations are a dense matrix, which then occupies 50 MB."""
 MAX_STEPS = 1e12
 """The maximum mean number of steps until the end; beyond it, rounding errors would invalidate the proof."""
 IMPROVEMENT = 1e-12
@@ -44,6 +51,8 @@ class SmallProcess:
         leaves: the probability of the end, for each choice.
         gain: the immediate value of each choice.
         values: the solution, after `solve`.
+        relative_error: the greatest possible relative error of a value, in addition to the distance that `solve`
+            returns.
     """
 
     def __init__(self, size: int, choices: int, entries: int) -> None:
@@ -63,7 +72,9 @@ class SmallProcess:
         self.steps = flat("d", states + 1)
         self.sums = flat("d", states + 1)
         self.policy = flat("i", states + 1)
-        self.matrix = flat("d", states * states + 1)
+        self.matrix = flat("d", 1)
+        self.has_matrix = 0
+        self.relative_error = 0.0
         self.counts_steps = 0
 
     def add_entry(self, target: int, chance: float) -> None:
@@ -92,6 +103,8 @@ class SmallProcess:
             The greatest possible distance of a value from the solution; infinite if no bound was found, for example
             because the process need not end.
         """
+        if self.choices == self.states and self._solve_chain() != 0:
+            return 0.0
         self.counts_steps = 1
         if self._iterate(self.steps, MAXIMUM) == 0:
             return INFINITE
@@ -120,11 +133,41 @@ class SmallProcess:
             entries = max(entries, 2 + self.first_entry[choice + 1] - self.first_entry[choice])
         return 2.0 * longest * (residual + ROUNDING * entries * size)
 
+    def _solve_chain(self) -> int:
+        """Compute the values of a process in which each state has one choice; return 0 if that is not possible."""
+        for choice in range(self.choices):
+            self.policy[choice] = choice
+            if self.gain[choice] < 0.0:
+                return 0
+        self.counts_steps = 0
+        error = self._evaluate_sparsely(self.values)
+        if error < 0.0:
+            return 0
+        self.relative_error = error
+        return 1
+
+    def _evaluate_sparsely(self, values: Any) -> float:
+        """Compute the values of the policy as those of a chain; return their relative error, negative if that is not
+        possible."""
+        chain = Chain(self.states)
+        for state in range(self.states):
+            choice = self.policy[state]
+            chain.leaves[state] = self.leaves[choice]
+            chain.gain[state] = 1.0 if self.counts_steps != 0 else self.gain[choice]
+            if chain.gain[state] < 0.0:
+                return -1.0
+            for at in range(self.first_entry[choice], self.first_entry[choice + 1]):
+                chain.add(state, self.target[at], self.chance[at])
+        error = chain.solve()
+        for state in range(self.states):
+            values[state] = chain.values[state]
+        return error
+
     def _iterate(self, values: Any, mode: int) -> int:
         """Policy iteration; returns 0 if a policy does not end, or if there are too many."""
         for state in range(self.states):
             self.policy[state] = self.first_choice[state]
-        for _ in range(MAX_ROUNDS):
+        for _ in range(MAX_ROUNDS if self.states <= MAX_DENSE_STATES else MAX_SPARSE_ROUNDS):
             if self._evaluate(values) == 0:
                 return 0
             if self._improve(values, mode) == 0:
@@ -162,6 +205,11 @@ class SmallProcess:
     def _evaluate(self, values: Any) -> int:
         """Compute the values of the policy; return 0 if the process may continue for ever under it."""
         count = self.states
+        if count > MAX_DENSE_STATES:
+            return 1 if self._evaluate_sparsely(values) >= 0.0 else 0
+        if self.has_matrix == 0:
+            self.has_matrix = 1
+            self.matrix = flat("d", count * count + 1)
         for at in range(count * count):
             self.matrix[at] = 0.0
         for state in range(count):

@@ -51,11 +51,18 @@ def plain_ample() -> ModuleType:
 
 
 @cache
+def plain_chain() -> ModuleType:
+    """The module of sparse elimination as plain Python, even if it is compiled."""
+    return plain_module("plain_chain", Path(__file__).with_name("chain.py"))
+
+
+@cache
 def plain_solver() -> ModuleType:
-    """The module of the solver as plain Python, even if the solver is compiled. It uses `elimination` as plain Python,
-    too."""
+    """The module of the solver as plain Python, even if the solver is compiled. It uses `elimination` and `chain` as
+    plain Python, too."""
     module = plain_module("plain_solver", Path(__file__).with_name("solver.py"))
     elimination = plain_module("plain_elimination", Path(__file__).with_name("elimination.py"))
+    elimination.Chain = plain_chain().Chain  # type: ignore[attr-defined]
     module.SmallProcess = elimination.SmallProcess  # type: ignore[attr-defined]
     return module
 

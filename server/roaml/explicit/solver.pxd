@@ -9,7 +9,7 @@ ctypedef long long i64
 
 cdef int MAXIMUM, MINIMUM, MEAN, NOTHING, AS_JUDGED, NEGATED
 cdef int FALSE, TRUE, UNKNOWN, STATUS, LASTS, FAILS, HOLDS
-cdef double INFINITE, RELATIVE_TOLERANCE, MIN_TOLERANCE, ROUNDING
+cdef double MAX_RELATIVE_ERROR, INFINITE, RELATIVE_TOLERANCE, MIN_TOLERANCE, ROUNDING
 cdef int MAX_PROOF_STEPS, MAX_DIRECT_STATES
 cdef i64 MAX_WORK
 
@@ -36,6 +36,11 @@ cdef class Solver:
     cpdef tuple bounded(self, int target, i64 lower, i64 upper)
     @cython.locals(state=int, status=int)
     cpdef tuple probability(self, int target, int bits, int accepts)
+    @cython.locals(state=int, top=int, certain=int, chooses=int, at=i64, choices=int, size=int, count=int, k=int,
+                   to=int)
+    cpdef int certainty(self, int root) except? -2
+    @cython.locals(state=int)
+    cdef int _reaches_zero(self) noexcept
     @cython.locals(state=int, at=i64, size=int)
     cpdef tuple expected(self)
     cdef void _swap(self) noexcept
@@ -87,11 +92,13 @@ cdef class Solver:
                    distance=double, size=double, relative=double)
     cdef double _step(self, int first, int last, double[::1] values) noexcept
     @cython.locals(gap=double, i=int, state=int, tolerance=double, change=double, is_proven=int, own=int, value=double,
-                   k=int, limit=i64)
+                   k=int, limit=i64, may_solve=int)
     cdef void _iterate(self, int first, int last) except *
     @cython.locals(count=i64)
     cdef i64 _direct_work(self, int first, int last) noexcept
-    @cython.locals(process=SmallProcess, error=double, largest=double, i=int, state=int, value=double)
+    @cython.locals(i=int, state=int, size=int)
+    cdef int _is_chain(self, int first, int last) noexcept
+    @cython.locals(process=SmallProcess, error=double, largest=double, i=int, state=int, value=double, size=double)
     cdef int _solve_directly(self, int first, int last, double gap) except -1
     @cython.locals(own=int, states=int, choices=i64, i=int, state=int, process=SmallProcess, group=int, before=int)
     cdef SmallProcess _small_process(self, int first, int last)

@@ -5,7 +5,7 @@
 - Strongly connected components are solved in reverse topological order (Tarjan 1972, without recursion).
 - End components are the parts in which a scheduler can stay for ever (de Alfaro 1997). Each is merged into one state;
   after that, the equations have one solution.
-- A small component whose values converge slowly is solved by policy iteration (`elimination`).
+- A component whose values converge slowly is solved by policy iteration and elimination (`elimination`, `chain`).
 - Lower bounds are computed by value iteration, upper bounds by Park induction, as in optimistic value iteration
   (Hartmanns and Kaminski 2020): values that no step increases are upper bounds.
 """
@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from roaml.explicit.elimination import SmallProcess
+from roaml.explicit.elimination import MAX_DENSE_STATES, SmallProcess
 from roaml.smc.memory import flat
 
 MAXIMUM, MINIMUM, MEAN = 0, 1, 2
@@ -34,9 +34,10 @@ ROUNDING = 1e-15
 """The relative difference up to which two values are regarded as equal."""
 MAX_PROOF_STEPS = 100
 """The number of steps after which the attempt to prove upper bounds is given up."""
-MAX_DIRECT_STATES = 2_500
-"""The maximum number of states of a component that is solved directly if value iteration is slow; the matrix then
-occupies 50 MB."""
+MAX_DIRECT_STATES = 2_000_000
+"""The maximum number of states of a component that is solved directly if value iteration is slow."""
+MAX_RELATIVE_ERROR = 1e-3
+"""The maximum relative error of a direct solution. Beyond `RELATIVE_TOLERANCE`, the bounds are wider than intended."""
 MAX_WORK = 20_000_000_000
 """The maximum number of additions, unless `Solver.most_work` is changed."""
 
@@ -122,6 +123,57 @@ class Solver:
                 self._fix(state, 0.0)
         self._solve()
         return self.low[0], self.high[0]
+
+    def certainty(self, root: int) -> int:
+        """Whether the probability of a state is exactly 1, after `probability`: 1 if it is, 0 if it is less, and -1 if
+        that is not decided.
+
+        It is 1 if the probability is positive in all states that can be reached. For a minimum, or if nothing is to be
+        chosen, it is less than 1 if a state can be reached in which the probability is 0.
+        """
+        for state in range(self.states):
+            self.opened[state] = 0
+        self.opened[root] = 1
+        self.work_state[0] = root
+        top = 0
+        certain = 1
+        chooses = 0
+        while top >= 0:
+            state = self.work_state[top]
+            top -= 1
+            if self.fixed[state] != 0 and self.high[state] == 0.0:
+                if self.mode != MAXIMUM:
+                    return 0
+                certain = 0
+            elif self.low[state] == 0.0:
+                certain = 0
+            if self.fixed[state] != 0 and self.low[state] == 1.0:
+                continue
+            at = self.start[state]
+            choices = 0
+            while at < self.start[state + 1]:
+                size = self.code[at]
+                choices += 1
+                count = 1 if size >= 0 else -size
+                for k in range(count):
+                    to = size if size >= 0 else self.code[at + 3 + 2 * k]
+                    if self.opened[to] == 0:
+                        self.opened[to] = 1
+                        top += 1
+                        self.work_state[top] = to
+                at += 1 if size >= 0 else 3 - 2 * size
+            if choices > 1:
+                chooses = 1
+        if certain != 0:
+            return 1
+        return 0 if chooses == 0 and self._reaches_zero() != 0 else -1
+
+    def _reaches_zero(self) -> int:
+        """Whether a state that the last search of `certainty` has reached has the probability 0."""
+        for state in range(self.states):
+            if self.opened[state] != 0 and self.fixed[state] != 0 and self.high[state] == 0.0:
+                return 1
+        return 0
 
     def expected(self) -> tuple[float, float]:
         """Bounds of the expected reward until states with the status TRUE are reached."""
@@ -411,7 +463,7 @@ class Solver:
                 self.low[state] = self._best(state, self.low, state)
                 self.high[state] = self._best(state, self.high, state)
                 return
-        if self.mode == MEAN:
+        if self._is_chain(first, last) != 0:
             own = self.sets
             self.sets += 1
             for i in range(first, last):
@@ -728,14 +780,17 @@ class Solver:
         change = INFINITE
         is_proven = 0
         limit = self.most_work
+        may_solve = 0
         if last - first <= MAX_DIRECT_STATES:
+            may_solve = 1
             limit = min(limit, self.work + self.size + self._direct_work(first, last))
         while is_proven == 0:
             while change > tolerance and self.work < limit:
                 change = self._step(first, last, self.low)
-            if change > tolerance and limit < self.most_work:
+            if change > tolerance and may_solve != 0:
                 if self._solve_directly(first, last, gap) != 0:
                     return
+                may_solve = 0
                 limit = self.most_work
                 continue
             for i in range(first, last):
@@ -780,7 +835,23 @@ class Solver:
         """The number of additions of value iteration after which a component is solved directly; the direct solution
         takes about as long."""
         count = last - first
+        if count > MAX_DENSE_STATES or self._is_chain(first, last) != 0:
+            return 1000 * count
         return count * count * count // 16 + 1000 * count
+
+    def _is_chain(self, first: int, last: int) -> int:
+        """Whether nothing is to be chosen in the states of a component."""
+        if self.mode == MEAN:
+            return 1
+        for i in range(first, last):
+            state = self.order[i]
+            if self.group[state] != state:
+                return 0
+            if self.fixed[state] == 0:
+                size = self.code[self.start[state]]
+                if self.start[state] + (1 if size >= 0 else 3 - 2 * size) != self.start[state + 1]:
+                    return 0
+        return 1
 
     def _solve_directly(self, first: int, last: int, gap: float) -> int:
         """Compute bounds for the states of a component by policy iteration; return 0 if that is not possible."""
@@ -788,16 +859,21 @@ class Solver:
         if process is None:
             return 0
         error = process.solve(MINIMUM if self.mode == MINIMUM else MAXIMUM)
-        largest = max((abs(value) for value in process.values), default=0.0)
-        if error > RELATIVE_TOLERANCE * (largest if self.is_reward != 0 else 1.0):
+        largest = 1.0
+        if self.is_reward != 0:
+            largest = max((abs(value) for value in process.values), default=0.0)
+        if error > RELATIVE_TOLERANCE * largest or process.relative_error > MAX_RELATIVE_ERROR:
             return 0
+        if process.relative_error > RELATIVE_TOLERANCE:
+            self.has_ended_early = 1
         for i in range(first, last):
             state = self.order[i]
             if self.fixed[state] != 0:
                 continue
             value = process.values[self.index[self.group[state]]]
-            self.low[state] = value - error
-            self.high[state] = value + error + gap
+            size = value if value > 0.0 else -value
+            self.low[state] = value - error - process.relative_error * size
+            self.high[state] = value + error + process.relative_error * size + gap
             if self.is_signed == 0 and self.low[state] < 0.0:
                 self.low[state] = 0.0
             if self.is_reward == 0 and self.high[state] > 1.0:

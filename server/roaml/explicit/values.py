@@ -4,6 +4,7 @@ schedulers, and its value under uniform choices."""
 
 from __future__ import annotations
 
+import math
 from math import fsum
 from typing import Any
 
@@ -148,6 +149,10 @@ class _Question:
         if self.question.initial_states > 1:
             high_of = solver_.low if method == "accumulated" else solver_.high
             values = [(solver_.low[root], high_of[root]) for root in self.space.roots]
+        if method == "probability":
+            roots = self.space.roots if len(values) > 1 else [0]
+            certain = [solver_.certainty(root) for root in roots]
+            values = [_with_certainty(*bounds, state) for bounds, state in zip(values, certain, strict=True)]
         # Equal bounds can be in the wrong order after rounding.
         return [Bounds(min(low, high), max(low, high)) for low, high in values]
 
@@ -155,8 +160,24 @@ class _Question:
 _FOLDS = {InitialFold.MINIMUM: MINIMUM, InitialFold.MAXIMUM: MAXIMUM, InitialFold.MEAN: MEAN}
 
 
+_BELOW_ONE = math.nextafter(1.0, 0.0)
+"""The greatest floating-point number that is less than 1."""
+
+
+def _with_certainty(low: float, high: float, certain: int) -> tuple[float, float]:
+    """The bounds of a probability, if it is known whether it is 1 (`Solver.certainty`)."""
+    if certain == 1:
+        return 1.0, 1.0
+    return (min(low, _BELOW_ONE), min(high, _BELOW_ONE)) if certain == 0 else (low, high)
+
+
 def _complements(values: list[Bounds]) -> list[Bounds]:
-    return [Bounds(1 - bounds.upper, 1 - bounds.lower) for bounds in values]
+    """The bounds of the complements of probabilities. If a probability is positive, its complement is less than 1."""
+    return [Bounds(_complement(bounds.upper), _complement(bounds.lower)) for bounds in values]
+
+
+def _complement(value: float) -> float:
+    return min(1 - value, _BELOW_ONE) if value > 0 else 1.0
 
 
 def _folded(values: list[Bounds], mode: int) -> Bounds:

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Whether `verify`, without options, answers what each property asks: its minimum or maximum over all schedulers."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import conformance
+from bench.qvbs import FOLDER, STORM, expected, models
+from bench.report import Benchmark, Row, megabytes, seconds
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+REAL = conformance.ROOT.parent / "real"
+
+
+class Call(NamedTuple):
+    """A call of `as2fm-lsp verify`: CPU time in s, maximum memory in bytes, and the document that it wrote."""
+
+    processor: float
+    memory: int
+    document: Any
+
+
+def call(*arguments: str) -> Call:
+    """Call `as2fm-lsp verify --format json`."""
+    command = [sys.executable, "-m", "as2fm_lsp", "verify", "--format", "json", *arguments]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as process:
+        assert process.stdout is not None
+        output = process.stdout.read()
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+    document = json.loads(output) if output.startswith("{") else {"results": [], "errors": [{"message": output[:80]}]}
+    return Call(usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024, document)
+
+
+def answer(result: Any) -> str:
+    """The answer of a result: exact values, bounds of one side, or why there is none."""
+    if "error" in result:
+        return f"refused: {result['error']['message']}"
+    conditional = [
+        f"{under['assumption']}: {_extremes(under['exact'])}"
+        for under in result.get("conditional", ())
+        if "exact" in under
+    ]
+    if "exact" in result:
+        return "; ".join([_extremes(result["exact"]), *conditional])
+    known = [f"{side} {result[side]['value']:.6g}" for side in ("minimum", "maximum") if result.get(side)]
+    value = result.get("probability", result.get("expected_value"))
+    return "; ".join([f"NOT EXACT: {value} under uniform choices", *known, *conditional])
+
+
+def _extremes(exact: Any) -> str:
+    least, greatest = exact["least"], exact["greatest"]
+    value = f"{least}" if least == greatest else f"{least} to {greatest}"
+    return f"{value}, {exact['states']:,} states"
+
+
+def rows(label: str, name: str, *arguments: str, known: dict[str, float] | None = None) -> list[Row]:
+    """The answers for all properties of a target."""
+    cost = call(*arguments)
+    results = cost.document["results"]
+    how = f"{seconds(cost.processor)} CPU, {megabytes(cost.memory)} for all {len(results)} properties"
+    found = []
+    for result in results:
+        value = (known or {}).get(result["property"])
+        target = "" if value is None else f"{value:.9g}"
+        text = answer(result)
+        if value is not None and "exact" in result:
+            exact = result["exact"]
+            if min(abs(number - value) for number in (exact["least"], exact["greatest"])) > STORM * max(1, abs(value)):
+                target += ", NOT AS EXPECTED"
+        found.append(Row(label, text, target, f"{name}, {result['property']}; {how}"))
+    for error in cost.document.get("errors", ()):
+        found.append(Row(label, f"refused: {error['message']}", "", f"{name}; {how}"))
+    return found
+
+
+def qvbs() -> list[Row]:
+    """All properties of the models of the Quantitative Verification Benchmark Set."""
+    if not FOLDER.is_dir():
+        return []
+    known: dict[str, dict[str, float]] = {}
+    for row in expected():
+        known.setdefault(row["model"], {})[row["property"]] = row["asked"]
+    found = []
+    for name in models():
+        found += rows("QVBS, as asked", name, str(FOLDER / f"{name}.jani"), known=known.get(f"{name}.jani"))
+    return found
+
+
+def systems() -> list[Row]:
+    """All properties of the conformance systems, of a real project, and of the examples."""
+    found = []
+    for path in conformance.systems():
+        options = ("--ros-path", str(conformance.INTERFACES))
+        found += rows("systems, as asked", conformance.label(path), str(path), *options)
+    for path in [REAL / "uc3_mended" / "main.xml", *sorted(EXAMPLES.glob("*/main*.xml"))]:
+        if path.is_file():
+            found += rows("systems, as asked", f"{path.parent.name}/{path.name}", str(path))
+    return found
+
+
+BENCHMARKS: dict[str, Benchmark] = {"asked-qvbs": qvbs, "asked-systems": systems}
