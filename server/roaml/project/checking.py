@@ -230,7 +230,7 @@ def _meant_parameter(expanded: Expanded[Analysis], path: str, finding: Finding) 
     close = close_names(text, expanded.expansion.known_in(path), 1) if text.isidentifier() else ()
     if not close or close[0] == text:
         return finding
-    message = f"{finding.message.partition(';')[0]}; did you mean the parameter `{close[0]}`?"
+    message = f"there is no variable or parameter `{text}`; did you mean the parameter `{close[0]}`?"
     return replace(finding, message=message, fixes=tuple(replacements(finding.span, close)))
 
 
