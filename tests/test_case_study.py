@@ -24,7 +24,7 @@ def test_its_numbers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: py
     shutil.copytree(ROOT / "examples/case_study", tmp_path, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
     commands = _COMMAND.findall(TEXT)
-    assert len(commands) == 3
+    assert len(commands) == 5
     for command, printed in commands:
         assert run(shlex.split(command)) == 0
         assert without_time(capsys.readouterr().out) == without_time(printed)
