@@ -48,7 +48,7 @@ NOTHING = {
     "--stdin-filename --set --params-file",
     "debug": "",
     "experiment": "main --set --find --meets --assume-monotone --property --scheduler "
-    "--exhaustive --max-states --max-transitions "
+    "--exhaustive --slopes --max-states --max-transitions "
     "--confidence --epsilon --method --max-traces --max-steps --seed --jobs --dask --format --theme --unit "
     "--max-time --reaction-time --ros-path --tree-semantics",
     "draw": "file --machine --tree --graph --machines --theme --direction --mock --mocks --stdin-filename",

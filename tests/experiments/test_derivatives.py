@@ -91,3 +91,15 @@ def test_schedulers_that_differ() -> None:
     assert space is not None
     with pytest.raises(NoDerivativeError, match="schedulers have different values"):
         derivative(space, grid.settings[0], ["p"])
+
+
+def test_points_without_derivatives_state_the_reason() -> None:
+    options = ExperimentOptions(has_slopes=True)
+    grid = Grid(ParametricJani(model(gambler()), ""), sweeps_of(["p=0.2,0.3", "q=0,0.5"]), ("won",), options)
+    points = {point.setting: point for point in grid.points()}
+    inner = points[("p", "0.2"), ("q", "0.5")]
+    assert dict(inner.slopes)["p"] == pytest.approx(0, abs=1e-6)
+    assert len(inner.slopes) == 2
+    border = points[("p", "0.2"), ("q", "0")]
+    assert (border.slopes, border.value) == ((), pytest.approx(1))
+    assert "a probability is 0 or 1 here" in border.note

@@ -89,6 +89,8 @@ def parser() -> ArgumentParser:
     add("--scheduler", choices=("uniform",), help="the values under uniform choices, instead of the minimum or "
         "maximum over all schedulers")  # fmt: skip
     add("--exhaustive", "--exact", action="store_true", help="only exact values, however many states there are")
+    add("--slopes", action="store_true", help="also compute the derivatives of exact probabilities by the parameters "
+        "with several values, if only probabilities depend on these")  # fmt: skip
     add("--max-states", type=positive, metavar="N", help="explore at most N states for each point")
     add("--max-transitions", type=positive, metavar="N", help="without --exhaustive: explore at most N transitions for "
         "each point (6000000 divided by the number of points, but at least 200000)")  # fmt: skip
@@ -195,6 +197,7 @@ def computed_options(options: argparse.Namespace) -> ExperimentOptions:
         is_exhaustive=options.exhaustive,
         max_transitions=options.max_transitions,
         max_states=options.max_states,
+        has_slopes=options.slopes,
     )
 
 

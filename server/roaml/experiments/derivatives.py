@@ -37,14 +37,14 @@ class NoDerivativeError(ValueError):
     """Raised if there is no derivative, or if it cannot be computed. The message contains the reason."""
 
 
-class Derivative(Record, frozen=True):
+class ProbabilityDerivative(Record, frozen=True):
     """The value of a property for a setting, and its derivatives by parameters, in their order."""
 
     value: float
     slopes: tuple[tuple[str, float], ...]
 
 
-def derivative(space: ParametricSpace, setting: Setting, names: Sequence[str]) -> Derivative:
+def derivative(space: ParametricSpace, setting: Setting, names: Sequence[str]) -> ProbabilityDerivative:
     """The derivatives of a probability by parameters.
 
     Args:
@@ -82,7 +82,7 @@ def derivative(space: ParametricSpace, setting: Setting, names: Sequence[str]) -
         raise NoDerivativeError("schedulers with the same value have different derivatives")
     sign = -1.0 if is_negated else 1.0
     value = 1 - high if is_negated else high
-    return Derivative(value, tuple((name, sign * slope) for name, slope in zip(names, found, strict=True)))
+    return ProbabilityDerivative(value, tuple((name, sign * slope) for name, slope in zip(names, found, strict=True)))
 
 
 def _slopes(space: ParametricSpace, setting: Setting, name: str) -> dict[int, float]:

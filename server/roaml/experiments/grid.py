@@ -14,6 +14,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from typing import Protocol, TypeAlias
 
+from roaml.experiments.derivatives import NoDerivativeError, derivative
 from roaml.experiments.parametric import Chances, ParametricSpace, parametric_program, parametric_space
 from roaml.experiments.points import ExperimentPoint, estimated_point, exact_point, unknown_point
 from roaml.experiments.sweeps import Setting, Sweep, settings_of
@@ -65,6 +66,7 @@ class ExperimentOptions(Record, frozen=True):
         max_transitions: the limit on the transitions of each point; `None` for the limit of `verify`, divided by the
             number of points, but at least `small.LIMITS`.
         max_states: the limit on the states of each point; `None` for that of `verify`.
+        has_slopes: whether the derivatives by the parameters with several values are computed.
     """
 
     sampling: Options = Options()
@@ -73,6 +75,7 @@ class ExperimentOptions(Record, frozen=True):
     is_exhaustive: bool = False
     max_transitions: int | None = None
     max_states: int | None = None
+    has_slopes: bool = False
 
     def limits(self, points: int) -> StateLimits:
         """The limits of the search for one of several points."""
@@ -135,7 +138,8 @@ class Grid(Record, frozen=True):
         by_setting: dict[Setting, list[str]] = {}
         for setting, name in left:
             by_setting.setdefault(setting, []).append(name)
-        yield from _computed(self._tasks(by_setting), jobs, executor)
+        for point in _computed(self._tasks(by_setting), jobs, executor):
+            yield _without_slopes(point) if self.options.has_slopes else point
 
     def _tasks(self, names: Mapping[Setting, Sequence[str]]) -> list[_Task]:
         """The tasks for the properties of some settings."""
@@ -170,7 +174,7 @@ class Grid(Record, frozen=True):
     def _parametric(self, name: str, settings: Sequence[Setting]) -> ParametricSpace | None:
         """The states that the points of a property share; `None` if they share none."""
         options = self.options
-        if len(settings) < 3 or not (options.exact or options.is_exhaustive):
+        if len(settings) < (1 if options.has_slopes else 3) or not (options.exact or options.is_exhaustive):
             return None
         shared = self._chances()
         if shared is None:
@@ -200,7 +204,7 @@ def shared_points(
             continue
         is_answered = values.uniform is not None or not options.only_uniform or values.minimum == values.maximum
         if values.is_precise and is_answered:
-            yield exact_point(
+            point = exact_point(
                 setting,
                 question,
                 values,
@@ -208,6 +212,21 @@ def shared_points(
                 can_get_stuck=can_get_stuck,
                 only_uniform=options.only_uniform,
             )
+            yield _with_slopes(space, point) if options.has_slopes else point
+
+
+def _with_slopes(space: ParametricSpace, point: ExperimentPoint) -> ExperimentPoint:
+    """The point with the derivatives by the parameters with several values, or with the reason why there are none."""
+    try:
+        return replace(point, slopes=derivative(space, point.setting, space.names).slopes)
+    except NoDerivativeError as error:
+        return replace(point, note="; ".join(part for part in (point.note, f"no derivative: {error}") if part))
+
+
+def _without_slopes(point: ExperimentPoint) -> ExperimentPoint:
+    """A point that is computed alone, with the reason why it has no derivatives."""
+    reason = "no derivative: more than probabilities depends on the parameters, or a probability is 0 or 1 here"
+    return replace(point, note="; ".join(part for part in (point.note, reason) if part))
 
 
 class _Compiled(Record, frozen=True):

@@ -89,11 +89,13 @@ class ParametricSpace(Record, frozen=True):
     Attributes:
         chances: the probabilities of the model that depend on the parameters.
         numbers: index of a number of the search -> how it depends on these probabilities.
+        names: the parameters.
     """
 
     space: Space
     chances: Chances
     numbers: Mapping[int, Monomial]
+    names: tuple[str, ...]
 
     def is_at(self, setting: Setting) -> bool:
         """Replace the numbers of the explored states by those for a setting. Return whether they could be replaced:
@@ -138,7 +140,7 @@ def parametric_space(
         spaces.append(space)
         generic.append(values)
     numbers = _numbers(spaces, generic)
-    return None if numbers is None else ParametricSpace(spaces[0], chances, numbers)
+    return None if numbers is None else ParametricSpace(spaces[0], chances, numbers, tuple(ranges))
 
 
 def _space(target: VerificationTarget, name: str, limits: StateLimits) -> Space | None:

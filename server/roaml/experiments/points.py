@@ -45,6 +45,7 @@ class ExperimentPoint(Record, frozen=True):
         states: the number of states that were explored; 0 for an estimate.
         traces: the number of traces; 0 for an exact value.
         note: what limits the meaning of the value, or why there is none.
+        slopes: the derivatives by parameters, if they are requested and exist.
     """
 
     setting: Setting
@@ -60,6 +61,7 @@ class ExperimentPoint(Record, frozen=True):
     states: int = 0
     traces: int = 0
     note: str = ""
+    slopes: tuple[tuple[str, float], ...] = ()
 
     @property
     def has_value(self) -> bool:
@@ -77,6 +79,7 @@ class ExperimentPoint(Record, frozen=True):
             "states": self.states,
             "traces": self.traces,
             "note": self.note,
+            "slopes": dict(self.slopes),
         }
 
 
@@ -104,6 +107,7 @@ def point_from_json(data: dict[str, Any]) -> ExperimentPoint:
         int(data["states"]),
         int(data["traces"]),
         str(data["note"]),
+        tuple((str(name), float(slope)) for name, slope in data["slopes"].items()),
     )
 
 

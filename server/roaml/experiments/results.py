@@ -61,13 +61,15 @@ class ExperimentResult(Record, frozen=True):
                 **{column: getattr(point, column) for column in COLUMNS},
                 "kind": point.kind.value,
                 "schedulers": point.schedulers.value,
+                **{f"slope {name}": slope for name, slope in point.slopes},
             }
             for point in self.points
         ]
 
     def to_csv(self) -> str:
         """The rows as CSV (RFC 4180) with a header. A number that does not exist is an empty field."""
-        return csv_text([*(sweep.name for sweep in self.sweeps), "property", *COLUMNS], self.rows())
+        names = dict.fromkeys(f"slope {name}" for point in self.points for name, _ in point.slopes)
+        return csv_text([*(sweep.name for sweep in self.sweeps), "property", *COLUMNS, *names], self.rows())
 
     def as_json(self) -> dict[str, Any]:
         """The result as a value for JSON."""
@@ -239,7 +241,8 @@ def cell(point: ExperimentPoint) -> str:
     if not point.has_value:
         return "unknown"
     if point.kind is PointKind.EXACT:
-        return f"{point.value:.7g}"
+        slopes = "".join(f", d/d{name} {slope:.6g}" for name, slope in point.slopes)
+        return f"{point.value:.7g}{slopes}"
     return f"{point.value:.6g} in [{point.low:.6g}, {point.high:.6g}]"
 
 
