@@ -7,6 +7,7 @@ from __future__ import annotations
 import ast
 import builtins
 import inspect
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -180,3 +181,25 @@ def test_a_diagnostic_is_one_line() -> None:
     first, *_ = api.check([path], texts={path: text}).diagnostics
     assert str(first).startswith(f"{path}:8:18: error: there is no plugin `Chrge`")
     assert str(first).endswith("[unknown-plugin]")
+
+
+RAISING = ("api", "experiments", "explicit", "jani", "lower", "mocks", "smc", "verification")
+"""The packages whose messages are errors and results for users of the library."""
+
+
+def test_no_message_of_the_library_names_an_option_of_the_command_line() -> None:
+    """Those who use the library have no command line. Docstrings may name options."""
+    library, named = Path(api.__file__).parents[1], []
+    for path in (path for package in RAISING for path in (library / package).rglob("*.py")):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        for node in ast.walk(tree):
+            body = getattr(node, "body", None)
+            for part in body if isinstance(body, list) else ():
+                if isinstance(part, ast.Expr) and isinstance(part.value, ast.Constant):
+                    part.value.value = None  # a docstring
+        constants = [node.value for node in ast.walk(tree) if isinstance(node, ast.Constant)]
+        named += [(path.name, text) for text in constants if isinstance(text, str) and re.search(OPTION, text)]
+    assert named == []
+
+
+OPTION = r"(?<![\w<!-])--[a-z]{3,}"

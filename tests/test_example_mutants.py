@@ -102,3 +102,8 @@ def test_properties_notice_mistakes_in_the_tree(example: str, tmp_path: Path) ->
         if not _is_noticed(folder / "main.xml", EXPECTATIONS[example]):
             unnoticed.add(f"{example}: {description}")
     assert unnoticed == {description for description in AS_GOOD if description.startswith(f"{example}:")}
+
+
+def test_every_example_with_a_tree_is_tried() -> None:
+    """Except for `scaling`, which is a generated robot for measurements, and trees without a system."""
+    assert {path.parent.name for path in EXAMPLES.glob("*/tree.xml")} == EXPECTATIONS.keys()

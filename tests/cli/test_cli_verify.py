@@ -109,7 +109,7 @@ def test_undecided_traces_count_against_an_expectation(command: Command, tmp_pat
     options = ("--max-steps", 100, "--method", "fixed", "--max-traces", 1000)
     done = command("verify", name, *options, "--expect", "p >= 0.94")
     assert done.status == 1
-    assert " were cut after 100 steps: raise --max-steps" in done.out
+    assert " were cut after 100 steps: raise max-steps" in done.out
     assert command("verify", name, *options, "--expect", "p <= 0.94").status == 1
 
 
@@ -118,7 +118,7 @@ def test_a_value_is_unknown_if_no_trace_is_decided(command: Command, tmp_path: P
     goal = {"p": probability(op("F", op("=", "x", 50)))}
     name = write(tmp_path, document(automaton("a", "s", [counts]), variables=[variable("x")], properties=goal))
     done = command("verify", name, "--max-steps", 5, "--method", "adaptive")
-    assert "p: unknown: 0 of 100 traces passed, 100 were cut after 5 steps: raise --max-steps, or use" in done.out
+    assert "p: unknown: 0 of 100 traces passed, 100 were cut after 5 steps: raise max-steps, or" in done.out
 
 
 def test_junit(command: Command, tmp_path: Path) -> None:
@@ -593,9 +593,7 @@ def test_limits_of_an_exhaustive_verification(command: Command, tmp_path: Path) 
     name = write(tmp_path, coin())
     done = command("verify", name, "--exhaustive", "--max-states", 2, "--expect", "heads >= 0")
     assert done.status == 1
-    reason = (
-        "stopped at 2 states (--max-states); omit --exhaustive to estimate the value from traces with uniform choices"
-    )
+    reason = "stopped at 2 states (max-states); estimate the value from traces with uniform choices instead"
     assert done.out.startswith(f"heads: undecided: {reason}, ")
     assert "  expected ≥ 0: undecided\n" in done.out
     row = rows(command("verify", name, "--exhaustive", "--max-states", 2, "--format", "json").out)["heads"]
@@ -812,7 +810,7 @@ def test_deep_expressions(command: Command, tmp_path: Path) -> None:
         (("--seed", "-1"), "from 0"),
         (
             ("--method", "sprt"),
-            "but `heads` has no expectation; set one (--expect)",
+            "but `heads` has no expectation; set one",
         ),
         (("--explain", "story.doc"), "does not end in"),
         (("--dask", "tcp://127.0.0.1:9"), "there is no Dask scheduler"),

@@ -360,7 +360,7 @@ def test_constants(command: Command, tmp_path: Path) -> None:
     assert command("verify", name, *fraction, "--constant", "fixed=3", "--expect", "heads = 0.25").status == 0
     without = command("verify", name, *given[2:])
     assert without.status == 1
-    assert "the constant `N` has no value; give one with `--constant N=VALUE`" in without.err
+    assert "the constant `N` has no value; give it one as `N=VALUE`" in without.err
 
 
 @pytest.mark.parametrize(
@@ -504,7 +504,7 @@ def test_the_interval_of_a_sequential_test_holds_whenever_it_stops(command: Comm
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (("--method", "fixed"), "the method `fixed` needs a number of traces; use `--max-traces`"),
+        (("--method", "fixed"), "the method `fixed` needs a number of traces; set the maximum (max_traces)"),
         (("--epsilon", "1e-300"), "expected a number of at least 1e-09"),
         (("--epsilon", "1e-300", "--method", "okamoto"), "expected a number of at least 1e-09"),
         (("--epsilon", "nan"), "expected a number between 0 and 1"),

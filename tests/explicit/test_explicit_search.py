@@ -216,9 +216,9 @@ def test_real_numbers_are_states() -> None:
 
 
 def test_limits_end_a_search() -> None:
-    with pytest.raises(LimitError, match=r"^stopped at 1,000 states \(--max-states\)$"):
+    with pytest.raises(LimitError, match=r"^stopped at 1,000 states \(max-states\)$"):
         space_of(counting(5000), StateLimits(states=1000))
-    with pytest.raises(LimitError, match=r"^stopped at [\d,]+ states, which occupy 1 MiB \(--max-memory; half of"):
+    with pytest.raises(LimitError, match=r"^stopped at [\d,]+ states, which occupy 1 MiB \(max-memory; half of"):
         space_of(counting(5000), StateLimits(bytes=20_000))
 
 

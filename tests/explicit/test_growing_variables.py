@@ -117,9 +117,9 @@ def test_a_variable_of_a_node_is_named_before_the_messages_that_contain_it(tmp_p
     assert variables[0].text == f"`counter` of `Source` (0 to {variables[0].greatest:,})"
     assert variables[0].greatest > 20
     assert variables[1].text == "the time of the clock"
-    assert advice(variables) == "give variables a maximum in the model or shorten the time (--max-time)"
+    assert advice(variables) == "give variables a maximum in the model or shorten the time (max_time)"
     assert advice(variables[:1]) == "give variables a maximum in the model"
-    assert advice(variables[1:]) == "shorten the time (--max-time)"
+    assert advice(variables[1:]) == "shorten the time (max_time)"
 
 
 def test_the_memory_is_a_limit_as_well() -> None:

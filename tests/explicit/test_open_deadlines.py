@@ -61,5 +61,5 @@ def test_the_reason_and_the_remedy(tmp_path: Path) -> None:
         exact_values(checker, soon, StateLimits())
     assert str(error.value) == (
         "the time ends (`max_time`) before a deadline of the property; the probability of this is up to 1; "
-        "omit --exhaustive to estimate the value from traces with uniform choices"
+        "estimate the value from traces with uniform choices instead"
     )

@@ -182,7 +182,7 @@ def find_enough(
     swept = next((sweep for sweep in grid.sweeps if sweep.name == parameter), None)
     if swept is None or swept.numbers is None or len(swept.values) < 2:
         raise SweepError(
-            f"to find a value of `{parameter}`, give it a range of numbers, such as `--set {parameter}=20:200:20`"
+            f"to find a value of `{parameter}`, give it a range of numbers, such as `{parameter}=20:200:20`"
         )
     if len(grid.properties) != 1:
         raise SweepError("a value can be found for one property at a time; name it in the expectation")

@@ -106,7 +106,7 @@ class Enough(Record, frozen=True):
             fitting = ", ".join(value for value, verdict in self.verdicts if verdict is Met.YES)
             answer = f"{expectation} is met for {name} = {fitting}"
         if self.open:
-            answer += f"; open for {', '.join(self.open)}: use a smaller --epsilon or --exhaustive"
+            answer += f"; open for {', '.join(self.open)}: use a smaller epsilon, or explore all states"
         basis = (
             "assumed: the property only rises or only falls with the parameter"
             if self.is_assumed

@@ -332,7 +332,7 @@ def _exact(task: _Task, checker: ModelChecker, property_: CompiledProperty) -> E
     if exact is None:
         return None
     if options.only_uniform and exact.uniform is None:
-        reason = "choices were left out, so the value under uniform choices is not known; leave out --exhaustive"
+        reason = "choices were left out, so the value under uniform choices is not known; traces can estimate it"
         return unknown_point(task.setting, question.name, reason) if options.is_exhaustive else None
     return exact_point(
         task.setting,

@@ -145,7 +145,7 @@ def explore(
     """
     kernel_module, search_module = modules or _modules()
     if checker.initial_states > limits.states:
-        many = f"there are {checker.initial_states:,} initial states, more than {limits.states:,} (--max-states)"
+        many = f"there are {checker.initial_states:,} initial states, more than {limits.states:,} (max-states)"
         raise LimitError(many, checker.initial_states)
     compiled = checker.compiled(property_)
     goal = compiled.goal
@@ -198,10 +198,10 @@ def _searched(
                 problem = TraceProblem(0, *search.fault())
                 return Space(checker, property_, search, search.problem, problem, is_reduced)
             case codes.STATES:
-                raise _stopped(search, " (--max-states)")
+                raise _stopped(search, " (max-states)")
             case codes.MEMORY:
                 size = _size(search.memory_used())
-                raise _stopped(search, f", which occupy {size} (--max-memory; half of the free memory by default)")
+                raise _stopped(search, f", which occupy {size} (max-memory; half of the free memory by default)")
             case _:
                 raise _stopped(search, f": one of them has more than {limits.combinations:,} combinations of edges")
 

@@ -96,7 +96,7 @@ def _value(constant: Constant, text: str, known: dict[str, Value]) -> Expression
     if value is None:
         type_phrase = _TYPE_PHRASES.get(base) if isinstance(base, BasicType) else None
         if type_phrase is None:
-            raise ValueError(f"the constant `{constant.name}` has a type whose values `--constant` does not support")
+            raise ValueError(f"the constant `{constant.name}` has a type whose values cannot be given")
         raise ValueError(f"the constant `{constant.name}` must be {type_phrase}, not `{text}`")
     if isinstance(type_, BoundedType):
         for end, is_lower in ((type_.lower, True), (type_.upper, False)):

@@ -131,7 +131,7 @@ def _constants(model: Model, functions: Mapping[str, Function]) -> dict[str, Val
     known: dict[str, Value] = {}
     for constant in model.constants:
         if constant.value is None:
-            hint = f"give one with `--constant {constant.name}=VALUE`"
+            hint = f"give it one as `{constant.name}=VALUE`"
             raise FaultError(f"the constant `{constant.name}` has no value; {hint}", constant.origin)
         known[constant.name] = _evaluated(constant.value, known, functions)
     return known

@@ -238,16 +238,16 @@ class ModelChecker:
         """
         if property_.question.is_reward:
             raise FaultError(
-                "schedulers can be sampled only for probabilities, not for rewards; use `--scheduler uniform`",
+                "schedulers can be sampled only for probabilities, not for rewards; use uniform choices",
                 property_.property.origin,
             )
         if property_.question.is_conditional:
-            message = "schedulers cannot be sampled for a probability given assumptions; use `--scheduler uniform`"
+            message = "schedulers cannot be sampled for a probability given assumptions; use uniform choices"
             raise FaultError(message, property_.property.origin)
         if property_.question.asks_for_extreme_state:
             message = (
-                "schedulers cannot be sampled for the minimum or maximum over several initial states; use "
-                "`--exhaustive`, or the filter `avg`"
+                "schedulers cannot be sampled for the minimum or maximum over several initial states; explore "
+                "all states, or use the filter `avg`"
             )
             raise FaultError(message, property_.property.origin)
         try:

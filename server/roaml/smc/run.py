@@ -93,7 +93,7 @@ class Options(Record, frozen=True):
                 f"there is no method `{self.method}`; the methods are {', '.join(map(str, EstimationMethod))}"
             )
         if self.method is EstimationMethod.FIXED and self.max_traces is None:
-            raise ValueError("the method `fixed` needs a number of traces; use `--max-traces`")
+            raise ValueError("the method `fixed` needs a number of traces; set the maximum (max_traces)")
 
 
 class Answer(Record, frozen=True):

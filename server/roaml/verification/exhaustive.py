@@ -34,7 +34,7 @@ MAX_STATES_AT_FIRST = 20_000
 MAX_STATES_FOR_UNIFORM = 1_000_000
 """The maximum number of states that are explored without leaving anything out, because the minimum and the maximum
 differ and do not determine the value under uniform choices."""
-_ESTIMATE = "omit --exhaustive to estimate the value from traces with uniform choices"
+_ESTIMATE = "estimate the value from traces with uniform choices instead"
 """The remedy if a limit ends the exploration, or if only traces can answer the property."""
 
 

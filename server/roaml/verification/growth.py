@@ -66,7 +66,7 @@ def advice(variables: Sequence[GrowingVariable]) -> str:
     if any(not variable.is_time for variable in variables):
         remedies.append("give variables a maximum in the model")
     if any(variable.is_time for variable in variables):
-        remedies.append("shorten the time (--max-time)")
+        remedies.append("shorten the time (max_time)")
     return " or ".join(remedies)
 
 

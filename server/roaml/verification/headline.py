@@ -145,7 +145,7 @@ def _undecided(answer: Answer) -> str:
     if cut:
         were = "was" if cut == 1 else "were"
         steps = f"{answer.options.max_steps:,} steps"
-        parts.append(f"{cut:,} {were} cut after {steps}: raise --max-steps, or use --exhaustive")
+        parts.append(f"{cut:,} {were} cut after {steps}: raise max-steps, or explore all states")
     if open_:
         were = "was" if open_ == 1 else "were"
         parts.append(f"{open_:,} {were} too short, because the time ended before a deadline: raise max_time")

@@ -446,7 +446,7 @@ class Verifier(Record, frozen=True):
         if question.threshold is None:
             raise NoThresholdError(
                 f"a sequential test compares a probability with a number, but `{question.name}` has no expectation; "
-                "set one (--expect), or use another method"
+                "set one, or use another method"
             )
 
     def interrupted(
