@@ -186,7 +186,7 @@ def test_points_without_a_value_state_the_reason(tmp_path: Path) -> None:
     assert all(point.note for point in result.points)
     small = ExperimentOptions(is_exhaustive=True, max_states=2)
     result = api.experiment(path, ["p=0.5", "q=0", "tries=2,3"], ["most"], small)
-    assert all("--max-states" in point.note for point in result.points)
+    assert all("max-states" in point.note for point in result.points)
 
 
 @pytest.mark.parametrize(
