@@ -134,6 +134,8 @@ export interface ActiveNode {
     readonly look: string;
 }
 
+type SetMock = Extract<FromView, { type: "setMock" }>;
+
 class PicturePanel implements vscode.Disposable {
     private readonly panel: vscode.WebviewPanel;
     uri: vscode.Uri | undefined;
@@ -152,6 +154,9 @@ class PicturePanel implements vscode.Disposable {
     private mocks: Mocks | null = null;
     private isVerifying = false;
     private mustVerify = false;
+    /** The changes of mocks that are not made yet, by their patterns. */
+    private readonly changes = new Map<string, SetMock>();
+    private isChanging = false;
     onVerified: () => void = () => undefined;
     /** The ids of the nodes whose descendants are hidden, and the file that they belong to. */
     private readonly collapsed = new Set<string>();
@@ -226,8 +231,26 @@ class PicturePanel implements vscode.Disposable {
         this.post({ type: "mocks", mocks: this.mocks, busy: this.isVerifying, opens });
     }
 
-    /** Change a mock in the file beside the tree, and verify the tree again. */
-    private async setMock(message: Extract<FromView, { type: "setMock" }>): Promise<void> {
+    /**
+     * Change a mock in the file beside the tree, and verify the tree again. Changes are made one after the other, because
+     * the places of an edit are those of the text before it; of several changes of a mock, only the last one is made.
+     */
+    private async setMock(message: SetMock): Promise<void> {
+        this.changes.set(message.pattern, message);
+        if (this.isChanging) return;
+        this.isChanging = true;
+        try {
+            for (let [next] = this.changes.values(); next; [next] = this.changes.values()) {
+                this.changes.delete(next.pattern);
+                await this.changeMock(next);
+            }
+        } finally {
+            this.isChanging = false;
+        }
+        await this.verify();
+    }
+
+    private async changeMock(message: SetMock): Promise<void> {
         const { client } = this.server;
         if (!this.uri || !client || !isTrusted()) return;
         const { pattern, probability, milliseconds } = message;
@@ -242,7 +265,6 @@ class PicturePanel implements vscode.Disposable {
         if (!(await vscode.workspace.applyEdit(edit))) return;
         // The debugger and the command line read the file from the disk.
         await (await vscode.workspace.openTextDocument(uri)).save();
-        await this.verify();
     }
 
     /** Verify the tree. A change of a mock during the verification starts another one after it. */
