@@ -23,7 +23,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 message = (
                     f"no path of transitions leads from the initial state to `{state.id.value}`, so it is never entered"
                 )
-                fixes = _remove(context, state, sources.get(state.id.value, []))
+                # Where the machine is complete, a transition probably has the wrong target.
+                fixes = _remove(context, state, sources.get(state.id.value, [])) if severity is not None else ()
                 yield RULE.at(state.id.span, message, *fixes, severity=severity, tags=(Tag.UNNECESSARY,))
 
 
