@@ -55,6 +55,7 @@ _CHECKED_BEFORE = frozenset(
     (
         *("unanswered-goal", "unanswered-halt", "unanswered-request", "unanswered-tick", "silent-client"),
         *("discarded-answer", "silent-server", "undeclared-handle", "undeclared-variable", "unreachable-state"),
+        *("inexact-max-time", "self-assignment", "shadowed-transition"),
     )
 )
 """The rules whose fixes depend on other paths or other parts of the machine: a fix is offered if it adds no finding."""
