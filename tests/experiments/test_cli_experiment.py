@@ -98,7 +98,7 @@ def test_kept_points(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     data = json.loads(kept.read_text(encoding="utf-8"))
     assert len(data["points"]) == 6
     (first_point,) = (p for p in data["points"] if p["setting"] == {"p": "0.1", "q": "0", "tries": "2"})
-    first_point["value"] = 0.5  # so that the second run shows what it has read
+    first_point |= dict.fromkeys(("value", "low", "high"), 0.5)  # so that the second run shows what it has read
     kept.write_text(json.dumps(data), encoding="utf-8")
     second = called(capsys, model, *GRID, "--resume", str(kept))
     assert first[1].replace("0.19", "0.5 ", 1).split() == second[1].split()

@@ -9,6 +9,7 @@ from typing import Any
 from roaml.smc.goal import InitialFold
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.statistics import Bounds
+from roaml.verification.number_text import exact_number
 from roaml.verification.results import EXACT_WIDTH, Computed, Exact, Proof, is_same
 
 EXACT = "exact"
@@ -153,8 +154,7 @@ def _number(bounds: Bounds) -> str:
         return "∞" if bounds.lower > 0 else "-∞"
     if bounds.upper - bounds.lower > EXACT_WIDTH * max(1.0, abs(bounds.lower)):
         return f"[{bounds.lower:.7g}, {'∞' if math.isinf(bounds.upper) else f'{bounds.upper:.7g}'}]"
-    middle = (bounds.lower + bounds.upper) / 2
-    return f"{next((end for end in (0.0, 1.0) if bounds.lower <= end <= bounds.upper), middle):.7g}"
+    return exact_number(bounds.lower, bounds.upper)
 
 
 def _finite(value: float) -> float | str | None:

@@ -16,7 +16,8 @@ from roaml.smc.choices import Choices
 from roaml.smc.run import Answer, ratio_of
 from roaml.verification.expectations import NO_EXPECTATION
 from roaml.verification.growth import GrowingVariable, advice
-from roaml.verification.headline import NO_TRACES, estimate_text, headline, number
+from roaml.verification.headline import NO_TRACES, estimate_text, headline
+from roaml.verification.number_text import number
 from roaml.verification.refusal import Refusal
 from roaml.verification.results import (
     Computed,

@@ -9,6 +9,7 @@ from typing import Any
 
 from roaml.smc.choices import Choices, Extreme, ExtremeMethod
 from roaml.smc.goal import InitialFold, Question
+from roaml.verification.number_text import number
 from roaml.verification.schedulers import extreme_of, interval_text, is_minimised
 
 
@@ -42,10 +43,10 @@ def _initial_states_remark(question: Question, choices: Choices | None) -> str:
         InitialFold.MAXIMUM: "maximum over the initial states",
     }[question.fold]
     known = None if choices is None else choices.minimum if is_minimised(question) else choices.maximum
-    number = f"{question.initial_states:,}"
-    head = f"warning: this is the mean over {number} initial states under uniform choices, and the property asks for"
+    count = f"{question.initial_states:,}"
+    head = f"warning: this is the mean over {count} initial states under uniform choices, and the property asks for"
     if known is not None and known.is_exact:
-        return f"{head} the {asked}, which is {known.value:.6g} (exact, from all states)"
+        return f"{head} the {asked}, which is {number(known.value)} (exact, from all states)"
     return f"{head} the {asked}, which may differ"
 
 
@@ -119,7 +120,7 @@ def _row(extreme: Extreme) -> dict[str, Any]:
 
 def _reached(extreme: Extreme) -> str:
     if extreme.method is ExtremeMethod.EXPLORATION:
-        return f"{extreme.value:.6g} (exact, from all states)"
+        return f"{number(extreme.value)} (exact, from all states)"
     who = extreme.scheduler if extreme.method is ExtremeMethod.SAMPLING else "uniform choices"
     return f"{interval_text(extreme)} (by {who})"
 

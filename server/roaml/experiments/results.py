@@ -13,6 +13,7 @@ from roaml.experiments.points import ExperimentPoint, PointKind, Schedulers
 from roaml.experiments.sweeps import Sweep
 from roaml.figures.plot import HeatMap, LinePlot, PlotAxis, PlotPoint, Series, plot_page, plot_svg
 from roaml.record import Record
+from roaml.verification.number_text import exact_number, number
 
 MAX_LINES = 6
 """The maximum number of lines of a plot. With more values of the second parameter, the plot is a heat map."""
@@ -242,8 +243,8 @@ def cell(point: ExperimentPoint) -> str:
         return "unknown"
     if point.kind is PointKind.EXACT:
         slopes = "".join(f", d/d{name} {slope:.6g}" for name, slope in point.slopes)
-        return f"{point.value:.7g}{slopes}"
-    return f"{point.value:.6g} in [{point.low:.6g}, {point.high:.6g}]"
+        return f"{exact_number(point.low, point.high)}{slopes}"
+    return f"{number(point.value)} in [{number(point.low)}, {number(point.high)}]"
 
 
 def csv_text(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> str:

@@ -24,6 +24,7 @@ from roaml.smc.program import AT_END, FALSE, TRUE
 from roaml.smc.statistics import Bounds
 from roaml.verification.expectations import Expectation, Verdict
 from roaml.verification.growth import GrowingVariable, growing_variables
+from roaml.verification.number_text import number
 from roaml.verification.results import Exact, Proof, ShortestTrace, is_same
 from roaml.verification.schedulers import is_minimised
 
@@ -184,7 +185,7 @@ def check_exactly(
     threshold = expectation.threshold
     bounds, value = exact.asked_value(question, only_uniform=only_uniform)
     extreme = "least" if is_minimised(question) else "greatest"
-    missed_by = "" if only_uniform else f"by the {extreme} value, which is {value:.6g}"
+    missed_by = "" if only_uniform else f"by the {extreme} value, which is {number(value)}"
     is_strict = threshold.relation in (BinaryOperator.LESS, BinaryOperator.GREATER)
 
     def is_met(number: float) -> bool:

@@ -20,6 +20,7 @@ from roaml.smc.choices import Choices
 from roaml.smc.end import End
 from roaml.smc.goal import Question
 from roaml.smc.run import Answer
+from roaml.verification.number_text import number
 from roaml.verification.results import Computed, CutShort, Estimated, Refused, Result, Sampled, Undecided
 from roaml.verification.schedulers import extreme_of, is_minimised
 
@@ -88,12 +89,16 @@ def claim_for_all(question: Question, choices: Choices | None) -> str:
     uniform choices; otherwise ""."""
     if question.asks_for_extreme_state:
         known = None if choices is None else choices.minimum if is_minimised(question) else choices.maximum
-        return f"{extreme_of(question)} {known.value:.6g}, exact" if known is not None and known.is_exact else NO_ANSWER
+        return (
+            f"{extreme_of(question)} {number(known.value)}, exact"
+            if known is not None and known.is_exact
+            else NO_ANSWER
+        )
     if choices is None or choices.agreement:
         return ""
     known = choices.minimum if is_minimised(question) else choices.maximum
     if known is not None and known.is_exact:
-        return f"{extreme_of(question)} {known.value:.6g}, exact"
+        return f"{extreme_of(question)} {number(known.value)}, exact"
     if known is None or question.has_opposite_extremes or question.is_reward:
         return NO_ANSWER
     if is_minimised(question):
@@ -166,13 +171,6 @@ def _short(answer: Answer) -> str:
 def _outwards(value: float, rounding: Callable[[float], int]) -> float:
     """A bound with three digits after the point, rounded so that the statement remains true."""
     return rounding(round(value * 1000, 9)) / 1000
-
-
-def number(value: float) -> str:
-    """A number with six significant digits."""
-    if math.isinf(value):
-        return "∞" if value > 0 else "-∞"
-    return f"{value:.6g}"
 
 
 def _rounded(value: float, digits: int = 3) -> str:

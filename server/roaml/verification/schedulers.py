@@ -15,6 +15,7 @@ from roaml.smc.choices import Choices, Extreme, ExtremeMethod
 from roaml.smc.goal import Question
 from roaml.smc.run import Answer
 from roaml.verification.expectations import Verdict
+from roaml.verification.number_text import number
 
 _SLACK = 1e-6
 
@@ -65,7 +66,7 @@ def _missed_by(question: Question, extreme: Extreme | None) -> str:
     if extreme is None or extreme.method is ExtremeMethod.UNIFORM:
         return "under uniform choices"
     if extreme.is_exact:
-        return f"by the {extreme_of(question)} over all schedulers, which is {extreme.value:.6g}"
+        return f"by the {extreme_of(question)} over all schedulers, which is {number(extreme.value)}"
     return f"under {extreme.scheduler}: {interval_text(extreme)}"
 
 
@@ -86,4 +87,4 @@ def extreme_of(question: Question) -> str:
 
 def interval_text(extreme: Extreme) -> str:
     """The value of an extreme, with its bounds."""
-    return f"{extreme.value:.6g} in [{extreme.bounds.lower:.6g}, {extreme.bounds.upper:.6g}]"
+    return f"{number(extreme.value)} in [{number(extreme.bounds.lower)}, {number(extreme.bounds.upper)}]"

@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Values of properties as text. A value is shown as 1 only if it is 1, because 1 means that a property certainly
+holds."""
+
+from __future__ import annotations
+
+import math
+
+
+def number(value: float, digits: int = 6) -> str:
+    """A value with `digits` significant digits. A value that is not 1, but would be rounded to 1, is written as a
+    difference, such as `1 - 2.3e-08`."""
+    if math.isinf(value):
+        return "∞" if value > 0 else "-∞"
+    text = f"{value:.{digits}g}"
+    return f"1 {'-' if value < 1 else '+'} {abs(1 - value):.2g}" if text == "1" and value != 1 else text
+
+
+def exact_number(lower: float, upper: float, digits: int = 7) -> str:
+    """A value that is known to be between two bounds that are close to each other. 0 and 1 are preferred to other
+    numbers between the bounds."""
+    return number(next((end for end in (0.0, 1.0) if lower <= end <= upper), (lower + upper) / 2), digits)

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Values of properties as text."""
+
+import math
+
+import pytest
+
+from roaml.verification.number_text import exact_number, number
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (1.0, "1"),
+        (0.0, "0"),
+        (0.5, "0.5"),
+        (0.99999977, "1 - 2.3e-07"),
+        (0.999999, "0.999999"),
+        (1.00000023, "1 + 2.3e-07"),
+        (2.3e-8, "2.3e-08"),
+        (math.inf, "∞"),
+    ],
+)
+def test_only_1_is_shown_as_1(value: float, text: str) -> None:
+    assert number(value) == text
+
+
+def test_a_value_that_may_be_1_is_shown_as_1() -> None:
+    assert exact_number(1 - 1e-9, 1.0) == "1"
+    assert exact_number(1 - 2e-8, 1 - 1e-8) == "1 - 1.5e-08"
+    assert exact_number(0.0, 1e-9) == "0"
