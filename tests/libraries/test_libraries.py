@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from roaml.language import BEHAVIOR_TREE
 from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, library
+from roaml.libraries.version import first_patch
 from roaml.roles import Direction, NodeKind
 
 CPP = library(BEHAVIORTREE_CPP)
@@ -22,7 +23,9 @@ REGISTERED = (
 
 
 def test_all_registered_nodes_are_known() -> None:
-    assert {node.name for node in CPP.nodes.values() if not node.until} == set(REGISTERED)
+    newest = first_patch(CPP.version)
+    newer = {node.name for node in CPP.nodes.values() if node.since and first_patch(node.since) > newest}
+    assert {node.name for node in CPP.nodes.values() if not node.until} - newer == set(REGISTERED)
 
 
 def test_nav2_has_its_nodes() -> None:

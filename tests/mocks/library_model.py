@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A second implementation of BehaviorTree.CPP, 4.10 and older versions, and of Nav2, as classes that call each other.
 
-It is written from facts about the libraries, independently of the programs in `roaml.lower.programs`. Leaves take their
-outcomes from lists, so a run can be repeated with the random outcomes of another run.
+It is written from facts about the libraries, independently of the programs in `roaml.libraries.programs`. Leaves take
+their outcomes from lists, so a run can be repeated with the random outcomes of another run.
 """
 
 from __future__ import annotations
@@ -405,7 +405,7 @@ class TryCatch(Node):
         else:
             result = SKIP if self.skipped == len(tried) else S
         self.reset_children()
-        self.index, self.catching = 0, False
+        self.index, self.catching, self.skipped = 0, False, 0
         return result
 
     def halt(self) -> None:
@@ -421,6 +421,10 @@ class TryCatch(Node):
 
 
 class Decorator(Node):
+    """A node with one child. `PORTS`: port -> values in random trees, for a class that `random_trees` does not list."""
+
+    PORTS: ClassVar[dict[str, tuple[str, ...]]] = {}
+
     def execute(self) -> str:
         answer = super().execute()
         if self.child.status in ENDED:

@@ -15,6 +15,8 @@ import library_model
 
 import kept_strategies as st
 
+from roaml.libraries import library_node
+
 Table: TypeAlias = Mapping[str, Mapping[str, Sequence[str]]]
 """Types of nodes, with the ports of each and what they may contain."""
 T = TypeVar("T")
@@ -70,7 +72,7 @@ NAV2_CONTROLS: Table = {
     "NonblockingSequence": {},
     "PersistentSequence": {"current_child_idx": ("{k}",)},
 }
-DECORATORS: Table = {
+DECORATORS: dict[str, Mapping[str, Sequence[str]]] = {
     "Inverter": {},
     "ForceSuccess": {},
     "ForceFailure": {},
@@ -115,6 +117,12 @@ WORLD_DECORATORS: Table = {
     "PathLongerOnApproach": {},
 }
 """Nodes that ask about the world, where the same event occurs always or never."""
+DECORATORS |= {
+    name: kind.PORTS
+    for name, kind in vars(library_model).items()
+    if isinstance(kind, type) and issubclass(kind, library_model.Decorator) and library_node(name) is not None
+    if name not in {**DECORATORS, **TIMED, **NAV2_DECORATORS, **WORLD_DECORATORS}
+}
 COUNTS = {
     "IfThenElse": (2, 3),
     "WhileDoElse": (2, 3),

@@ -11,8 +11,8 @@ from tree_comparison import difference_with_mocks
 
 from examples import TIMES, examples
 from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, library
+from roaml.libraries.programs.assembly import programs
 from roaml.libraries.version import NEWEST_VERSION, Version, read_version
-from roaml.lower.programs.assembly import programs
 
 TICKS = 14
 DECORATED = WITH_WORLD.decorators

@@ -18,14 +18,18 @@ from random_trees import CONTROLS, DECORATORS, ENTRIES, LEAVES, Drawn, Kinds, Ta
 from translated_trees import Observed, observe, with_mocks
 
 from examples import TIMES, examples
-from roaml.libraries.version import Version
+from roaml.libraries import BEHAVIORTREE_CPP, library
+from roaml.libraries.version import Version, first_patch
 
 TICKS = 12
 JUDGE = Version(4, 8, 2)
 """The version of BehaviorTree.CPP that `behaviortreepy` binds."""
-NOT_RANDOM = ("TryCatch", *(f"Switch{count}" for count in range(2, 7)))
-"""`TryCatch`, which 4.8 does not have, and nodes that are compared in trees of their own: the library refuses switches
-on the integer entries of random trees, because `variable` is a text."""
+NOT_RANDOM = (
+    *(node.name for node in library(BEHAVIORTREE_CPP).nodes.values() if node.since and first_patch(node.since) > JUDGE),
+    *(f"Switch{count}" for count in range(2, 7)),
+)
+"""The nodes that 4.8 does not have, and nodes that are compared in trees of their own: the library refuses switches on
+the integer entries of random trees, because `variable` is a text."""
 
 
 def switch(variable: str, cases: tuple[str, ...], *children: Drawn) -> Drawn:

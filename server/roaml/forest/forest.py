@@ -14,7 +14,7 @@ from roaml.forest.cpp_types import normal
 from roaml.forest.ports import ports_of
 from roaml.forest.settings import TreeSettings
 from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Absent, Library, Node, Port, library
-from roaml.libraries.version import Version
+from roaml.libraries.version import first_patch
 from roaml.model.kinds import PROJECT_EXTENSION
 from roaml.model.tree import NodeModel, Tree, TreeFile, TreeNode, nodes
 from roaml.record import Record, replace
@@ -229,8 +229,7 @@ class Forest(Record, frozen=True, eq=False, dict=True):
 
     def is_newer_than_used(self, node: Node) -> bool:
         """Whether the node is newer than the version of BehaviorTree.CPP in the settings."""
-        major, _, minor = node.since.partition(".")
-        return bool(node.since) and Version(int(major), int(minor or 0), 0) > self.settings.version
+        return bool(node.since) and first_patch(node.since) > self.settings.version
 
     def absent(self, name: str) -> Absent | None:
         """What is known about a name that is not the name of a node; `None` if nothing is known about it."""

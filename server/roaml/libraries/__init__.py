@@ -23,6 +23,7 @@ __all__ = [
     "PortLimits",
     "Renamed",
     "library",
+    "library_node",
     "node_in_libraries",
 ]
 
@@ -48,6 +49,13 @@ def node_in_libraries(name: str) -> Node | None:
     """The declaration of a node in one of `LIBRARIES`, whether or not the settings name the library; `None` if there is
     none."""
     return next((library(known).nodes[name] for known in LIBRARIES if name in library(known).nodes), None)
+
+
+def library_node(name: str) -> Node | None:
+    """The declaration of a node of any library; `name` may be its name in version 3. `None` if there is none."""
+    cpp = library(BEHAVIORTREE_CPP)
+    renamed = cpp.renamed.get(name)
+    return cpp.nodes.get(renamed.now if renamed else name) or node_in_libraries(name)
 
 
 def _read(root: Any) -> Library:

@@ -33,6 +33,12 @@ def read_version(text: str) -> Version | None:
     return Version(4, int(match[1]), _LATEST if match[2] is None else int(match[2]))
 
 
+def first_patch(text: str) -> Version:
+    """The first patch of a version such as `4.7` or `4`."""
+    major, _, minor = text.partition(".")
+    return Version(int(major), int(minor or 0), 0)
+
+
 TAGS_LOOKED_UP_SINCE = Version(4, 7, 0)
 """The tags of the children of a `ReactiveSequence` are looked up as names of nodes."""
 ASYNC_SEQUENCES_REFUSED_SINCE = Version(4, 7, 0)

@@ -14,11 +14,12 @@ from fractions import Fraction
 from functools import cached_property
 
 from roaml.forest.scripts import script_attributes
-from roaml.libraries import BEHAVIORTREE_CPP, Node, Port, library, node_in_libraries
-from roaml.lower.programs.assembly import NodeProgram, programs
+from roaml.libraries import Node, Port, library_node, node_in_libraries
+from roaml.libraries.programs.assembly import NodeProgram, programs
+from roaml.libraries.programs.statuses import FAILURE, RUNNING, SUCCESS
 from roaml.lower.programs.automaton import CONDITION_MACHINE, MACHINE, MACHINES, NodeTooLargeError, node_automaton
 from roaml.lower.programs.board import Board, build_board, set_entry
-from roaml.lower.programs.code import FAILURE, RUNNING, SUCCESS, Child, NodeCode
+from roaml.lower.programs.code import Child, NodeCode
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree, identifier
 from roaml.lower.programs.nodes import (
     EVENT_PROBABILITY,
@@ -43,14 +44,6 @@ from roaml.text import NO_SPAN, Location
 
 STATUSES = frozenset((SUCCESS, FAILURE, RUNNING))
 """The statuses with which a machine answers a tick, as codes."""
-
-_NEVER_TICK_ENDED = frozenset(
-    (
-        *("Sequence", "Fallback", "AsyncSequence", "AsyncFallback", "SequenceWithMemory", "Parallel", "ParallelAll"),
-        *("RecoveryNode", *(node.name for node in library(BEHAVIORTREE_CPP).nodes.values() if node.children == (1, 1))),
-    )
-)
-"""The nodes that always reset a child that has ended before they tick it again."""
 
 
 class LibraryTree(Record, frozen=True, eq=False):
@@ -172,7 +165,7 @@ class LibraryTreeBuilder:
             if use.frame.use is not None and use.frame.outer is not None:
                 uses.append(use)
             index = use.outer
-        is_ticked_again = parent is not None and parent.outline.name not in _NEVER_TICK_ENDED
+        is_ticked_again = parent is not None and self.ticks_ended(parent, instance)
         for position, use in enumerate(reversed(uses)):
             if not use.scripts and (position > 0 or not is_ticked_again):
                 continue
@@ -184,6 +177,13 @@ class LibraryTreeBuilder:
                 origin = Location(use.frame.use.path, source.element.name_span)
                 names = _FrameNames(use.frame.outer, self.initial)
                 yield ExecutedNode(0, "SubTree", use.name, source, None, names, (instance.number,), origin)
+
+    def ticks_ended(self, parent: SystemAutomaton, instance: Instance) -> bool:
+        """Whether the parent of an instance may tick it again after it has ended, without resetting it."""
+        return (
+            bool(parent.path)
+            or self.system.tree_effects.on_child(parent, self.system.by_instance[instance.number]).ticks_ended
+        )
 
     def origin(self, instance: Instance) -> Location:
         source = self.source(instance)
@@ -358,16 +358,10 @@ def _address(number: int, level: int) -> str:
 
 def _declared(automaton: SystemAutomaton, *, is_program: bool) -> Node:
     """The declaration of a node in its library; for a machine, a declaration with its ports."""
-    name = automaton.outline.name
     if not is_program:
         return _of_machine(automaton.outline)
-    cpp = library(BEHAVIORTREE_CPP)
-    renamed = cpp.renamed.get(name)
-    current = renamed.now if renamed else name
-    if current in cpp.nodes:
-        return cpp.nodes[current]
-    node = node_in_libraries(name)
-    assert node is not None, name
+    node = library_node(automaton.outline.name)
+    assert node is not None, automaton.outline.name
     return node
 
 

@@ -10,13 +10,14 @@ from roaml.durations import ANY_TIME, ReactionTime
 from roaml.expr.operators import Operator
 from roaml.expr.types import BASE_TYPES
 from roaml.forest.forest import Forest, port_type
+from roaml.libraries.programs.assembly import NodeProgram, programs
+from roaml.libraries.programs.statuses import RUNNING, Known
 from roaml.lower.build import binary, event_data, integer, name
 from roaml.lower.interfaces import tree_event
-from roaml.lower.programs.assembly import NodeProgram, programs
 from roaml.lower.programs.automaton import NodeTooLargeError, node_automaton
 from roaml.lower.programs.blackboard import board_automaton
 from roaml.lower.programs.board import Board, build_board
-from roaml.lower.programs.code import RUNNING, Child, Known, NodeCode
+from roaml.lower.programs.code import Child, NodeCode
 from roaml.lower.programs.entries import BoardEntry
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree
 from roaml.lower.programs.nodes import (

@@ -10,7 +10,7 @@ from roaml.expr.types import Struct, StructKind, Type, unwrap
 from roaml.ide.names.lookup import SymbolGroup, SymbolUse, occurrences_at, symbol_group, symbol_group_at
 from roaml.ide.names.occurrence import DEFINED_BY_ROS, HANDLES, Access
 from roaml.ide.navigation.interface_files import locate_ros, locate_type, type_of_field
-from roaml.lower.programs.assembly import program_place
+from roaml.libraries.programs.assembly import program_place
 from roaml.model.expand import tree_called
 from roaml.model.system import System
 from roaml.model.tree import nodes

@@ -12,7 +12,7 @@ import functools
 import importlib.resources
 
 from roaml.language import BEHAVIOR_TREE
-from roaml.libraries import BEHAVIORTREE_CPP, library
+from roaml.libraries import library_node
 from roaml.model.build_machine import build_machine
 from roaml.model.machine import Machine
 from roaml.model.system import CHILDREN_COUNT, SystemAutomaton
@@ -23,7 +23,9 @@ def builtin_machine(automaton: SystemAutomaton) -> Machine:
     """The machine for a node of BehaviorTree.CPP."""
     slots = _children(automaton) + 1
     none_ended = f"[{', '.join(['false'] * slots)}]"
-    text = _resource(_current(automaton.outline.name))
+    node = library_node(automaton.outline.name)
+    assert node is not None
+    text = _resource(node.name)
     return _parsed(text.replace("SLOTS", str(slots)).replace("NONE_ENDED", none_ended))
 
 
@@ -35,12 +37,6 @@ def builtin_ports(automaton: SystemAutomaton) -> dict[str, str]:
         if attribute.port and attribute.port.default:
             ports[attribute.name] = attribute.port.default
     return ports
-
-
-def _current(name: str) -> str:
-    """The name of a node in version 4 of BehaviorTree.CPP."""
-    renamed = library(BEHAVIORTREE_CPP).renamed.get(name)
-    return renamed.now if renamed else name
 
 
 def _children(automaton: SystemAutomaton) -> int:

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The nodes of the libraries as BehaviorTree.CPP and Nav2 execute them (docs/spec/mocks.md#nodes).
+`roaml.libraries.programs` contains their definitions.
 
-definitions/*.txt    the nodes as small programs
-assembly             compiles programs to instructions
 executed             the executed tree, with the blackboard entries of all ports
 entries              an entry of the blackboard
 board                the entries of the blackboard that the tree needs, with their types

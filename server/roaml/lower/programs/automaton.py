@@ -14,23 +14,13 @@ from typing import NamedTuple, TypeAlias
 from roaml.expr.operators import Operator
 from roaml.expr.tree import Expr
 from roaml.expr.types import BASE_TYPES, Type
+from roaml.libraries.programs import assembly
+from roaml.libraries.programs.assembly import CodeLabel, Instruction
+from roaml.libraries.programs.statuses import HELD, IDLE, RUNNING, SKIPPED, STATUS_CODES, Known
 from roaml.lower.blackboard_events import ANSWER, REQUEST, blackboard_write
 from roaml.lower.build import binary, both, equal, event_data, integer, name
 from roaml.lower.interfaces import tree_event
-from roaml.lower.programs import assembly
-from roaml.lower.programs.assembly import CodeLabel, Instruction
-from roaml.lower.programs.code import (
-    HELD,
-    IDLE,
-    RUNNING,
-    SKIPPED,
-    STATUS_CODES,
-    TYPES,
-    Child,
-    Known,
-    NodeCode,
-    Value,
-)
+from roaml.lower.programs.code import TYPES, Child, NodeCode, Value
 from roaml.lower.programs.entries import BoardEntry
 from roaml.lower.programs.steps import (
     EXCEPTION,
@@ -435,6 +425,8 @@ class _Explorer(Record, eq=False, dict=True):
                     self.declare(counter, BASE_TYPES["int32"], integer(0))
                     increased = binary(name(counter), Operator.ADD, integer(1))
                     execution.body.append(Assign(name(counter), increased, self.code.origin))
+            case assembly.ResetAll():
+                pass  # the following instructions reset the children
             case assembly.Throw():
                 following = EXCEPTION
         execution.place = following

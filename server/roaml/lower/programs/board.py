@@ -11,9 +11,9 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from roaml.forest.forest import port_type
 from roaml.forest.scripts import grammar_of, parsed, script_attributes
+from roaml.libraries.programs.assembly import NodeProgram
 from roaml.libraries.scripts import CONDITION_NODES, CONDITIONS, script_ports
 from roaml.libraries.version import CASES_WHOLE_SINCE, CONSTANTS_TYPED_SINCE, Version
-from roaml.lower.programs.assembly import NodeProgram
 from roaml.lower.programs.cases import number_in
 from roaml.lower.programs.entries import BoardEntry, EntryKind, kind_of_cpp, read_literal
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree

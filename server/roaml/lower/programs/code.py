@@ -9,25 +9,13 @@ from typing import TypeAlias
 
 from roaml.expr.tree import Expr
 from roaml.expr.types import BASE_TYPES, Type
-from roaml.lower.programs.assembly import NodeProgram
+from roaml.libraries.programs.assembly import NodeProgram
+from roaml.libraries.programs.statuses import Known
 from roaml.lower.programs.entries import BoardEntry, EntryKind
 from roaml.lower.programs.scripts import CompiledScript
 from roaml.record import Record
 from roaml.text import Location
 
-IDLE, SUCCESS, FAILURE, RUNNING, SKIPPED, HELD = range(6)
-"""The codes of statuses and answers. SKIPPED means that the node was skipped and is IDLE; HELD means that it was
-skipped and has another status. The parent of the node treats these answers differently (docs/spec/mocks.md#skipped)."""
-STATUS_CODES = {
-    "IDLE": IDLE,
-    "SUCCESS": SUCCESS,
-    "FAILURE": FAILURE,
-    "RUNNING": RUNNING,
-    "SKIPPED": SKIPPED,
-    "HELD": HELD,
-}
-
-Known: TypeAlias = "int | bool | float | str"
 Value: TypeAlias = "Known | Expr"
 
 TYPES: Mapping[EntryKind, Type] = {

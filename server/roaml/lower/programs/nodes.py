@@ -10,12 +10,12 @@ from roaml.forest.cpp_types import mismatch
 from roaml.forest.forest import CPP, port_type
 from roaml.libraries import LIBRARIES, Port, library, node_in_libraries
 from roaml.libraries.node import EVENT_ATTRIBUTE
+from roaml.libraries.programs.assembly import NodeProgram, programs
+from roaml.libraries.programs.statuses import RUNNING, STATUS_CODES, Known
 from roaml.libraries.scripts import script_ports
 from roaml.libraries.version import NEWEST_VERSION, Version
-from roaml.lower.programs.assembly import NodeProgram, programs
 from roaml.lower.programs.board import Board, node_scripts, set_entry
 from roaml.lower.programs.cases import case_value
-from roaml.lower.programs.code import RUNNING, STATUS_CODES, Known
 from roaml.lower.programs.entries import BoardEntry, EntryKind, kind_of_cpp, read_literal
 from roaml.lower.programs.executed import ExecutedNode
 from roaml.lower.programs.refusal import INVALID_SCRIPT, TreeRefusal

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from typing import NamedTuple, TypeAlias
 
 from roaml.expr.tree import Expr
+from roaml.libraries.programs.statuses import Known
 from roaml.lower.build import equal, floor, integer, name
-from roaml.lower.programs.code import Known
 from roaml.lower.programs.entries import BoardEntry
 from roaml.lower.programs.scripts import CompiledScript
 from roaml.lower.programs.values import expr

@@ -13,9 +13,10 @@ from typing import Any
 
 from roaml.expr.operators import Operator, UnaryOperator
 from roaml.expr.tree import Boolean, Conditional, Expr, Number, String, Unary
+from roaml.libraries.programs.statuses import STATUS_CODES, Known
 from roaml.lower.build import binary, equal, floor, integer, math_call, name
 from roaml.lower.programs.cases import are_equal
-from roaml.lower.programs.code import STATUS_CODES, Known, NodeCode, Value
+from roaml.lower.programs.code import NodeCode, Value
 from roaml.lower.programs.entries import EntryKind
 from roaml.record import Record
 from roaml.text import NO_SPAN

@@ -21,12 +21,13 @@ from roaml.model.behavior.phases import HALT, Duty, DutyKind, Phase
 from roaml.model.machine import Handler, If, Machine, RosSend, State, Statement, statements
 from roaml.model.obligations.losses import Loss, losses, waiting_behind
 from roaml.model.obligations.protocols import ClientProtocols
-from roaml.model.system import System, SystemAutomaton
+from roaml.model.system import SystemAutomaton
 from roaml.model.value_types import find_handle
 from roaml.record import Record
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext
 from roaml.rules.support import misspelled
+from roaml.rules.support.node_calls import statuses_at_halt, statuses_at_tick
 from roaml.rules.support.removed_events import uses_removed_events
 from roaml.rules.support.triggers import has_shadowed
 from roaml.text import Span
@@ -341,56 +342,7 @@ def _may_answer(machine: Machine, statement: Statement, duty: Duty) -> bool:
     return False
 
 
-# ------------------------------------------------------------ place in the tree
-
-_SWITCHES = frozenset(f"Switch{cases}" for cases in range(2, 7))
-_ASKS_ONCE = _SWITCHES | {
-    *("Sequence", "Fallback", "SequenceWithMemory", "SequenceStar", "IfThenElse", "Parallel", "ParallelAll"),
-    *("Inverter", "ForceSuccess", "ForceFailure", "RunOnce", "Delay", "Timeout", "BlackboardCheckInt"),
-}
-"""Nodes that do not tick an ended child again until they have ended themselves (docs/spec/nodes.md)."""
-_PASSES_HALTS = frozenset(("Inverter", "RetryUntilSuccessful", "ForceSuccess", "ForceFailure", "Delay", "RunOnce"))
-"""Nodes that halt their child only when they are halted."""
-_INTERRUPTS = _SWITCHES | {"Parallel", "Timeout", "BlackboardCheckInt"}
-"""Nodes that halt running children without being halted."""
-_INTERRUPTS_LATER = frozenset(("ReactiveSequence", "ReactiveFallback", "WhileDoElse"))
-"""Nodes that tick their first child at every tick, and halt running later children depending on its status."""
-
-
-def is_ticked_again(system: System, automaton: SystemAutomaton) -> bool:
-    """Whether a node may be ticked again after it has ended."""
-    if system.parameters.tick_if_not_running:
-        return True
-    return any(above.path or above.outline.name not in _ASKS_ONCE for above in ancestors(system, automaton))
-
-
-def is_halted(system: System, automaton: SystemAutomaton, *, running: bool) -> bool:
-    """Whether a node may be halted while it is running (if `running`) or while it is not running."""
-    child = automaton
-    for parent in ancestors(system, automaton):
-        if parent.path:  # the parent is a plugin of the user
-            return parent.outline.plugin.halts_children
-        name = parent.outline.name
-        if name in _INTERRUPTS or (not running and name not in _PASSES_HALTS):
-            return True
-        if name in _INTERRUPTS_LATER and not _is_first(parent, child):
-            return True
-        child = parent
-    return False
-
-
-def _is_first(parent: SystemAutomaton, child: SystemAutomaton) -> bool:
-    assert parent.instance is not None
-    assert child.instance is not None
-    return parent.instance.children[0] == child.instance.number
-
-
-def ancestors(system: System, automaton: SystemAutomaton) -> Iterator[SystemAutomaton]:
-    """The nodes above a node, the nearest first."""
-    number = automaton.instance.parent if automaton.instance else None
-    while number is not None and (above := system.by_instance.get(number)) is not None:
-        yield above
-        number = above.instance.parent if above.instance else None
+# ------------------------------------------------------------ ticks and halts
 
 
 class UnhandledState(NamedTuple):
@@ -458,7 +410,7 @@ def _unhandled_by(
     takes, tag = _HANDLED_BY[duty.kind]
     if all(any(handler.trigger is takes for handler in state.handlers) for state in behavior.chart.states):
         return
-    may_come = _coming(context.system, automaton, duty)
+    may_come = (statuses_at_tick if duty.kind is DutyKind.TICK else statuses_at_halt)(context.system, automaton)
     tree_status: dict[str, Phase | None] = {}
     for number in untaken(behavior, duty, possible):
         configuration = behavior.configurations[number]
@@ -482,12 +434,3 @@ def _is_for_errors(behavior: Behavior, state: State) -> bool:
         if state.id is not None and behavior.configurations[step.target].state == state.id.value
     ]
     return bool(entering) and all(step.handler.cond is not None or not step.certain for step in entering)
-
-
-def _coming(system: System, automaton: SystemAutomaton, duty: Duty) -> frozenset[Phase | None]:
-    """The statuses that a node may have when a tick or halt arrives."""
-    if duty.kind is DutyKind.TICK:
-        again = is_ticked_again(system, automaton)
-        return frozenset((None, Phase.RUNNING, Phase.ENDED) if again else (None, Phase.RUNNING))
-    at_rest = (None, Phase.ENDED) if is_halted(system, automaton, running=False) else ()
-    return frozenset((*at_rest, *((Phase.RUNNING,) if is_halted(system, automaton, running=True) else ())))

@@ -15,7 +15,7 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple, TypeAlias
 
 from roaml.libraries import BEHAVIORTREE_CPP, library
-from roaml.libraries.version import NEWEST_VERSION, Version
+from roaml.libraries.version import NEWEST_VERSION, Version, first_patch
 from roaml.record import Record, field
 from roaml.text import Location, Span
 
@@ -93,6 +93,14 @@ class Reset(NamedTuple):
     child: ast.expr
 
 
+class ResetAll(NamedTuple):
+    """Precedes the instructions up to `end`, which reset all children; all except the child `but` if that is not
+    `None`."""
+
+    but: ast.expr | None
+    end: CodeLabel
+
+
 class Return(NamedTuple):
     status: ast.expr
 
@@ -151,6 +159,7 @@ Instruction: TypeAlias = (
     | Choose
     | TickChild
     | Reset
+    | ResetAll
     | Return
     | Evaluate
     | Updated
@@ -163,7 +172,7 @@ Instruction: TypeAlias = (
 )
 
 
-class NodeProgram(Record, frozen=True, dict=True):
+class NodeProgram(Record, frozen=True, eq=False, dict=True):
     """The program of a node.
 
     Attributes:
@@ -215,7 +224,7 @@ class Programs(Mapping[str, NodeProgram]):
         for file in FILES:
             text = (importlib.resources.files(__package__) / "definitions" / file).read_text(encoding="utf-8")
             for match in _CLASS.finditer(text):
-                if match["before"] is None or version < _version(match["before"]):
+                if match["before"] is None or version < first_patch(match["before"]):
                     self._places.setdefault(match["name"], []).append(len(self._texts))
                     self._texts.append(match["text"])
 
@@ -281,12 +290,6 @@ def after(given: frozenset[str]) -> tuple[Instruction, ...]:
 def halted(given: frozenset[str]) -> tuple[Instruction, ...]:
     """The instructions after a node that has the scripts `given` was halted."""
     return _Assembler(given).function(ast.parse('script("_onHalted")').body)
-
-
-def _version(text: str) -> Version:
-    """The first patch of a version such as `4.7`."""
-    major, _, minor = text.partition(".")
-    return Version(int(major), int(minor), 0)
 
 
 def _program(definition: ast.ClassDef, base: NodeProgram | None) -> NodeProgram:
@@ -434,7 +437,10 @@ class _Assembler(Record):
         text = "_k = 0\nwhile _k < COUNT:\n    reset(_k)\n    _k += 1\n"
         if arguments:
             text = text.replace("    reset(_k)", f"    if _k != {ast.unparse(arguments[0])}:\n        reset(_k)")
+        end = CodeLabel()
+        self.instructions.append(ResetAll(arguments[0] if arguments else None, end))
         self.block(ast.parse(text).body)
+        self.place(end)
 
 
 def walk(program: NodeProgram) -> Iterator[Instruction]:
