@@ -127,8 +127,6 @@ def drawn(name: str, source: random.Random, *, any_answer: bool) -> tuple[dict[s
         ports[source.choice(("_failureIf", "_successIf", "_skipIf", "_while"))] = source.choice(CONDITIONS)
     least, most = (1, 1) if name in WITH_WORLD.decorators else COUNTS.get(name, (1, 3))
     least, most = (0, 0) if name in OWN_LEAVES else (least, most)
-        (0, 0) if name in OWN_LEAVES else (1, 1) if name in WITH_WORLD.decorators else COUNTS.get(name, (1, 3))
-    )
     count = most if any_answer else source.randint(least, most)
     answers = tuple(ANY_ANSWER if any_answer else source.choice(SETS) for _ in range(count))
     first = tuple(frozenset(source.sample(sorted(s), source.randint(1, len(s)))) for s in answers)

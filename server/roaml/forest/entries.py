@@ -18,7 +18,8 @@ from roaml.forest.cpp_types import ANY
 from roaml.forest.forest import OLD_ATTRIBUTES, Forest, port_type
 from roaml.forest.ports import ports_of
 from roaml.forest.scripts import scripts_of
-from roaml.libraries import Node
+from roaml.libraries import Node, Port
+from roaml.libraries.programs.assembly import programs
 from roaml.libraries.scripts import SCRIPT
 from roaml.model.tree import PortSetting, Tree, TreeNode, blackboard_variable
 from roaml.record import Record
@@ -32,16 +33,6 @@ ROOT = ""
 Key: TypeAlias = tuple[str, str]
 """The name of a tree, and the name of an entry in it."""
 
-_NAMING_PORTS = {
-    ("SetBlackboard", "output_key"): True,
-    ("UnsetBlackboard", "key"): False,
-    ("WasEntryUpdated", "entry"): False,
-    ("SkipUnlessUpdated", "entry"): False,
-    ("WaitValueUpdate", "entry"): False,
-}
-"""The ports whose value is the name of an entry even without braces -> whether the node writes the entry."""
-_CONSUMED = frozenset((f"Loop{element}", "queue") for element in ("Int", "Bool", "Double", "String"))
-"""The ports that take elements from an entry and never add one."""
 _TRUE = ("1", "true", "True", "TRUE")
 _NAME = re.compile(r"@?[A-Za-z_][\w.:-]*\Z", re.ASCII)
 
@@ -123,7 +114,8 @@ def entry_of(setting: PortSetting) -> str | None:
 
 def names_entry(node: Node, port: str) -> bool:
     """Whether the value of a port is the name of an entry even without braces."""
-    return (node.name, port) in _NAMING_PORTS
+    declared = node.port(port)
+    return declared is not None and declared.names_entry
 
 
 def find_entries(forest: Forest) -> Entries:
@@ -174,11 +166,10 @@ def _of_ports(forest: Forest, path: str, own: str, node: TreeNode) -> Iterator[U
         port = known.port(setting.attribute.name) if known else None
         span, text = setting.value.span, setting.value.value.strip()
         name = entry_of(setting)
-        writes_named = _NAMING_PORTS.get((known.name if known else "", setting.attribute.name))
-        if writes_named is not None:
+        if port is not None and port.names_entry:
             name = name or (text if _NAME.match(text) else None)
             if name is not None:
-                reads, writes = (False, True) if writes_named else (None, None)
+                reads, writes = (False, True) if port.direction.writes else (None, None)
                 yield Use(path, own, name, reads, writes, True, ANY, False, False, node, span)
         elif name is not None and port is not None:
             if port.type == SCRIPT:
@@ -189,11 +180,16 @@ def _of_ports(forest: Forest, path: str, own: str, node: TreeNode) -> Iterator[U
             type_ = ANY if forest.is_partly_described(known) else port_type(port)
             library = bool(known.library)
             writes = direction.writes
-            if library and (known.name, setting.attribute.name) in _CONSUMED:
+            if library and direction is Direction.INOUT and not _is_written(known, port):
                 reads, writes = True, False
             yield Use(path, own, name, reads, writes, True, type_, library, False, node, span)
         elif name is not None:
             yield Use(path, own, name, None, None, True, ANY, False, False, node, span)
+
+
+def _is_written(node: Node, port: Port) -> bool:
+    """Whether a node of a library writes the entry in a port. A loop only takes elements from its queue."""
+    return node.name not in programs() or port.name in programs()[node.name].written_ports
 
 
 def _of_subtree(forest: Forest, path: str, own: str, node: TreeNode) -> Iterator[Use]:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from roaml.forest.forest import CPP, Forest
 from roaml.forest.ports import probable_ports
-from roaml.libraries.scripts import CONDITION_NODES, CONDITIONS, script_ports
+from roaml.libraries.scripts import CONDITIONS, is_condition, script_ports
 from roaml.libraries.version import SCRIPTS_CHANGED_SINCE, Version
 from roaml.model.tree import TreeNode
 from roaml.record import Record
@@ -35,7 +35,7 @@ def scripts_of(forest: Forest, node: TreeNode) -> Iterator[ScriptUse]:
         for port in script_ports()[name]:
             attribute_of_port = node.element.get(port) or _probable(node, port)
             if attribute_of_port is not None and attribute_of_port.has_value:
-                yield ScriptUse(node, attribute_of_port, name in CONDITION_NODES)
+                yield ScriptUse(node, attribute_of_port, is_condition(name, port))
 
 
 def _probable(node: TreeNode, port: str) -> Attribute | None:

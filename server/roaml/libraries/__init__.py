@@ -110,6 +110,7 @@ def _port(element: Any) -> Port:
         Direction(direction) if (direction := element.get("system-direction")) else None,
         element.get("system-constant") == "true",
         _limits(element),
+        element.get("names-entry") == "true",
     )
 
 

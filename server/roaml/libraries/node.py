@@ -12,10 +12,6 @@ from roaml.roles import Direction, NodeKind
 EVENT_ATTRIBUTE = "_event_probability"
 """The attribute that sets the probability of an event of the world at a tick, for a node that reads such an event. The
 libraries ignore it (docs/spec/mocks.md#world)."""
-WORLD_NODES = frozenset(
-    ("DistanceController", "GoalUpdatedController", "SpeedController", "PathLongerOnApproach", "PauseResumeController")
-)
-"""The nodes that depend on events of the world (docs/spec/mocks.md#world)."""
 
 
 class PortLimits(Record, frozen=True):
@@ -50,6 +46,7 @@ class Port(Record, frozen=True):
         alias_of: the port for which this port is another name in trees of systems, or "".
         system_type, system_direction, system_constant: the properties of the port in trees of systems, if they differ.
         limits: the useful numbers; `None` if all are useful.
+        names_entry: whether the value is the name of a blackboard entry even without braces.
     """
 
     name: str
@@ -63,6 +60,7 @@ class Port(Record, frozen=True):
     system_direction: Direction | None = None
     system_constant: bool = False
     limits: PortLimits | None = None
+    names_entry: bool = False
 
 
 class Node(Record, frozen=True, dict=True):

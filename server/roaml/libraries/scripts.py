@@ -7,6 +7,7 @@ import functools
 from collections.abc import Mapping
 
 from roaml.libraries import BEHAVIORTREE_CPP, library
+from roaml.libraries.programs.assembly import programs
 
 SCRIPT = "script"
 """The type of ports that contain scripts."""
@@ -14,8 +15,6 @@ CONDITIONS = ("_failureIf", "_successIf", "_skipIf", "_while")
 """The attributes with conditions that are evaluated before a node is ticked; `_while` also while it is RUNNING."""
 AFTERWARDS = ("_onSuccess", "_onFailure", "_onHalted", "_post")
 """The attributes with scripts that are executed after a node has ended or was halted."""
-CONDITION_NODES = ("Precondition", "ScriptCondition")
-"""The nodes whose script is a condition."""
 
 
 @functools.cache
@@ -24,3 +23,8 @@ def script_ports() -> Mapping[str, tuple[str, ...]]:
     nodes = library(BEHAVIORTREE_CPP).nodes.items()
     ports = {name: tuple(port.name for port in node.ports if port.type == SCRIPT) for name, node in nodes}
     return {name: names for name, names in ports.items() if names}
+
+
+def is_condition(node: str, port: str) -> bool:
+    """Whether the value of the script in a port of a node is used as a condition."""
+    return port in CONDITIONS or (node in programs() and port in programs()[node].conditions)

@@ -7,7 +7,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from xml.sax.saxutils import quoteattr
 
-from roaml.libraries.node import EVENT_ATTRIBUTE, WORLD_NODES
+from roaml.libraries.node import EVENT_ATTRIBUTE
+from roaml.libraries.programs.assembly import reads_world
 from roaml.mocks.mock import ALL, Mock, mock_for
 from roaml.mocks.plugin import mock_plugin
 from roaml.mocks.system_leaves import SystemLeaf
@@ -90,7 +91,7 @@ def event_edits(system: System, files: Mapping[str, TreeFile], mocks: Sequence[M
     edits: dict[str, dict[int, TextEdit]] = {}
     for instance in system.instances:
         mock = mock_for(exact, instance.name, instance.plugin)
-        if mock is None or instance.plugin not in WORLD_NODES or system.plugin(instance.plugin)[0]:
+        if mock is None or not reads_world(instance.plugin) or system.plugin(instance.plugin)[0]:
             continue
         node = node_at(files[instance.source.path], instance.source)
         if node is None:

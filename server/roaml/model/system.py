@@ -605,7 +605,7 @@ def library_plugins() -> Mapping[str, MachineOutline]:
 
 
 def _library_outline(name: str, node: Node) -> MachineOutline:
-    ports = tuple(_library_port(name, port) for port in node.ports if not port.alias_of)
+    ports = tuple(_library_port(port) for port in node.ports if not port.alias_of)
     has_children = node.kind in (NodeKind.CONTROL, NodeKind.DECORATOR)
     plugin = PluginOutline(True, True, True, True, 0, has_children, None, has_children)
     return MachineOutline(name, "ascxml", False, frozenset(), ports, (), (), (), (), (), plugin)
@@ -620,16 +620,9 @@ def optional_ports(name: str) -> frozenset[str]:
     return frozenset(port.name for node in declared if node for port in node.ports if not port.required)
 
 
-_NAMES_ENTRY = ("SkipUnlessUpdated", "WaitValueUpdate", "WasEntryUpdated", "UnsetBlackboard")
-"""The nodes with a port that contains the name of a blackboard entry. The port itself neither reads nor writes the
-entry."""
-
-
-def _library_port(node: str, port: Port) -> PortOutline:
-    if port.name in ("entry", "key") and node in _NAMES_ENTRY:
-        return PortOutline(port.name, ANY_TYPE, Direction.IN, False, False)
-    if node == "SetBlackboard" and port.name == "output_key":
-        return PortOutline(port.name, ANY_TYPE, Direction.IN, False, True)
+def _library_port(port: Port) -> PortOutline:
+    if port.names_entry:  # the port itself does not read the entry
+        return PortOutline(port.name, ANY_TYPE, Direction.IN, False, port.direction.writes)
     direction = Direction.OUT if port.direction is Direction.OUT else Direction.IN
     return PortOutline(port.name, ANY_TYPE, direction, port.direction.reads, port.direction.writes)
 

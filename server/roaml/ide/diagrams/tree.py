@@ -22,7 +22,7 @@ from roaml.ide.diagrams.diagram import (
     TreeNodeTitle,
 )
 from roaml.libraries import BEHAVIORTREE_CPP, Node, library, node_in_libraries
-from roaml.libraries.node import WORLD_NODES
+from roaml.libraries.programs.assembly import reads_world
 from roaml.mocks.mock import ALL, Mock, mock_for
 from roaml.model.expand import Frame, Instance, Reference, TreeUse, expand, node_at, tree_called
 from roaml.model.kinds import FileKind
@@ -225,7 +225,7 @@ class _Tree:
         if not self.mocks or (self.system is not None and self.system.plugin(instance.plugin)[0]):
             return
         known = self.declaration(instance) or node_in_libraries(instance.plugin)
-        if instance.plugin in WORLD_NODES:
+        if reads_world(instance.plugin):
             event = mock_for(self.events, instance.name, instance.plugin)
             if event is not None:
                 yield Detail(DetailKind.MOCK, f"mock: event {event.behaviour(is_instant=True)}")

@@ -10,6 +10,7 @@ from roaml.forest.scripts import parsed, script_attributes
 from roaml.ide.names.frames import Trees
 from roaml.ide.names.in_machine import interface_symbol
 from roaml.ide.names.occurrence import Access, Occurrence, tree_node, without_slash
+from roaml.libraries import library_node
 from roaml.model.expand import PortConstant
 from roaml.model.outline import MachineOutline
 from roaml.model.syntax import Name
@@ -133,10 +134,11 @@ class _Tree:
                     access = Access.WRITE if isinstance(expr, Assignment) else Access.READ
                     symbol = self.trees.variable(self.path, inside, name)
                     yield Occurrence(span, symbol, access is Access.WRITE, access)
-        name_port = _NAMING.get(node.plugin.value if node.plugin else "")
-        setting = next((s.value for s in node.ports if s.key.value == name_port), None)
-        if setting is not None and is_variable_name(setting.value):
-            access = Access.WRITE if name_port == "output_key" else Access.TEXT
+        known = library_node(node.plugin.value) if node.plugin else None
+        port = next((port for port in known.ports if port.names_entry), None) if known else None
+        setting = next((s.value for s in node.ports if port is not None and s.key.value == port.name), None)
+        if port is not None and setting is not None and is_variable_name(setting.value):
+            access = Access.WRITE if port.direction.writes else Access.TEXT
             symbol = self.trees.variable(self.path, inside, setting.value)
             start = setting.span.start + (1 if setting.value.startswith("@") else 0)
             yield Occurrence(Span(start, setting.span.end), symbol, access is Access.WRITE, access)
@@ -198,14 +200,6 @@ class _Tree:
                         if span.end > span.start:
                             occurrences[Occurrence(span, symbol)] = None
         yield from occurrences
-
-
-_NAMING = {
-    "SetBlackboard": "output_key",
-    "UnsetBlackboard": "key",
-    **dict.fromkeys(("WasEntryUpdated", "SkipUnlessUpdated", "WaitValueUpdate"), "entry"),
-}
-"""The ports whose value is the name of a variable even without braces, in trees that belong to no system."""
 
 
 def _access(outline: MachineOutline | None, key: str) -> Access:

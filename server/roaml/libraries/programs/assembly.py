@@ -207,6 +207,17 @@ class NodeProgram(Record, frozen=True, eq=False, dict=True):
         return frozenset(part.port for part in walk(self) if isinstance(part, Write))
 
     @functools.cached_property
+    def conditions(self) -> frozenset[str]:
+        """The ports that contain scripts whose values are used as conditions."""
+        scripts = (part for part in walk(self) if isinstance(part, Evaluate))
+        return frozenset(part.script for part in scripts if part.otherwise is not None)
+
+    @functools.cached_property
+    def observes(self) -> bool:
+        """Whether the program depends on whether an entry was written."""
+        return any(isinstance(part, Updated) for part in walk(self))
+
+    @functools.cached_property
     def reads_world(self) -> bool:
         """Whether the program depends on an event in the world (docs/spec/mocks.md#world)."""
         choices = (part.probability for part in self.tick if isinstance(part, Choose))
@@ -261,6 +272,11 @@ _CLASS = re.compile(
 def programs(version: Version = NEWEST_VERSION) -> Programs:
     """Name of a node -> its program in a version of BehaviorTree.CPP."""
     return Programs(version)
+
+
+def reads_world(name: str) -> bool:
+    """Whether a node of a library depends on events of the world (docs/spec/mocks.md#world)."""
+    return name in programs() and programs()[name].reads_world
 
 
 def program_place(name: str) -> Location | None:

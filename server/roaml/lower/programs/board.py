@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from roaml.forest.forest import port_type
 from roaml.forest.scripts import grammar_of, parsed, script_attributes
 from roaml.libraries.programs.assembly import NodeProgram
-from roaml.libraries.scripts import CONDITION_NODES, CONDITIONS, script_ports
+from roaml.libraries.scripts import is_condition
 from roaml.libraries.version import CASES_WHOLE_SINCE, CONSTANTS_TYPED_SINCE, Version
 from roaml.lower.programs.cases import number_in
 from roaml.lower.programs.entries import BoardEntry, EntryKind, kind_of_cpp, read_literal
@@ -23,9 +23,6 @@ from roaml.script.infer import Type, type_of
 from roaml.script.tree import Assignment, Comparison, Name, Number, Script, String, walk
 from roaml.text import Decoded
 from roaml.xml_syntax import Attribute
-
-OBSERVING = ("SkipUnlessUpdated", "WaitValueUpdate", "WasEntryUpdated")
-"""The nodes that check whether an entry was written. The entry is in their port `entry`."""
 
 MAX_VALUES = 6
 """The maximum number of values that a mock writes to an entry."""
@@ -70,10 +67,8 @@ class Board(Record, frozen=True, eq=False):
 def node_scripts(node: ExecutedNode, version: Version) -> Iterator[tuple[str, Script, bool]]:
     """The scripts of a node, each with its attribute, and with whether its value is used as a condition."""
     for attribute in script_attributes(node.node):
-        is_condition = attribute.name in CONDITIONS or (
-            attribute.name in script_ports().get(node.type, ()) and node.type in CONDITION_NODES
-        )
-        yield attribute.name, parsed(_text(attribute), grammar_of(version))[0], is_condition
+        script = parsed(_text(attribute), grammar_of(version))[0]
+        yield attribute.name, script, is_condition(node.type, attribute.name)
 
 
 def _text(attribute: Attribute) -> Decoded:
@@ -189,7 +184,7 @@ class _Reader(Record):
         read, written = (_NO_PORTS, _NO_PORTS) if program is None else (program.read_ports, program.written_ports)
         for port, entry, text, _ in node.ports():
             declared = node.known.port(port) if node.known else None
-            if node.type in OBSERVING and port == "entry":
+            if program is not None and program.observes and port == "entry":
                 self.observed[node.number] = entry or node.frame.entry(text.strip())
                 continue
             if node.type == "SetBlackboard" and port == "output_key":

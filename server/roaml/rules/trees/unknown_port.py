@@ -7,7 +7,8 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
 from roaml.edit.elements import removal
-from roaml.libraries.node import EVENT_ATTRIBUTE, WORLD_NODES
+from roaml.libraries.node import EVENT_ATTRIBUTE
+from roaml.libraries.programs.assembly import reads_world
 from roaml.model.outline import MachineOutline
 from roaml.model.system import CHILDREN_COUNT
 from roaml.model.tree import TreeNode, nodes
@@ -32,7 +33,7 @@ def _check(context: TreeContext, node: TreeNode, plugin: MachineOutline, path: s
     for setting in node.ports:
         key = setting.key
         edit = removal(context.source.text, setting.attribute.span)
-        if key.value == EVENT_ATTRIBUTE and plugin.name in WORLD_NODES and not path:
+        if key.value == EVENT_ATTRIBUTE and reads_world(plugin.name) and not path:
             continue
         if key.value == CHILDREN_COUNT:
             if CHILDREN_COUNT not in keys and path:
