@@ -17,6 +17,19 @@ from roaml.record import PartlyCompared, Record
 from roaml.roles import SymbolKind
 from roaml.text import Edit, Location, SourceFile, Span, TextEdit, computed
 
+RENAMED_CODES = {
+    "missing-node-port": "missing-port",
+    "unknown-node-port": "unknown-port",
+    "entry-type-conflict": "blackboard-type-conflict",
+}
+"""Former code of a rule -> its code now. Comments, settings, options and baselines may contain former codes until the
+release after the one that renames them."""
+
+
+def current_code(code: str) -> str:
+    """The code of a rule whose code, now or formerly, is `code`."""
+    return RENAMED_CODES.get(code, code)
+
 
 class Severity(enum.IntEnum):
     """The severity of a finding; a greater value is more severe."""

@@ -105,3 +105,23 @@ def test_a_baseline_that_cannot_be_written_or_read(check: Command, tmp_path: Pat
     done = check(".", "--baseline", target)
     assert (done.status, done.out) == (2, "")
     assert done.err.startswith(f"as2fm-lsp: {target}: ")
+
+
+TREE = '<root BTCPP_format="4"><BehaviorTree ID="A"><Repeat><AlwaysSuccess/></Repeat></BehaviorTree></root>'
+
+
+def test_former_codes_of_rules(check: Command, tmp_path: Path) -> None:
+    """A `Repeat` without `num_cycles`, known with the code that the rule had before."""
+    (tmp_path / "tree.xml").write_text(TREE)
+    assert [row["code"] for row in check("tree.xml").rows] == ["missing-port"]
+    known = {"0" * 32: {"file": "tree.xml", "code": "missing-node-port", "count": 1}}
+    (tmp_path / "known.json").write_text(json.dumps({"version": 1, "known": known}))
+    assert check("tree.xml", "--baseline", "known.json").rows == []
+    assert check("tree.xml", "--ignore", "missing-node-port").rows == []
+    (tmp_path / "as2fm.toml").write_text('ignore = ["missing-node-port"]')
+    assert check("tree.xml").rows == []
+    (tmp_path / "as2fm.toml").write_text('severity.missing-node-port = "hint"')
+    assert check("tree.xml").status == 0
+    (tmp_path / "as2fm.toml").unlink()
+    (tmp_path / "tree.xml").write_text(TREE.replace("<Repeat>", "<!-- as2fm: ignore[missing-node-port] --><Repeat>"))
+    assert check("tree.xml").rows == []

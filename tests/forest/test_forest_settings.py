@@ -39,12 +39,16 @@ def codes(folder: Path, tree: str, settings: str) -> list[str]:
     ("tree", "settings", "expected"),
     [
         ('<Grasp forc="3"/>', "", []),
-        ('<Grasp forc="3"/>', 'tree-models = ["models/nodes.xml"]', ["unknown-node-port"]),
+        ('<Grasp forc="3"/>', 'tree-models = ["models/nodes.xml"]', ["unknown-port"]),
         ('<Grasp force="x"/>', 'tree-models = "models/nodes.xml"', ["node-port-value"]),
         ('<Wait duration="3"/>', "", []),
-        ('<Wait duration="3"/>', 'tree-libraries = ["nav2"]', ["unknown-node-port"]),
-        ("<TryCatch><AlwaysSuccess/><AlwaysSuccess/></TryCatch>", 'behaviortree-cpp = "4.9"', []),
-        ("<TryCatch><AlwaysSuccess/><AlwaysSuccess/></TryCatch>", 'behaviortree-cpp = "4.8"', ["unknown-node"]),
+        ('<Wait duration="3"/>', 'tree-libraries = ["nav2"]', ["unknown-port"]),
+        ("<TryCatch><ScriptCondition code='true'/><AlwaysSuccess/></TryCatch>", 'behaviortree-cpp = "4.9"', []),
+        (
+            "<TryCatch><ScriptCondition code='true'/><AlwaysSuccess/></TryCatch>",
+            'behaviortree-cpp = "4.8"',
+            ["unknown-node"],
+        ),
         (
             f"<ReactiveSequence>{ASYNCHRONOUS}{ASYNCHRONOUS}</ReactiveSequence>",
             'behaviortree-cpp = "4.6"',

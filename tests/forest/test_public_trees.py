@@ -109,8 +109,8 @@ OWN_MODEL = '<TreeNodesModel><Action ID="BackUp"><input_port name="meters"/></Ac
     ("backup", "own", "beside", "expected"),
     [
         ('<BackUp backup_dist="0.1"/>', "", "", []),
-        ('<BackUp backup_dst="0.1"/>', "", "", ["unknown-node-port"]),
-        ('<BackUp backup_dist="0.1" meters="1"/>', "", "", ["unknown-node-port"]),
+        ('<BackUp backup_dst="0.1"/>', "", "", ["unknown-port"]),
+        ('<BackUp backup_dist="0.1" meters="1"/>', "", "", ["unknown-port"]),
         ('<BackUp meters="a few"/>', "", "", ["unknown-node"]),
         ('<BackUp meters="a few"/>', OWN_MODEL, "", []),
         ('<BackUp meters="a few"/>', "", OWN_MODEL, ["unknown-node"]),
@@ -129,7 +129,7 @@ def test_an_own_node_with_the_name_of_a_node_of_nav2(
     assert all(severity == "INFORMATION" for severity, code, _ in findings if code == "unknown-node")
     if expected == ["unknown-node"]:
         named = found(tmp_path, {"as2fm.toml": 'tree-libraries = ["nav2"]'})
-        assert {code for _, code, _ in named} == {"unknown-node-port"}
+        assert {code for _, code, _ in named} == {"unknown-port"}
 
 
 @pytest.mark.parametrize(

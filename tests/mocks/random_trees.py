@@ -14,7 +14,6 @@ from xml.sax.saxutils import quoteattr
 import library_model
 
 import kept_strategies as st
-
 from roaml.libraries import library_node
 
 Table: TypeAlias = Mapping[str, Mapping[str, Sequence[str]]]

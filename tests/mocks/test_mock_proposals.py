@@ -16,7 +16,7 @@ from as2fm_lsp.cli.main import run
 from examples import TIMES, examples
 from roaml import api
 from roaml.libraries import LIBRARIES, library
-from roaml.lower.programs.assembly import programs
+from roaml.libraries.programs.assembly import programs
 from roaml.mocks.assumptions import assumption
 from roaml.mocks.mock import Mock, mock_for
 from roaml.roles import NodeKind

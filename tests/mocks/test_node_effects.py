@@ -7,6 +7,9 @@ from __future__ import annotations
 import itertools
 import random
 from dataclasses import dataclass, field
+from importlib import resources
+from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 from library_model import ENDED, IDLE, SKIP, LibraryError, Node, R, World, node_class, reset
@@ -15,9 +18,11 @@ from random_trees import CONDITIONS, COUNTS, WITH_WORLD
 from examples import examples
 from roaml.libraries import library_node
 from roaml.libraries.programs.assembly import programs
-from roaml.libraries.programs.effects import ANY_ANSWER, Setting, constant, effects, effects_on
+from roaml.libraries.programs.effects import ANY_ANSWER, Situation, constant, effects, effects_on
 from roaml.libraries.programs.statuses import RUNNING, SKIPPED, STATUS_CODES, SUCCESS
+from roaml.rules.support.node_calls import WITHOUT_RESETS
 
+NODES_OF_AS2FM = Path(str(resources.files("roaml.lower.nodes")))
 TABLES = {**WITH_WORLD.controls, **WITH_WORLD.decorators}
 OWN_LEAVES = {name: ports for name, ports in WITH_WORLD.leaves.items() if name in programs()}
 SETS = [frozenset(s) for size in (1, 2, 3, 4) for s in itertools.combinations(sorted(ANY_ANSWER), size)]
@@ -36,7 +41,7 @@ class Seen:
 class Child(Node):
     """A child that draws its answers from sets, and observes what its parent does."""
 
-    def __init__(self, index: int, seen: Seen, setting: Setting, source: random.Random) -> None:
+    def __init__(self, index: int, seen: Seen, setting: Situation, source: random.Random) -> None:
         self.index, self.seen, self.setting, self.source = index, seen, setting, source
         self._status = IDLE
 
@@ -74,7 +79,7 @@ class Child(Node):
         return answer
 
 
-def observe(name: str, ports: dict[str, str], setting: Setting, source: random.Random, ticks: int) -> Seen:
+def observe(name: str, ports: dict[str, str], setting: Situation, source: random.Random, ticks: int) -> Seen:
     """The events of one random execution."""
     seen = Seen()
     world = World({"x": 0, "y": 1, "k": 0}, {}, happens=source.random() < 0.5)
@@ -104,7 +109,7 @@ def observe(name: str, ports: dict[str, str], setting: Setting, source: random.R
     return seen
 
 
-def expected(name: str, setting: Setting) -> set[tuple[object, ...]]:
+def expected(name: str, setting: Situation) -> set[tuple[object, ...]]:
     """The events that are computed from the program of a node."""
     program = programs()[name]
     of_node = effects(program, setting)
@@ -119,7 +124,7 @@ def expected(name: str, setting: Setting) -> set[tuple[object, ...]]:
     return events
 
 
-def drawn(name: str, source: random.Random, *, any_answer: bool) -> tuple[dict[str, str], Setting]:
+def drawn(name: str, source: random.Random, *, any_answer: bool) -> tuple[dict[str, str], Situation]:
     """Values of the ports of a node, and what is known about it."""
     table = {**TABLES, **OWN_LEAVES}[name]
     ports = {port: source.choice(values) for port, values in table.items()}
@@ -138,7 +143,7 @@ def drawn(name: str, source: random.Random, *, any_answer: bool) -> tuple[dict[s
         if text.startswith("{"):
             known.pop(port, None)
     scripts = frozenset(port for port in ports if port[0] == "_")
-    return ports, Setting(answers, answers if any_answer else first, tuple(sorted(known.items())), scripts)
+    return ports, Situation(answers, answers if any_answer else first, tuple(sorted(known.items())), scripts)
 
 
 @pytest.mark.parametrize("name", [*TABLES, *OWN_LEAVES])
@@ -169,9 +174,17 @@ def test_everything_that_is_expected_happens(name: str) -> None:
 )
 def test_a_child_that_must_not_be_skipped(name: str, fatal: set[int]) -> None:
     any_of = (ANY_ANSWER,) * 2
-    assert effects(programs()[name], Setting(any_of, any_of)).fatal == fatal
+    assert effects(programs()[name], Situation(any_of, any_of)).fatal == fatal
     for child in range(2):
         answers = tuple(frozenset((SKIPPED if index == child else SUCCESS,)) for index in range(2))
-        setting = Setting(answers, answers)
+        setting = Situation(answers, answers)
         seen = observe(name, {}, setting, random.Random(0), 1)
         assert (("throws",) in seen.events) is (child in fatal)
+
+
+def test_nodes_of_as2fm_that_do_not_reset_an_ended_child() -> None:
+    """Their machines halt the child only when they are halted."""
+    machines = {path.stem: ElementTree.parse(path) for path in NODES_OF_AS2FM.glob("*.ascxml")}
+    halting = {name: len(list(tree.iter("bt_halt_child"))) for name, tree in machines.items()}
+    halted = {name: len(tree.findall(".//bt_halt//bt_halt_child")) for name, tree in machines.items()}
+    assert {name for name, count in halting.items() if count and count == halted[name]} == WITHOUT_RESETS

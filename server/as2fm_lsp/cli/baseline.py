@@ -12,10 +12,12 @@ import json
 import os
 from collections import Counter
 from collections.abc import Sequence
+from typing import TypeAlias
 
 from as2fm_lsp.atomic_write import write_file
 from as2fm_lsp.cli.formats.report import Entry
 from as2fm_lsp.cli.output import note
+from roaml.diagnostics import RENAMED_CODES
 from roaml.disk import MAX_DATA, required
 from roaml.project.paths import seen_from
 
@@ -40,9 +42,11 @@ def apply(path: str, entries: Sequence[Entry]) -> list[Entry]:
     known = _read(path)
     fresh = []
     for entry in entries:
-        fingerprint = entry.fingerprint_as(_name(entry, path))
-        if known[fingerprint] > 0:
-            known[fingerprint] -= 1
+        name = _name(entry, path)
+        for key in (entry.fingerprint_as(name), (name, entry.code)):
+            if known[key] > 0:
+                known[key] -= 1
+                break
         else:
             fresh.append(entry)
     return fresh
@@ -63,10 +67,20 @@ def _write(path: str, entries: Sequence[Entry]) -> None:
         raise BaselineError(f"{path}: {error.strerror or error}") from None
 
 
-def _read(path: str) -> Counter[str]:
+_Key: TypeAlias = "str | tuple[str, str]"
+"""A fingerprint. Messages of a rule may change together with its code, so a diagnostic with a former code is known by
+its file and the code now."""
+
+
+def _read(path: str) -> Counter[_Key]:
     try:
         table = json.loads(required(path, MAX_DATA).decode("utf-8"))
-        return Counter({key: int(row["count"]) for key, row in table["known"].items()})
+        known: Counter[_Key] = Counter()
+        for fingerprint, row in table["known"].items():
+            code = str(row.get("code", ""))
+            key = fingerprint if code not in RENAMED_CODES else (str(row["file"]), RENAMED_CODES[code])
+            known[key] += int(row["count"])
+        return known
     except OSError as error:
         raise BaselineError(f"{path}: {error.strerror or error}") from None
     except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from as2fm_lsp.cli.arguments import ArgumentParser, unknown_rule
 from as2fm_lsp.cli.exit_status import CLEAN, USAGE
 from as2fm_lsp.cli.output import complain, print_text
+from roaml.diagnostics import current_code
 from roaml.rules import BY_CODE, RULES, cited, document
 
 EXAMPLES = """\
@@ -49,6 +50,7 @@ def _list() -> int:
 
 def explain(code: str) -> int:
     """Print the document of a rule; return the exit status."""
+    code = current_code(code)
     if code not in BY_CODE:
         complain(unknown_rule(code))
         return USAGE

@@ -11,6 +11,7 @@ from as2fm_lsp.cli.parameters import add_set
 from as2fm_lsp.cli.standard_input import add_stdin_filename
 from as2fm_lsp.cli.tree_semantics import add_semantics
 from as2fm_lsp.outputs import InputPath, OutputPath
+from roaml.diagnostics import current_code
 from roaml.project.settings import SEVERITIES
 
 DIAGNOSTIC_FORMATS = tuple(format_ for format_ in Format if format_ is not Format.CSV)
@@ -75,4 +76,6 @@ class _Codes(argparse.Action):
 
     def __call__(self, parser, namespace, values, option_string=None):  # type: ignore[no-untyped-def]
         known = getattr(namespace, self.dest) or []
-        setattr(namespace, self.dest, [*known, *(code.strip() for code in values.split(",") if code.strip())])
+        setattr(
+            namespace, self.dest, [*known, *(current_code(code.strip()) for code in values.split(",") if code.strip())]
+        )

@@ -17,7 +17,7 @@ from roaml.forest.ports import ports_of
 from roaml.forest.scripts import script_attributes
 from roaml.libraries import Node
 from roaml.libraries.programs.assembly import NodeProgram, programs
-from roaml.libraries.programs.effects import ANY_ANSWER, Answers, Setting, constant, effects
+from roaml.libraries.programs.effects import ANY_ANSWER, Answers, Situation, constant, effects
 from roaml.libraries.programs.statuses import FAILURE, RUNNING, SKIPPED, SUCCESS
 from roaml.model.tree import TreeNode
 from roaml.record import replace
@@ -64,7 +64,7 @@ class PossibleStatuses:
         """The children of a node after whose skipping the library throws an exception."""
         program = self._program(node)
         if program is not None:
-            fatal = effects(program, self._setting(node, [_ANY] * len(node.children))).fatal
+            fatal = effects(program, self._situation(node, [_ANY] * len(node.children))).fatal
             yield from (child for index, child in enumerate(node.children) if index in fatal)
 
     def _tree(self, name: str) -> Possible:
@@ -82,15 +82,15 @@ class PossibleStatuses:
     def _own(self, node: TreeNode, below: list[Possible]) -> Possible:
         program = self._program(node)
         if program is not None:
-            result = effects(program, self._setting(node, below))
+            result = effects(program, self._situation(node, below))
             return Possible(result.answers, result.first)
         name = node.plugin.value if node.plugin else ""
         if node.is_subtree or self.forest.names_tree(node):
             inner = self._tree(name) if name in self.forest.trees else _ANY
-            result = effects(self._programs["SubTree"], self._setting(node, [inner]))
+            result = effects(self._programs["SubTree"], self._situation(node, [inner]))
         else:
             leaf = _leaf(node, self.forest.known_node(node))
-            result = effects(self._programs["condition_machine"], self._setting(node, [leaf]))
+            result = effects(self._programs["condition_machine"], self._situation(node, [leaf]))
         return Possible(result.answers, result.first)
 
     def _program(self, node: TreeNode) -> NodeProgram | None:
@@ -101,7 +101,7 @@ class PossibleStatuses:
         least, most = known.children
         return self._programs[known.name] if least <= len(node.children) <= most else None
 
-    def _setting(self, node: TreeNode, below: list[Possible]) -> Setting:
+    def _situation(self, node: TreeNode, below: list[Possible]) -> Situation:
         known = self.forest.known_node(node)
         ports = {port.name: constant(port.default) for port in known.ports if port.default is not None} if known else {}
         for setting in ports_of(node):
@@ -111,7 +111,7 @@ class PossibleStatuses:
                 ports.pop(setting.key.value, None)
         scripts = frozenset(attribute.name for attribute in script_attributes(node))
         ever, first = tuple(child.ever for child in below), tuple(child.first for child in below)
-        return Setting(ever, first, tuple(sorted(ports.items())), scripts)
+        return Situation(ever, first, tuple(sorted(ports.items())), scripts)
 
     def unreached(self, root: TreeNode) -> Iterator[tuple[TreeNode, TreeNode, str]]:
         """The children that are never ticked.
@@ -136,7 +136,7 @@ class PossibleStatuses:
         program = self._program(node)
         if program is None or len(below) < 2:
             return None
-        setting = self._setting(node, below)
+        setting = self._situation(node, below)
         ticked = effects(program, setting).ticked
         for index in range(1, len(below)):
             for before in reversed(range(index)) if index not in ticked else ():

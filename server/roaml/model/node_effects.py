@@ -12,7 +12,7 @@ from roaml.libraries.programs.effects import (
     ANY_ANSWER,
     Answers,
     ChildEffects,
-    Setting,
+    Situation,
     constant,
     effects,
     effects_on,
@@ -30,11 +30,10 @@ class TreeEffects:
     """The effects of the nodes of a tree. Nodes with a wrong number of children may do anything."""
 
     def __init__(self, system: System) -> None:
-        self._system = system
         self._answers: dict[int, Answers] = {}
         for instance in reversed(system.instances):  # children before their parents
             automaton = system.by_instance.get(instance.number)
-            self._answers[instance.number] = ANY_ANSWER if automaton is None else self._of(automaton)
+            self._answers[instance.number] = ANY_ANSWER if automaton is None else self._of(system, automaton)
 
     def on_child(self, parent: SystemAutomaton, child: SystemAutomaton) -> ChildEffects:
         """What a node of a library may do with its child."""
@@ -43,22 +42,22 @@ class TreeEffects:
         program = _program(parent)
         if program is None:
             return ALL_EFFECTS
-        return effects_on(program, self._setting(parent), parent.instance.children.index(child.instance.number))
+        return effects_on(program, self._situation(parent), parent.instance.children.index(child.instance.number))
 
-    def _of(self, automaton: SystemAutomaton) -> Answers:
+    def _of(self, system: System, automaton: SystemAutomaton) -> Answers:
         assert automaton.instance is not None
         program = _program(automaton)
         answers = _MACHINE if automaton.path else ANY_ANSWER
         if program is not None:
-            answers = effects(program, self._setting(automaton)).answers
+            answers = effects(program, self._situation(automaton)).answers
         elif automaton.instance.scripts:
             scripts = frozenset(name for name, _ in automaton.instance.scripts)
-            answers = effects(programs()["condition_machine"], Setting((answers,), (answers,), (), scripts)).answers
-        uses, use = self._system.tree_uses, automaton.instance.use
-        has_conditions = any(uses[outer].scripts for outer in _with_outer(self._system, use))
+            answers = effects(programs()["condition_machine"], Situation((answers,), (answers,), (), scripts)).answers
+        uses = _with_outer(system, automaton.instance.use)
+        has_conditions = any(system.tree_uses[use].scripts for use in uses)
         return ANY_ANSWER if has_conditions else answers
 
-    def _setting(self, parent: SystemAutomaton) -> Setting:
+    def _situation(self, parent: SystemAutomaton) -> Situation:
         assert parent.instance is not None
         node = library_node(parent.outline.name)
         assert node is not None
@@ -70,7 +69,7 @@ class TreeEffects:
                 ports.pop(key, None)
         below = tuple(self._answers[number] for number in parent.instance.children)
         scripts = frozenset(name for name, _ in parent.instance.scripts)
-        return Setting(below, below, tuple(sorted(ports.items())), scripts)
+        return Situation(below, below, tuple(sorted(ports.items())), scripts)
 
 
 def _program(automaton: SystemAutomaton) -> NodeProgram | None:

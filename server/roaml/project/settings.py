@@ -13,7 +13,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import Any
 
 from roaml.comparison import Comparison, read_comparison
-from roaml.diagnostics import Severity
+from roaml.diagnostics import Severity, current_code
 from roaml.durations import ANY_TIME, REACTION_TIME, ReactionTime, reaction_time
 from roaml.forest.settings import NEWEST, TreeSettings
 from roaml.libraries import LIBRARIES
@@ -191,6 +191,7 @@ def _codes(path: Path, value: Any, problems: list[SettingProblem]) -> tuple[str,
     read = _strings(path, value, problems)
     if read is None:
         return None
+    read = tuple(map(current_code, read))
     for place, code in zip(_places(path, value), read, strict=True):
         if code not in _rule_codes():
             problems.append(_no_rule(place, code))
@@ -207,7 +208,8 @@ def _severities(path: Path, value: Any, problems: list[SettingProblem]) -> dict[
         problems.append(SettingProblem(path, f"`{path[0]}` must be a table of rule codes and severities"))
         return None
     severities = {}
-    for code, label in value.items():
+    for written, label in value.items():
+        code = current_code(written)
         if code not in _rule_codes():
             problems.append(_no_rule((*path, code), code, is_key=True))
         elif not isinstance(label, str) or label not in SEVERITIES:

@@ -10,7 +10,7 @@ import bisect
 import re
 from collections.abc import Callable, Iterable
 
-from roaml.diagnostics import Finding
+from roaml.diagnostics import Finding, current_code
 from roaml.record import Record
 from roaml.text import Span
 from roaml.xml_syntax import Comment, Document, Element, Node, Text
@@ -79,7 +79,8 @@ def _collect(document: Document, nodes: Iterable[Node], suppressions: list[Suppr
     for node in nodes:
         match node:
             case Comment() if match := _COMMENT.match(node.value):
-                codes = None if match[1] is None else frozenset(c.strip() for c in match[1].split(",") if c.strip())
+                listed = (code.strip() for code in (match[1] or "").split(","))
+                codes = None if match[1] is None else frozenset(current_code(code) for code in listed if code)
                 line = _line(document.text, node.span)
                 if document.text[line.start : line.end].strip() == document.text[node.span.start : node.span.end]:
                     waiting.append((node.span, codes))

@@ -120,8 +120,6 @@ from roaml.rules.interfaces import (
 from roaml.rules.json_syntax import jani_type
 from roaml.rules.lone_trees import (
     entry_never_written,
-    entry_type_conflict,
-    missing_node_port,
     node_kind,
     node_model,
     node_port_value,
@@ -133,7 +131,6 @@ from roaml.rules.lone_trees import (
     tree_format,
     tree_name,
     unknown_node,
-    unknown_node_port,
     unreached_node,
     unused_tree,
 )

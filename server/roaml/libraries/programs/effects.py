@@ -32,7 +32,7 @@ MAX_DECISIONS = 5_000
 which has many children, is assumed to do anything."""
 
 
-class Setting(Record, frozen=True):
+class Situation(Record, frozen=True):
     """What is known about a node before the tree is executed.
 
     Attributes:
@@ -85,32 +85,32 @@ ALL_EFFECTS = ChildEffects(True, True, frozenset((RUNNING, SUCCESS)), frozenset(
 
 
 @functools.lru_cache(maxsize=4096)
-def effects(program: NodeProgram, setting: Setting) -> Effects:
+def effects(program: NodeProgram, situation: Situation) -> Effects:
     """What a node with a program may do."""
-    run = _Run(program, setting, None)
+    run = _Run(program, situation, None)
     if not run.explore():
-        return Effects(ANY_ANSWER, ANY_ANSWER, frozenset(range(len(setting.answers))), frozenset())
-    first = _Run(program, _first_setting(program, setting), None, is_first=True)
+        return Effects(ANY_ANSWER, ANY_ANSWER, frozenset(range(len(situation.answers))), frozenset())
+    first = _Run(program, _first_situation(program, situation), None, is_first=True)
     first.explore_ticks(run.idle)
     return Effects(frozenset(run.returned), frozenset(first.returned), frozenset(run.ticked), frozenset(run.fatal))
 
 
-def _first_setting(program: NodeProgram, setting: Setting) -> Setting:
-    """The setting for the first tick of a node after a reset. A child that may not have been reset can return any of
+def _first_situation(program: NodeProgram, situation: Situation) -> Situation:
+    """The situation for the first tick of a node after a reset. A child that may not have been reset can return any of
     its statuses then."""
-    first = list(setting.first)
-    for child, (answers, at_first) in enumerate(zip(setting.answers, setting.first, strict=True)):
+    first = list(situation.first)
+    for child, (answers, at_first) in enumerate(zip(situation.answers, situation.first, strict=True)):
         if at_first != answers:
-            run = _Run(program, setting, child)
+            run = _Run(program, situation, child)
             if not run.explore() or any(state[_CHILD] != IDLE for state in run.idle):
                 first[child] = answers
-    return replace(setting, first=tuple(first))
+    return replace(situation, first=tuple(first))
 
 
 @functools.lru_cache(maxsize=4096)
-def effects_on(program: NodeProgram, setting: Setting, child: int) -> ChildEffects:
+def effects_on(program: NodeProgram, situation: Situation, child: int) -> ChildEffects:
     """What a node with a program may do with the child with the index `child`."""
-    run = _Run(program, setting, child)
+    run = _Run(program, situation, child)
     if not run.explore():
         return ALL_EFFECTS
     return ChildEffects(run.ticks_ended, run.restarts, frozenset(run.halts), frozenset(run.passes_halts))
@@ -158,7 +158,7 @@ class _Run(Record, eq=False):
     the first time after a reset."""
 
     program: NodeProgram
-    setting: Setting
+    situation: Situation
     child: int | None
     is_first: bool = False
     returned: set[int] = field(default_factory=set)
@@ -176,7 +176,7 @@ class _Run(Record, eq=False):
     ports: dict[str, Known] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        program, given = self.program, self.setting.scripts
+        program, given = self.program, self.situation.scripts
         self.segments = {
             "before": assembly.before(given),
             "tick": program.tick,
@@ -185,7 +185,7 @@ class _Run(Record, eq=False):
             "halted": assembly.halted(given),
         }
         self.declared = frozenset(program.variables)
-        self.ports = dict(self.setting.ports)
+        self.ports = dict(self.situation.ports)
 
     # ------------------------------------------------------------ explorations
 
@@ -354,13 +354,13 @@ class _Run(Record, eq=False):
                 yield following, after
 
     def answers(self, child: int, variables: _Variables) -> Answers:
-        every = self.setting.answers[child]
+        every = self.situation.answers[child]
         if not self.is_first:
             return every
         ticked = variables[_TICKED]
         assert isinstance(ticked, int)
         variables[_TICKED] = ticked | 1 << child
-        return every if ticked >> child & 1 else self.setting.first[child]
+        return every if ticked >> child & 1 else self.situation.first[child]
 
     def returns(self, status: _Value, variables: _Variables) -> Iterator[tuple[_Place, _Variables]]:
         results = [status] if isinstance(status, int) else sorted(ANY_ANSWER)
@@ -432,7 +432,7 @@ class _Run(Record, eq=False):
         if name in STATUS_CODES:
             return STATUS_CODES[name]
         if name == "COUNT":
-            return len(self.setting.answers)
+            return len(self.situation.answers)
         key = {"otherwise": "else", "result": _RESULT}.get(name, name)
         if key in variables:
             return variables[key]

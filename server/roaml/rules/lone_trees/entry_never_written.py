@@ -55,7 +55,7 @@ def _is_outermost(forest: Forest, entries: Entries, use: Use) -> bool:
 
 
 def _is_parameter(forest: Forest, use: Use) -> bool:
-    """Whether the model of a subtree has a port for an entry; missing-node-port reports a port that is not set."""
+    """Whether the model of a subtree has a port for an entry; missing-port reports a port that is not set."""
     model = forest.subtree_models.get(use.tree)
     port = model.port(use.name) if model is not None else None
     return port is not None and port.direction.reads
