@@ -56,7 +56,7 @@ VALID = {
 <root BTCPP_format="4"><BehaviorTree ID="A"><Sequence>
     <IfThenElse><AlwaysSuccess/><AlwaysSuccess/></IfThenElse>
     <WhileDoElse><AlwaysSuccess/><AlwaysSuccess/><AlwaysFailure/></WhileDoElse>
-    <TryCatch catch_on_halt="true"><AlwaysFailure/><AlwaysSuccess/><AlwaysSuccess/></TryCatch>
+    <TryCatch catch_on_halt="true"><Sleep msec="5"/><AlwaysSuccess/><AlwaysSuccess/></TryCatch>
     <Switch3 variable="b" case_1="a" case_2="2" case_3="3.5"><Sleep msec="0"/><Sleep msec="1"/><Sleep msec="2"/>
       <AlwaysSuccess/></Switch3>
     <Parallel success_count="-1" failure_count="-2"><AlwaysSuccess/><AlwaysSuccess/></Parallel>

@@ -85,19 +85,18 @@ def observe(name: str, ports: dict[str, str], setting: Situation, source: random
     world = World({"x": 0, "y": 1, "k": 0}, {}, happens=source.random() < 0.5)
     children: list[Node] = [Child(i, seen, setting, source) for i in range(len(setting.answers))]
     node = node_class(name)(world, name, ports, children)
-    for _ in range(ticks):
+    for tick in range(ticks):
         if source.random() < 0.7:
             world.write(source.choice(("x", "y")), source.choice((0, 1, 1, 2, 3, 4, 5, 6)))
             world.entries["k"] = source.choice((0, 1))
         world.happens ^= source.random() < 0.2
-        is_first = node.status == IDLE
         try:
             answer = node.execute()
         except LibraryError:
             seen.events.add(("throws",))
             return seen
         seen.events.add(("answer", STATUS_CODES[answer]))
-        if is_first:
+        if tick == 0:
             seen.events.add(("first", STATUS_CODES[answer]))
         if answer in ENDED:
             seen.done.clear()

@@ -15,13 +15,13 @@ from roaml.forest.entries import entry_of
 from roaml.forest.forest import Forest
 from roaml.forest.ports import ports_of
 from roaml.forest.scripts import script_attributes
-from roaml.libraries import Node
+from roaml.libraries import Node, Port
 from roaml.libraries.programs.assembly import NodeProgram, programs
 from roaml.libraries.programs.effects import ANY_ANSWER, Answers, Situation, constant, effects
-from roaml.libraries.programs.statuses import FAILURE, RUNNING, SKIPPED, SUCCESS
+from roaml.libraries.programs.statuses import FAILURE, RUNNING, SKIPPED, STATUS_CODES, SUCCESS
 from roaml.model.tree import TreeNode
 from roaml.record import replace
-from roaml.roles import NodeKind
+from roaml.roles import UNBOUNDED, NodeKind
 
 MAX_SUBTREES = 100
 """The maximum nesting depth of subtrees that are analysed. Deeper subtrees are assumed to return any status."""
@@ -30,7 +30,7 @@ _BLAMED = {SUCCESS: "SUCCESS", FAILURE: "FAILURE", RUNNING: "RUNNING"}
 
 
 class Possible(NamedTuple):
-    """The statuses that a node can return: at any tick, and at its first tick after a reset."""
+    """The statuses that a node can return: at any tick, and at its first tick."""
 
     ever: Answers
     first: Answers
@@ -101,14 +101,16 @@ class PossibleStatuses:
         least, most = known.children
         return self._programs[known.name] if least <= len(node.children) <= most else None
 
+    def _is_in_order(self, node: TreeNode) -> bool:
+        """Whether a node may have any number of children, so that each continues after the ones before it."""
+        known = self.forest.known_node(node)
+        return known is not None and known.children[1] == UNBOUNDED
+
     def _situation(self, node: TreeNode, below: list[Possible]) -> Situation:
         known = self.forest.known_node(node)
-        ports = {port.name: constant(port.default) for port in known.ports if port.default is not None} if known else {}
-        for setting in ports_of(node):
-            if entry_of(setting) is None:
-                ports[setting.key.value] = constant(setting.value.value)
-            else:
-                ports.pop(setting.key.value, None)
+        ports = (
+            {port.name: number for port in known.ports if (number := _number(node, port)) is not None} if known else {}
+        )
         scripts = frozenset(attribute.name for attribute in script_attributes(node))
         ever, first = tuple(child.ever for child in below), tuple(child.first for child in below)
         return Situation(ever, first, tuple(sorted(ports.items())), scripts)
@@ -134,7 +136,7 @@ class PossibleStatuses:
     def _stopped(self, node: TreeNode, below: list[Possible]) -> tuple[TreeNode, TreeNode, str] | None:
         """The first child of a node that is never ticked because of an earlier child."""
         program = self._program(node)
-        if program is None or len(below) < 2:
+        if program is None or not self._is_in_order(node):
             return None
         setting = self._situation(node, below)
         ticked = effects(program, setting).ticked
@@ -146,6 +148,18 @@ class PossibleStatuses:
                     if index in effects(program, replace(setting, answers=tuple(answers))).ticked:
                         return node.children[index], node.children[before], _BLAMED[status]
         return None
+
+
+def _number(node: TreeNode, port: Port) -> float | None:
+    """The number in a port; `None` if it is not a useful constant number. Another rule reports useless numbers."""
+    setting = next((setting for setting in ports_of(node) if setting.key.value == port.name), None)
+    text = port.default if setting is None else None if entry_of(setting) is not None else setting.value.value
+    number = None if text is None or text.strip() in STATUS_CODES else constant(text)
+    if isinstance(number, (bool, str)) or number is None or (port.limits and port.limits.counts_children):
+        return None
+    least = port.limits.minimum if port.limits else None
+    is_useful = least is None or number >= least or (port.limits and number in port.limits.special)
+    return number if is_useful else None
 
 
 def _from_leaves(root: TreeNode) -> list[TreeNode]:

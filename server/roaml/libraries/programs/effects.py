@@ -20,7 +20,7 @@ from roaml.exhaustive import assert_never
 from roaml.libraries.programs import assembly
 from roaml.libraries.programs.assembly import Instruction, NodeProgram
 from roaml.libraries.programs.statuses import FAILURE, HELD, IDLE, RUNNING, SKIPPED, STATUS_CODES, SUCCESS, Known
-from roaml.record import Record, field, replace
+from roaml.record import Record, field
 
 Answers: TypeAlias = "frozenset[int]"
 """Statuses that a node can return: SUCCESS, FAILURE, RUNNING and SKIPPED, as codes."""
@@ -37,7 +37,7 @@ class Situation(Record, frozen=True):
 
     Attributes:
         answers: the statuses that each child can return.
-        first: the statuses that each child can return when it is ticked for the first time after a reset.
+        first: the statuses that each child can return when it is ticked for the first time.
         ports: ports with constant values, sorted by name.
         scripts: the names of its conditions and scripts.
     """
@@ -53,7 +53,7 @@ class Effects(Record, frozen=True):
 
     Attributes:
         answers: the statuses that it can return.
-        first: the statuses that it can return at its first tick after a reset.
+        first: the statuses that it can return at its first tick.
         ticked: the indices of the children that it can tick.
         fatal: the indices of the children that must not be skipped, because the library throws an exception then.
     """
@@ -90,21 +90,9 @@ def effects(program: NodeProgram, situation: Situation) -> Effects:
     run = _Run(program, situation, None)
     if not run.explore():
         return Effects(ANY_ANSWER, ANY_ANSWER, frozenset(range(len(situation.answers))), frozenset())
-    first = _Run(program, _first_situation(program, situation), None, is_first=True)
-    first.explore_ticks(run.idle)
+    first = _Run(program, situation, None, is_first=True)
+    first.explore_first()
     return Effects(frozenset(run.returned), frozenset(first.returned), frozenset(run.ticked), frozenset(run.fatal))
-
-
-def _first_situation(program: NodeProgram, situation: Situation) -> Situation:
-    """The situation for the first tick of a node after a reset. A child that may not have been reset can return any of
-    its statuses then."""
-    first = list(situation.first)
-    for child, (answers, at_first) in enumerate(zip(situation.answers, situation.first, strict=True)):
-        if at_first != answers:
-            run = _Run(program, situation, child)
-            if not run.explore() or any(state[_CHILD] != IDLE for state in run.idle):
-                first[child] = answers
-    return replace(situation, first=tuple(first))
 
 
 @functools.lru_cache(maxsize=4096)
@@ -155,7 +143,7 @@ since the node was ticked for the first time after a reset."""
 
 class _Run(Record, eq=False):
     """The execution of a program. `child` is the index of the observed child. If `is_first`, each child is ticked for
-    the first time after a reset."""
+    the first time."""
 
     program: NodeProgram
     situation: Situation
@@ -198,9 +186,10 @@ class _Run(Record, eq=False):
         self.rest(start)
         return self.finish()
 
-    def explore_ticks(self, states: list[_Variables]) -> None:
-        """Execute one tick in each of the given states of the node."""
-        self.pending = [(("before", 0), {**state, _TICKED: 0}) for state in states]
+    def explore_first(self) -> None:
+        """Execute the first tick of the node."""
+        start: _Variables = {"status": IDLE, **self.program.fixed, **self.program.variables}
+        self.pending = [(("before", 0), {**start, _TICKED: 0})]
         self.finish()
 
     def finish(self) -> bool:
@@ -208,11 +197,6 @@ class _Run(Record, eq=False):
             place, variables = self.pending.pop()
             self.execute(place, variables)
         return not self.pending
-
-    @property
-    def idle(self) -> list[_Variables]:
-        """The states in which the node may be when it is ticked for the first time after a reset."""
-        return [dict(state) for state in self.resting if ("status", IDLE) in state]
 
     def rest(self, variables: _Variables) -> None:
         """The node waits for its parent, which may tick, halt or reset it."""
