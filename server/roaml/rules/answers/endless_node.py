@@ -11,7 +11,8 @@ from roaml.model.behavior.explore import Behavior, BehaviorStep
 from roaml.model.behavior.phases import Phase
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.answers import behaviors, is_halted, plugins
+from roaml.rules.support.answers import behaviors, plugins
+from roaml.rules.support.node_calls import statuses_at_halt
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -19,7 +20,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     automata = plugins(context)
     if not automata or context.system is None:
         return
-    if any(is_halted(context.system, automaton, running=True) for automaton in automata):
+    if any(Phase.RUNNING in statuses_at_halt(context.system, automaton) for automaton in automata):
         return
     for behavior in behaviors(context):
         if behavior.chart is context.machine.chart:
