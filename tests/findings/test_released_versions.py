@@ -31,8 +31,9 @@ def test_old_versions_are_released(code: str, tmp_path: Path) -> None:
     for version in range(VERSIONS):
         check(workspace, version)
     files = len(workspace.snapshot().files())
-    growth = {name: count - before[name] for name, count in alive().items()}
-    assert 0 < growth["Document"] <= MAX_KEPT * files, growth
+    after = alive()
+    growth = {name: count - before[name] for name, count in after.items()}  # negative if earlier tests left some behind
+    assert after["Document"] > 0
     assert max(growth.values()) <= MAX_KEPT * files, growth
 
 
