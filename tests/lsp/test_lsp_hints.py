@@ -134,7 +134,7 @@ async def test_the_client_is_told_when_other_files_change_them(tmp_path: Path) -
         await client.until(lambda: client.refreshed)
         # Symbols that other files do not use.
         client.replace(machine, files["a.ascxml"].replace('expr="_msg.data"', 'expr="_msg.data + nothing"'))
-        await client.until_codes(machine, "undeclared-variable")
+        await client.until_codes(machine, "unused-variable", "undeclared-variable")
         client.refreshed.clear()
         client.replace(machine, files["a.ascxml"].replace("/a/b", "/b/c"), version=3)
         await client.until(lambda: client.refreshed)
