@@ -32,6 +32,7 @@ from roaml.lower.programs.nodes import (
 )
 from roaml.lower.programs.refusal import TreeRefusal
 from roaml.model.expand import Frame, Instance, Reference, TreeUse, node_at
+from roaml.model.node_effects import tree_effects
 from roaml.model.outline import MachineOutline
 from roaml.model.system import EntryOutline, System, SystemAutomaton
 from roaml.model.tree import TreeFile, TreeNode
@@ -182,7 +183,7 @@ class LibraryTreeBuilder:
         """Whether the parent of an instance may tick it again after it has ended, without resetting it."""
         return (
             bool(parent.path)
-            or self.system.tree_effects.on_child(parent, self.system.by_instance[instance.number]).ticks_ended
+            or tree_effects(self.system).on_child(parent, self.system.by_instance[instance.number]).ticks_ended
         )
 
     def origin(self, instance: Instance) -> Location:

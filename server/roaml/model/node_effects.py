@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from roaml.libraries import library_node
 from roaml.libraries.programs.assembly import NodeProgram, programs
 from roaml.libraries.programs.effects import (
@@ -19,9 +17,7 @@ from roaml.libraries.programs.effects import (
 )
 from roaml.libraries.programs.statuses import FAILURE, RUNNING, SUCCESS
 from roaml.model.expand import PortConstant
-
-if TYPE_CHECKING:
-    from roaml.model.system import System, SystemAutomaton
+from roaml.model.system import System, SystemAutomaton
 
 _MACHINE = frozenset((SUCCESS, FAILURE, RUNNING))
 
@@ -88,3 +84,11 @@ def _with_outer(system: System, use: int | None) -> list[int]:
         result.append(use)
         use = system.tree_uses[use].outer
     return result
+
+
+def tree_effects(system: System) -> TreeEffects:
+    """The effects of the nodes of a system on their children, cached with the system."""
+    known: dict[str, TreeEffects] = system.__dict__.setdefault("_tree_effects", {})
+    if "effects" not in known:
+        known["effects"] = TreeEffects(system)
+    return known["effects"]

@@ -21,7 +21,6 @@ from roaml.language import BEHAVIOR_TREE, ElementType
 from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Node, Port, library
 from roaml.model.expand import Instance, NodeSource, PortConstant, PortValue, Reference, TreeUse
 from roaml.model.gaps import Act, Gap, GapAct, InterfaceAct, answers, is_interface_name
-from roaml.model.node_effects import TreeEffects
 from roaml.model.outline import (
     EventReceived,
     EventSent,
@@ -220,10 +219,6 @@ class System(Record, frozen=True, eq=False, dict=True, weakref=True):
         if element is not None and element.node:
             return element.program_only
         return plugin in library_plugins() and plugin not in self._plugins
-
-    @cached_property
-    def tree_effects(self) -> TreeEffects:
-        return TreeEffects(self)
 
     @cached_property
     def automata(self) -> tuple[SystemAutomaton, ...]:

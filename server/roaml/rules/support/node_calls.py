@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from roaml.libraries import library_node
 from roaml.libraries.programs.statuses import RUNNING, SUCCESS
 from roaml.model.behavior.phases import Phase
+from roaml.model.node_effects import tree_effects
 from roaml.model.system import System, SystemAutomaton
 
 _AT_REST = frozenset((None, Phase.ENDED))
@@ -26,7 +27,7 @@ def statuses_at_tick(system: System, automaton: SystemAutomaton) -> frozenset[Ph
         return _STATUSES
     child = automaton
     for parent in _ancestors(system, automaton):
-        if parent.path or system.tree_effects.on_child(parent, child).restarts:
+        if parent.path or tree_effects(system).on_child(parent, child).restarts:
             return _STATUSES
         child = parent
     return _STATUSES - {Phase.ENDED}
@@ -51,7 +52,7 @@ def _halted(
     """The statuses in which `parent` may halt its child, if it may itself be halted in the statuses `parent_halted`."""
     if parent.path:  # a plugin of the user
         return _STATUSES if parent.outline.plugin.halts_children else frozenset()
-    effects = system.tree_effects.on_child(parent, child)
+    effects = tree_effects(system).on_child(parent, child)
     if system.is_program(parent):
         halts = effects.halts | (effects.passes_halts if Phase.RUNNING in parent_halted else frozenset())
         return frozenset(_PHASES[status] for status in halts)
