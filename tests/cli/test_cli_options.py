@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import os
 import sys
+from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
 
 import pytest
@@ -163,6 +165,25 @@ def test_a_plain_kernel_is_named_once(command: Command, monkeypatch: pytest.Monk
     assert done.err.count("plain Python") == 1
     assert f"`{sys.executable} -m as2fm_lsp.cli.build_kernel`" in done.err
     assert "plain Python" in command("--version").out
+
+
+def test_compiled_modules_older_than_their_sources_are_named(tmp_path: Path) -> None:
+    package = tmp_path / "roaml"
+    (package / "smc").mkdir(parents=True)
+    source, compiled = package / "smc/kernel.py", package / f"smc/kernel{EXTENSION_SUFFIXES[0]}"
+    source.touch()
+    compiled.touch()
+    os.utime(source, (100, 100))
+    os.utime(compiled, (200, 200))
+    assert kernel_note.outdated_modules(package) == []
+    os.utime(source, (300, 300))
+    assert kernel_note.outdated_modules(package) == ["roaml.smc.kernel"]
+
+
+def test_outdated_modules_are_a_warning(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(kernel_note, "outdated_modules", lambda: ["roaml.smc.kernel"])
+    assert "roaml.smc.kernel must be compiled again" in command("--version").out
+    assert kernel_note.kernel_warning().startswith("warning: roaml.smc.kernel must be compiled again")
 
 
 def test_explain(command: Command) -> None:

@@ -22,7 +22,7 @@ from as2fm_lsp.cli.experiment_arguments import (
 from as2fm_lsp.cli.formats import Format, render
 from as2fm_lsp.cli.formats.report import shown_path
 from as2fm_lsp.cli.interrupts import Interrupts
-from as2fm_lsp.cli.kernel_note import slow_kernel_note
+from as2fm_lsp.cli.kernel_note import kernel_warning
 from as2fm_lsp.cli.model_arguments import UsageError, error_report, settings_of
 from as2fm_lsp.cli.output import complain, print_text
 from as2fm_lsp.cli.plot_files import write_plots
@@ -48,7 +48,7 @@ __all__ = ["parser", "run"]
 
 
 def run(arguments: Sequence[str]) -> int:
-    print_text(slow_kernel_note(), stream=sys.stderr)
+    print_text(kernel_warning(), stream=sys.stderr)
     with Interrupts() as interrupts:
         try:
             return _run(parsed(arguments), interrupts)

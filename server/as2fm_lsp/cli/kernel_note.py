@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether the model checker of this installation is compiled, and how to compile it."""
+"""Whether the model checker of this installation is compiled from its current sources, and how to compile it."""
 
 from __future__ import annotations
 
 import importlib.util
 import sys
+from importlib.machinery import EXTENSION_SUFFIXES
+from pathlib import Path
+
+import roaml
 
 SLOWER = "12 to 37 times slower"
 """The measured difference between plain Python and the compiled kernel (docs/performance.md)."""
@@ -16,14 +20,40 @@ def is_compiled() -> bool:
     return spec is not None and not (spec.origin or "").endswith(".py")
 
 
+def outdated_modules(package: Path = Path(roaml.__file__).parent) -> list[str]:
+    """The compiled modules that are older than their sources, as in a checkout that was updated and not installed
+    again. They may fail or have wrong results."""
+    suffix = EXTENSION_SUFFIXES[0]
+    return [
+        f"{package.name}.{path.parent.name}.{path.name.removesuffix(suffix)}"
+        for path in sorted(package.glob(f"*/*{suffix}"))
+        if _is_newer(path.with_name(path.name.removesuffix(suffix) + ".py"), path)
+    ]
+
+
+def _is_newer(source: Path, compiled: Path) -> bool:
+    return source.is_file() and source.stat().st_mtime > compiled.stat().st_mtime
+
+
 def version_line() -> str:
     """The line of `--version` about the kernel."""
+    if outdated := outdated_modules():
+        return f"kernel: {_outdated(outdated)}"
     return "kernel: compiled" if is_compiled() else f"kernel: plain Python, {SLOWER}; {_remedy()}"
 
 
-def slow_kernel_note() -> str:
-    """What `verify` says once about a kernel that is not compiled; empty if it is compiled."""
+def kernel_warning() -> str:
+    """What `verify` says once about a kernel that is not compiled, or not from its current sources; otherwise empty."""
+    if outdated := outdated_modules():
+        return f"warning: {_outdated(outdated)}"
     return "" if is_compiled() else f"note: the model checker runs as plain Python, {SLOWER}; {_remedy()}"
+
+
+def _outdated(modules: list[str]) -> str:
+    return (
+        f"{', '.join(modules)} must be compiled again, because the source is newer, and results may be wrong: run "
+        f"`{sys.executable} -m pip install -e .` in the checkout"
+    )
 
 
 def _remedy() -> str:

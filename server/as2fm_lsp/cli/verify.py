@@ -16,7 +16,7 @@ from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
 from as2fm_lsp.cli.formats import CheckReport, Format, render
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
 from as2fm_lsp.cli.interrupts import Interrupts
-from as2fm_lsp.cli.kernel_note import slow_kernel_note
+from as2fm_lsp.cli.kernel_note import kernel_warning
 from as2fm_lsp.cli.mock_options import MESSAGES, declarations_in
 from as2fm_lsp.cli.model_arguments import (
     UsageError,
@@ -92,7 +92,7 @@ longer than it saves."""
 
 def run(arguments: Sequence[str]) -> int:
     options = parser().parse_args(arguments)
-    if slow := slow_kernel_note():
+    if slow := kernel_warning():
         note(slow)
     with Interrupts() as interrupts:
         try:
