@@ -17,6 +17,7 @@ from random_trees import CONDITIONS, COUNTS, WITH_WORLD
 
 from examples import examples
 from roaml.libraries import library_node
+from roaml.libraries.programs import effects as effects_module
 from roaml.libraries.programs.assembly import programs
 from roaml.libraries.programs.effects import ANY_ANSWER, Situation, constant, effects, effects_on
 from roaml.libraries.programs.statuses import RUNNING, SKIPPED, STATUS_CODES, SUCCESS
@@ -166,6 +167,19 @@ def test_everything_that_is_expected_happens(name: str) -> None:
         if happened >= expectation:
             break
     assert happened == expectation
+
+
+@pytest.mark.parametrize("name", [n for n in WITH_WORLD.controls if n not in COUNTS])
+def test_a_node_with_many_children(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    source = random.Random(name)
+    for _ in range(examples(10)):
+        of_each = tuple(source.choice(SETS) for _ in range(source.randint(3, 4)))
+        _, drawn_setting = drawn(name, source, any_answer=False)
+        setting = Situation(of_each, of_each, drawn_setting.ports, drawn_setting.scripts)
+        exact = expected(name, setting)
+        monkeypatch.setattr(effects_module, "MAX_SIBLINGS", 1)
+        assert exact <= expected(name, setting), setting
+        monkeypatch.undo()
 
 
 @pytest.mark.parametrize(

@@ -31,6 +31,10 @@ MAX_DECISIONS = 5_000
 """The maximum number of situations in which the execution of a program can continue in several ways. A node with more,
 which has many children, is assumed to do anything."""
 
+MAX_SIBLINGS = 6
+"""The maximum number of siblings before a child, and after it, that `effects_on` distinguishes. Without this limit, its
+costs for all children of a node grow with the square of their number."""
+
 
 class Situation(Record, frozen=True):
     """What is known about a node before the tree is executed.
@@ -95,9 +99,36 @@ def effects(program: NodeProgram, situation: Situation) -> Effects:
     return Effects(frozenset(run.returned), frozenset(first.returned), frozenset(run.ticked), frozenset(run.fatal))
 
 
-@functools.lru_cache(maxsize=4096)
 def effects_on(program: NodeProgram, situation: Situation, child: int) -> ChildEffects:
     """What a node with a program may do with the child with the index `child`."""
+    return _effects_on(program, *_narrowed(situation, child))
+
+
+def _narrowed(situation: Situation, child: int) -> tuple[Situation, int]:
+    """A situation with few children in which a node may do with `child` what it may do in `situation`, and possibly
+    more; and the index of the child in it.
+
+    If there are many siblings before the child or after it, two children that can give all their answers replace them.
+    Only nodes that treat all children alike have so many. Values of ports are omitted then, because they can be numbers
+    of children.
+    """
+    if max(child, len(situation.answers) - child - 1) <= MAX_SIBLINGS:
+        return situation, child
+    answers, at = _merged(situation.answers, child)
+    return Situation(answers, _merged(situation.first, child)[0], (), situation.scripts), at
+
+
+def _merged(answers: tuple[Answers, ...], child: int) -> tuple[tuple[Answers, ...], int]:
+    """The answers of the children of the narrowed situation, and the index of the child."""
+    before, after = (
+        siblings if len(siblings) <= MAX_SIBLINGS else (frozenset().union(*siblings),) * 2
+        for siblings in (answers[:child], answers[child + 1 :])
+    )
+    return (*before, answers[child], *after), len(before)
+
+
+@functools.lru_cache(maxsize=4096)
+def _effects_on(program: NodeProgram, situation: Situation, child: int) -> ChildEffects:
     run = _Run(program, situation, child)
     if not run.explore():
         return ALL_EFFECTS
