@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 _SIZE = struct.Struct("!I")
 _STATUS = struct.Struct("!i")
 _STREAMS = (0, 1, 2)
-_MODULES = ("server", *(f"cli.{name}" for name in ("check", "explain", "format", "init", "migrate", "serve")))
-_MODULES += ("cli.translate", "cli.verify", "trust")
+_COMMANDS = ("check", "debug", "draw", "explain", "format", "init", "migrate", "serve", "simulate")
+_MODULES = ("server", "debug.adapter", "trust", *(f"cli.{name}" for name in (*_COMMANDS, "translate", "verify")))
 
 
 # -------------------------------------------------------------------------- tests

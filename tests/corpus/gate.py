@@ -13,7 +13,6 @@ from __future__ import annotations
 import argparse
 import json
 import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -23,6 +22,7 @@ from typing import Any
 from dap_client import Client
 
 import conformance
+import prefork
 from both_kernels import difference
 from corpus.generated import generate
 from corpus.parts import compose
@@ -120,7 +120,7 @@ def composed(folder: Path, seeds: Iterable[int]) -> Iterator[System]:
 
 def run(*arguments: str, accepted: tuple[int, ...] = (0,)) -> tuple[str, str]:
     """Run a command; return its standard output and what is wrong with it, "" if nothing is."""
-    done = subprocess.run([sys.executable, "-m", "as2fm_lsp", *arguments], capture_output=True, text=True, check=False)
+    done = subprocess.run([*prefork.command(), *arguments], capture_output=True, text=True, check=False)
     if done.returncode in accepted and "Traceback" not in done.stderr and "internal error" not in done.stderr:
         return done.stdout, ""
     last = (done.stderr or done.stdout).strip().splitlines()[-3:]

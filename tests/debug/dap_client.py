@@ -6,26 +6,27 @@ from __future__ import annotations
 
 import json
 import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
+import prefork
 from dap_schema import validate
 
 
 class Client:
-    """An adapter as a separate process.
+    """An adapter as a separate process: a fork (`prefork`), unless a command is given.
 
     Attributes:
         events: the events that have arrived and that no test has waited for yet.
     """
 
-    def __init__(
-        self, command: tuple[str, ...] = (sys.executable, "-m", "as2fm_lsp"), *, validates: bool = True
-    ) -> None:
+    def __init__(self, command: tuple[str, ...] = (), *, validates: bool = True) -> None:
         self._validates = validates
         self.process = subprocess.Popen(
-            (*command, "debug"), stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+            (*(command or prefork.command()), "debug"),
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
         )
         self.events: list[dict[str, Any]] = []
         self._sequence = 0

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 import shutil
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -36,7 +37,15 @@ def _break(client: Client, path: Path, line: int, **options: str) -> dict[str, o
     return dict(body)
 
 
-def test_a_session_from_its_start_to_its_end(client: Client) -> None:
+@pytest.fixture
+def real_client() -> Iterator[Client]:
+    """The program as an editor starts it."""
+    with Client((sys.executable, "-m", "as2fm_lsp")) as client:
+        yield client
+
+
+def test_a_session_from_its_start_to_its_end(real_client: Client) -> None:
+    client = real_client
     stopped = client.begin(BUG, property="block_placed", seed=3)
     assert stopped["reason"] == "entry"
     threads = {thread["name"]: thread["id"] for thread in client.ask("threads")["threads"]}

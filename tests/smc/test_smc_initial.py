@@ -20,6 +20,7 @@ from roaml.explicit.plain import plain_kernel, plain_search, plain_solver
 from roaml.explicit.space import LimitError, StateLimits, explore
 from roaml.explicit.values import values_of
 from roaml.simulation.run import Run
+from roaml.smc import initial
 from roaml.smc.fault import FaultError
 from roaml.smc.initial import NO_INITIAL_STATE
 from roaml.smc.kernel import Kernel
@@ -322,7 +323,8 @@ def test_equations_and_independent_variables_need_no_enumeration() -> None:
         ([unset(f"x{i}", between(0, 999_999)) for i in range(4)], True, "more than 2⁶² initial states"),
     ],
 )
-def test_refusals(variables: list[Json], condition: Any, message: str) -> None:
+def test_refusals(variables: list[Json], condition: Any, message: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(initial, "MAX_TRIED", 10_000)
     written = document(
         automaton("m", "l", [edge("l", "l")]), variables=variables, **{"restrict-initial": {"exp": condition}}
     )
