@@ -179,8 +179,8 @@ def test_a_diagnostic_is_one_line() -> None:
     path = str(ROOT / "examples/delivery_robot/tree.xml")
     text = Path(path).read_text().replace("<Charge />", "<Chrge />")
     first, *_ = api.check([path], texts={path: text}).diagnostics
-    assert str(first).startswith(f"{path}:8:18: error: there is no plugin `Chrge`")
-    assert str(first).endswith("[unknown-plugin]")
+    assert str(first).startswith(f"{path}:8:18: error: there is no node `Chrge`")
+    assert str(first).endswith("[unknown-node]")
 
 
 RAISING = ("api", "experiments", "explicit", "jani", "lower", "mocks", "smc", "verification")

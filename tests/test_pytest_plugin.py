@@ -36,7 +36,7 @@ def test_errors_fail_and_nothing_is_verified(tmp_path: Path) -> None:
     tree = tmp_path / "robot/tree.xml"
     tree.write_text(tree.read_text().replace("<Charge />", "<Chrge />"))
     said = run(tmp_path, "--as2fm")
-    assert "tree.xml:8:18: error: there is no plugin `Chrge`" in said
+    assert "tree.xml:8:18: error: there is no node `Chrge`" in said
     assert "all_delivered" not in said
 
 

@@ -18,9 +18,13 @@ from roaml.roles import SymbolKind
 from roaml.text import Edit, Location, SourceFile, Span, TextEdit, computed
 
 RENAMED_CODES = {
-    "missing-node-port": "missing-port",
-    "unknown-node-port": "unknown-port",
     "entry-type-conflict": "blackboard-type-conflict",
+    "entry-never-written": "blackboard-never-written",
+    "missing-node-port": "missing-port",
+    "node-port-value": "port-value",
+    "tree-model-mismatch": "node-model",
+    "unknown-node-port": "unknown-port",
+    "unknown-plugin": "unknown-node",
 }
 """Former code of a rule -> its code now. Comments, settings, options and baselines may contain former codes until the
 release after the one that renames them."""

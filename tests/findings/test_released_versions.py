@@ -20,7 +20,7 @@ MAX_KEPT = 2
 
 
 @pytest.mark.parametrize(
-    "code", ["undeclared-variable", "undefined-state", "node-port-value", "script-type", "missing-port"]
+    "code", ["undeclared-variable", "undefined-state", "port-value", "script-type", "missing-port"]
 )
 def test_old_versions_are_released(code: str, tmp_path: Path) -> None:
     """A file is checked and its fixes are listed in many versions."""

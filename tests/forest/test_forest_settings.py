@@ -40,7 +40,7 @@ def codes(folder: Path, tree: str, settings: str) -> list[str]:
     [
         ('<Grasp forc="3"/>', "", []),
         ('<Grasp forc="3"/>', 'tree-models = ["models/nodes.xml"]', ["unknown-port"]),
-        ('<Grasp force="x"/>', 'tree-models = "models/nodes.xml"', ["node-port-value"]),
+        ('<Grasp force="x"/>', 'tree-models = "models/nodes.xml"', ["port-value"]),
         ('<Wait duration="3"/>', "", []),
         ('<Wait duration="3"/>', 'tree-libraries = ["nav2"]', ["unknown-port"]),
         ("<TryCatch><ScriptCondition code='true'/><AlwaysSuccess/></TryCatch>", 'behaviortree-cpp = "4.9"', []),

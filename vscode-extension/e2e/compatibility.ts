@@ -102,7 +102,7 @@ export function compatibility(stage: Stage): void {
             const rows = window.page.locator(".markers-panel .monaco-list-row");
             await rows.filter({ hasText: "XML extension: not well-formed" }).first().waitFor();
             // Errors in the model are still reported, only by this extension.
-            await rows.filter({ hasText: "there is no plugin `ill`" }).waitFor();
+            await rows.filter({ hasText: "there is no node `ill`" }).waitFor();
             await window.screenshot("harmony");
             await window.becomes(() => rows.filter({ hasText: "xml-syntax" }).count(), 0);
         },

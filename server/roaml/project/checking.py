@@ -55,6 +55,7 @@ from roaml.rules.rule import (
     StructsContext,
     SystemContext,
     TreeContext,
+    UntranslatablePart,
     replacements,
 )
 from roaml.rules.support.end_tags import without_misnamed_ends
@@ -504,12 +505,13 @@ class _Run:
             self._found_includes(),
         )
 
-    def _refusals(self) -> tuple[tuple[Span, str], ...]:
+    def _refusals(self) -> tuple[UntranslatablePart, ...]:
         """The nodes of this file that cannot be translated, with the reasons, if the tree is executed as
         BehaviorTree.CPP executes it. Reasons that other rules report are left out."""
         tree = self.analysis.library_tree(self.system_path) if self.system_path else None
         refusals = () if tree is None else tree.refusals
-        return tuple((r.origin.span, r.reason) for r in refusals if r.origin.path == self.path and not r.is_reported)
+        own = (refusal for refusal in refusals if refusal.origin.path == self.path and not refusal.is_reported)
+        return tuple(UntranslatablePart(refusal.origin.span, refusal.reason, refusal.unset) for refusal in own)
 
     def _tree_outlines(self) -> tuple[TreeFileOutline, ...]:
         """The outlines of the tree files with which this file is checked: those of its system; without a system, those

@@ -119,10 +119,7 @@ from roaml.rules.interfaces import (
 )
 from roaml.rules.json_syntax import jani_type
 from roaml.rules.lone_trees import (
-    entry_never_written,
     node_kind,
-    node_model,
-    node_port_value,
     restarted_node,
     script_name,
     script_syntax,
@@ -130,7 +127,6 @@ from roaml.rules.lone_trees import (
     skipped_condition,
     tree_format,
     tree_name,
-    unknown_node,
     unreached_node,
     unused_tree,
 )
@@ -178,16 +174,16 @@ from roaml.rules.trees import (
     invalid_port,
     missing_port,
     node_configuration,
+    node_model,
     node_name,
     port_range,
     port_value,
     subtree_constant_written,
     tree_element_in_node,
-    tree_model_mismatch,
     tree_semantics,
     tree_structure,
     undeclared_port,
-    unknown_plugin,
+    unknown_node,
     unknown_port,
     unknown_remap,
     untranslatable_tree,

@@ -105,6 +105,15 @@ class MachineContext(Record, frozen=True):
         return self.dialect is Dialect.OLDER
 
 
+class UntranslatablePart(Record, frozen=True):
+    """Why a part of a system's tree cannot be translated. `unset` is the name of the entry that a script reads and
+    nothing sets, if this is the reason."""
+
+    span: Span
+    reason: str
+    unset: str = ""
+
+
 class TreeContext(Record, frozen=True):
     """The context of rules about a file of trees.
 
@@ -132,7 +141,7 @@ class TreeContext(Record, frozen=True):
     older: bool = False
     forest: Forest | None = None
     unknown_packages: frozenset[str] = frozenset()
-    refusals: tuple[tuple[Span, str], ...] = ()
+    refusals: tuple[UntranslatablePart, ...] = ()
     found_includes: Mapping[str, str] = field(default_factory=dict)
 
 

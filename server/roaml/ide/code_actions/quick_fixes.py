@@ -134,14 +134,14 @@ def _other_files(analysis: Analysis, diagnostic: Diagnostic, path: str, others: 
 # ------------------------------------------------------------ plugins and inputs
 
 
-def _unknown_plugin(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
+def _unknown_node(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
     """Actions that list the file of the plugin in the system, or that create a new plugin."""
     analysis = snapshot.analysis
     node = _node_at(analysis, diagnostic)
-    if node is None or node.plugin is None or (node.type is not None and not node.type.translated):
+    systems = analysis.memberships.get(diagnostic.path, ())
+    if not systems or node is None or node.plugin is None or (node.type is not None and not node.type.translated):
         return
     name = node.plugin.value
-    systems = analysis.memberships.get(diagnostic.path, ())
     for system in systems[:1]:
         as_node = next(
             (
@@ -450,7 +450,7 @@ FIXES_ACROSS_FILES: dict[str, Callable[[Snapshot, Diagnostic], Iterator[CodeActi
     "missing-include": _missing_include,
     "small-clock-step": _slower_timer,
     "tree-element-in-node": _element_in_node,
-    "unknown-plugin": _unknown_plugin,
+    "unknown-node": _unknown_node,
     "unknown-port": _unknown_port,
     "unportable-expectation": _move_expectations,
     "unused-plugin": _unused_plugin,

@@ -87,7 +87,8 @@ def compiled_scripts(node: ExecutedNode, board: Board) -> dict[str, CompiledScri
             )
         except ScriptRefusal as refusal:
             at = Location(node.origin.path, refusal.span)
-            raise TreeRefusal(at, refusal.reason, is_reported=refusal.reason == INVALID_SCRIPT) from None
+            is_reported = refusal.reason == INVALID_SCRIPT
+            raise TreeRefusal(at, refusal.reason, is_reported=is_reported, unset=refusal.unset) from None
     if node.type in programs():
         for port in script_ports().get(node.type, ()):
             if port not in result:
@@ -326,7 +327,7 @@ def _literal(port: str, type_: str, text: str, origin: Location) -> Known:
     wrong = mismatch(type_, text)
     if wrong is not None and not wrong.ignored:
         shown = f"`{text}`" if text.strip() else "an empty value"
-        raise TreeRefusal(origin, f"the port `{port}` {wrong.message}, not {shown}")
+        raise TreeRefusal(origin, f"the port `{port}` {wrong.message}, not {shown}", is_reported=True)
     if type_ == "NodeStatus":
         return STATUS_CODES.get(text.strip(), RUNNING)
     return read_literal(wrong.instead if wrong is not None else text)[1]

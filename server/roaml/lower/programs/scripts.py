@@ -24,12 +24,14 @@ from roaml.text import NO_SPAN, Span
 
 
 class ScriptRefusal(Exception):  # noqa: N818 - the script may be correct
-    """Raised if a script cannot be translated. `span` is the position of the cause."""
+    """Raised if a script cannot be translated. `span` is the position of the cause, and `unset` the name of the entry
+    that nothing sets, if this is the cause."""
 
-    def __init__(self, span: Span, reason: str) -> None:
+    def __init__(self, span: Span, reason: str, unset: str = "") -> None:
         super().__init__(reason)
         self.span = span
         self.reason = reason
+        self.unset = unset
 
 
 class CompiledScript(Record, frozen=True, eq=False):
@@ -109,7 +111,7 @@ class _Compiler(Record):
     def find(self, expr: syntax.Name) -> BoardEntry:
         entry = self.entry(expr.name)
         if entry is None:
-            self.refuse(expr, self.unset(expr.name))
+            raise ScriptRefusal(expr.span, self.unset(expr.name), expr.name)
         return entry
 
     def value(self, expr: syntax.Expr) -> _Value:

@@ -8,19 +8,46 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Severity
 from roaml.forest.entries import Key
 from roaml.forest.forest import Forest
-from roaml.model.tree import Tree
+from roaml.forest.scripts import script_attributes
+from roaml.model.tree import Tree, nodes
 from roaml.rules.rule import Rule, TreeContext, did_you_mean, replacements
 from roaml.rules.support.entries import entries_of
 from roaml.rules.support.forest import forest_of
 from roaml.rules.support.scripts import scripts
+from roaml.script.names import names_in
 from roaml.script.tree import Assignment, Name, Script, walk
 from roaml.suggest import nearest_name
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    forest = forest_of(context)
-    if forest is None:
-        return
+    if context.system is not None:
+        yield from _of_system(context)
+    elif (forest := forest_of(context)) is not None:
+        yield from _alone(context, forest)
+
+
+def _of_system(context: TreeContext) -> Iterator[Finding]:
+    """Report the names that the translation of the tree cannot read."""
+    for name, span in {(refusal.unset, refusal.span): None for refusal in context.refusals if refusal.unset}:
+        tree = next(
+            tree for tree in context.file.trees if tree.element.span.start <= span.start < tree.element.span.end
+        )
+        close = tuple(filter(None, (nearest_name(name, _created(tree)),)))
+        hint = did_you_mean(close) or "; a script, a port or a `<SubTree>` of the tree must set it"
+        yield RULE.at(span, f"{_NOTHING} `{name}`{hint}", *replacements(span, close), severity=Severity.ERROR)
+
+
+def _created(tree: Tree) -> set[str]:
+    """The names of the entries that the ports and scripts of a tree create."""
+    ports = {setting.variable for node in nodes(tree) for setting in node.ports if setting.variable}
+    scripts_of_tree = (script for node in nodes(tree) for script in script_attributes(node))
+    return ports | {name for script in scripts_of_tree for name, use in names_in(script.value) if use == ":="}
+
+
+_NOTHING = "nothing in the trees creates"
+
+
+def _alone(context: TreeContext, forest: Forest) -> Iterator[Finding]:
     entries = entries_of(forest)
     created: set[Key] = set()
     names: dict[str, list[str]] = {}
@@ -34,7 +61,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
         for name, operator in _names(script) if not problems else ():
             plain = name.name.removeprefix("@")
             if entries.is_intended(own, name.name):
-                continue  # node-port-value reports the output port that should create the entry
+                continue  # port-value reports the output port that should create the entry
             if entries.entry(own, name.name) not in created and plain not in forest.host_entries:
                 yield _finding(name, operator, nearest_name(name.name, names.get(own, ())), _is_closed(forest, tree))
 
@@ -65,7 +92,7 @@ def _finding(name: Name, operator: str, near: str | None, closed: bool) -> Findi
         message = f"`{operator}` needs an entry, and nothing creates `{name.name}`{hint}"
         return RULE.at(name.span, message, *fixes, severity=Severity.WARNING if closed else Severity.INFORMATION)
     hint = did_you_mean(close) or "; it may be an enumeration constant or an entry of the program"
-    return RULE.at(name.span, f"nothing in the trees creates `{name.name}`{hint}", *fixes)
+    return RULE.at(name.span, f"{_NOTHING} `{name.name}`{hint}", *fixes)
 
 
 RULE = Rule(

@@ -18,7 +18,8 @@ def without_misnamed_ends(findings: Sequence[Finding]) -> tuple[Finding, ...]:
 
 def _is_certain(finding: Finding) -> bool:
     """Whether a finding states that the name of an element is wrong, so that its fixes change both tags."""
-    return finding.code == "unknown-element" or (finding.code == "unknown-node" and finding.severity is Severity.ERROR)
+    is_error = finding.severity in (None, Severity.ERROR)
+    return finding.code == "unknown-element" or (finding.code == "unknown-node" and is_error)
 
 
 def _is_at_wrong_start(finding: Finding, wrong: set[Span | Symbol]) -> bool:

@@ -10,8 +10,9 @@ from roaml.rules.rule import Rule, TreeContext
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    for span, reason in context.refusals:
-        yield RULE.at(span, reason)
+    for refusal in context.refusals:
+        if not refusal.unset:  # script-name reports a name that nothing sets
+            yield RULE.at(refusal.span, refusal.reason)
 
 
 RULE = Rule(
