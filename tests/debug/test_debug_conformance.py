@@ -7,6 +7,7 @@ import shutil
 from pathlib import Path
 
 import pytest
+from dap_client import Client
 from replay import replay, sources_of
 
 from conformance import ROOT, label, systems
@@ -16,7 +17,8 @@ from roaml.debugging.by_hand import sendable, sending
 from roaml.debugging.frames import Frame, FrameRole
 from roaml.debugging.start import Start, start
 
-MAX_SINGLE_STEPS, MAX_STEPS = 150, 3_000
+NAV2 = sorted(path for path in (ROOT / "trees/nav2").glob("*.xml") if path.name != "nav2_tree_nodes.xml")
+MAX_SINGLE_STEPS, MAX_STEPS = 80, 2_000
 
 
 @pytest.mark.parametrize("path", systems(), ids=label)
@@ -27,6 +29,18 @@ def test_traces_are_the_same_forwards_and_backwards(path: Path) -> None:
     for property_ in checker.compiled_properties:
         differences = list(replay(sources, checker, property_, 0, MAX_SINGLE_STEPS, MAX_STEPS))
         assert differences == [], property_.question.name
+
+
+@pytest.mark.parametrize("path", NAV2, ids=lambda path: path.stem)
+def test_every_tree_of_nav2_runs_with_its_proposals(path: Path, tmp_path: Path) -> None:
+    """As F5 in an editor, which writes the proposed mocks beside the tree."""
+    tree = Path(shutil.copy(path, tmp_path))
+    tree.with_suffix(".mocks").write_text(api.proposed_text(path.name, api.propose_mocks(str(tree))), encoding="utf-8")
+    with Client() as client:
+        assert client.begin(tree)["reason"] == "entry"
+        assert client.step() == 0
+        client.move("next")
+        assert client.step() > 0
 
 
 @pytest.mark.parametrize("folder", ["array_of_strings", "array_of_data_structs", "ros_add_int_srv_example"])

@@ -53,7 +53,8 @@ def test_every_way_is_taken() -> None:
 def test_undamaged_models_hold() -> None:
     assert systems()
     assert len(snippets()) > 100
-    for model in (*systems(), *snippets()):
+    # Other tests check each snippet and translate each system; this one looks for false reports of the fuzzer.
+    for model in (*systems()[::3], *snippets()[::4]):
         with runner.Crashes() as crashes:
             assert list(problems_of_check(model.main, model.texts, model.ros_paths)) == [], model.name
         assert crashes.errors == []

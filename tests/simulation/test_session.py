@@ -16,8 +16,8 @@ from roaml.smc.record import VERDICTS, Recorder, Recording, TraceVerdict
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 ROBOT = EXAMPLES / "assembly_robot/main_with_bug.xml"
-TRACES = 5
-"""The number of traces of each property that are replayed."""
+TRACES = 2
+"""The number of traces of the first property that are replayed; one of each other property is."""
 
 
 @pytest.fixture(scope="module")
@@ -36,7 +36,7 @@ def test_traces_of_verify_are_replayed_forwards_and_backwards(path: Path) -> Non
         name = property_.question.name
         recorder = Recorder(checker, property_, 1, 2_000)
         session = api.session(target, name, seed=1)
-        for trace in range(TRACES if property_ is checker.compiled_properties[0] else 2):
+        for trace in range(TRACES if property_ is checker.compiled_properties[0] else 1):
             recording = Recording(trace)
             steps = tuple(recorder.walk(recording))
             session = api.session(target, name, seed=1, trace=trace)

@@ -111,7 +111,7 @@ def check_same(written: dict[str, Any]) -> ModelChecker:
     return indexed
 
 
-@settings(max_examples=examples(150), suppress_health_check=list(HealthCheck))
+@settings(max_examples=examples(75), suppress_health_check=list(HealthCheck))
 @given(guarded())
 def test_many_guards(written: dict[str, Any]) -> None:
     indexed = check_same(written)

@@ -107,7 +107,7 @@ def is_one_of(written: Json) -> bool:
 
 
 @given(networks(), conditions(("x", "y")), st.sampled_from(["min", "max", "avg", "values"]), st.booleans())
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=30, deadline=None, derandomize=True)
 def test_values_are_combined_from_those_of_single_initial_states(
     written: Json, condition: Json, fun: str, is_maximum: bool
 ) -> None:

@@ -92,9 +92,9 @@ def test_a_method_is_a_member_not_its_value() -> None:
 @pytest.mark.parametrize(
     "method", [EstimationMethod.ADAPTIVE, EstimationMethod.OKAMOTO, EstimationMethod.FIXED, EstimationMethod.SPRT]
 )
-def test_coverage_over_300_runs(method: EstimationMethod, p: float) -> None:
+def test_coverage_over_150_runs(method: EstimationMethod, p: float) -> None:
     """The intervals of runs with different seeds contain the probability as often as their confidence states."""
-    runs, confidence = 300, 0.9
+    runs, confidence = 150, 0.9
     written = coin(p)
     written["properties"][0]["expression"] = op("≥", {"op": "Pmax", "exp": op("F", op("=", "x", 1))}, 0.7)
     checker = ModelChecker(model(written))

@@ -126,7 +126,7 @@ def bools(depth: int) -> st.SearchStrategy[Any]:
     )
 
 
-@settings(max_examples=examples(250), suppress_health_check=list(HealthCheck))
+@settings(max_examples=examples(120), suppress_health_check=list(HealthCheck))
 @given(st.sampled_from(["int", "real", "bool"]).flatmap(
     lambda type_: st.tuples(st.just(type_), {"int": ints, "real": reals, "bool": bools}[type_](2))
 ))  # fmt: skip

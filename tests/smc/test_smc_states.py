@@ -96,7 +96,7 @@ PATHS = st.one_of(
 )
 
 
-@settings(max_examples=examples(150), suppress_health_check=list(HealthCheck))
+@settings(max_examples=examples(80), suppress_health_check=list(HealthCheck))
 @given(networks(), PATHS, st.sampled_from([states.MAX_BYTES, 4000]))
 def test_random_networks(written: Json, path: Json, memory: int) -> None:
     """With little memory, all nodes are forgotten again and again."""

@@ -271,7 +271,7 @@ def test_coverage_when_somebody_stops_as_soon_as_the_interval_is_wrong(p: float)
     happens no more often than stated. An interval for a fixed number of traces fails this test."""
     for method, keeps in ((confidence_sequence, True), (clopper_pearson, False)):
         confidence, open_, missed = 0.9, {0: 1.0}, 0.0
-        for n in range(1, 400):
+        for n in range(1, 250):
             after: dict[int, float] = {}
             for k, weight in open_.items():
                 after[k] = after.get(k, 0.0) + weight * (1 - p)
@@ -391,11 +391,11 @@ def measured(values: np.ndarray) -> Mean:
 @pytest.mark.parametrize("epsilon", [0.1, 0.02])
 @pytest.mark.parametrize("name", REWARDS)
 def test_coverage_of_rewards_when_stopping_as_soon_as_possible(name: str, epsilon: float) -> None:
-    """With 300 seeds, the intervals contain the expected value at least as often as stated, whenever the rule of the
+    """With 150 seeds, the intervals contain the expected value at least as often as stated, whenever the rule of the
     adaptive method ends the traces, or a limit of 60,000."""
     (expected, sample), confidence, covered = REWARDS[name], 0.95, 0
     share = 1 - (1 - confidence) * stopping_error_share(confidence)
-    for seed in range(300):
+    for seed in range(150):
         source, mean = np.random.default_rng(seed), Mean()
         for _, size in batches(0, 60_000):
             mean = mean.joined(measured(sample(source, size)))
@@ -403,7 +403,7 @@ def test_coverage_of_rewards_when_stopping_as_soon_as_possible(name: str, epsilo
             if mean.number >= MIN_REWARD_TRACES and bounds.half_width <= epsilon * abs(mean.mean):
                 break
         covered += bounds.lower <= expected <= bounds.upper
-    assert covered >= confidence * 300
+    assert covered >= confidence * 150
 
 
 def test_equal_rewards_have_no_interval() -> None:

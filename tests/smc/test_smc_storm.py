@@ -219,7 +219,7 @@ def test_exact_answers() -> None:
 def test_extremes_from_all_states_are_those_of_storm() -> None:
     """Random networks with the goal, its negation, and one until: the bounds contain the values of Storm."""
     solved = differing = 0
-    for seed in range(80):
+    for seed in range(40):
         written = example(seed)
         goal = written["properties"][0]["expression"]["values"]["exp"]
         opposite = op("G", op("¬", goal["exp"]))
@@ -236,8 +236,8 @@ def test_extremes_from_all_states_are_those_of_storm() -> None:
             assert solution.maximum.lower - 2e-6 <= expected.greatest <= solution.maximum.upper + 2e-6, (seed, path)
             solved += solution.minimum.half_width < 1e-6 and solution.maximum.half_width < 1e-6
             differing += not solution.agrees
-    assert solved > 150
-    assert differing > 30
+    assert solved > 75
+    assert differing > 15
 
 
 def test_schedulers_that_are_found_come_close_to_the_extremes() -> None:

@@ -64,7 +64,7 @@ def visible(variables: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-@settings(max_examples=examples(120), suppress_health_check=list(HealthCheck))
+@settings(max_examples=examples(60), suppress_health_check=list(HealthCheck))
 @given(systems())
 def test_same_outcomes(files: dict[str, str]) -> None:
     try:
