@@ -18,7 +18,7 @@ from pathlib import Path
 
 import node_schema
 
-from as2fm_lsp.cli import debug, draw, experiment, explain, init, migrate, simulate, translate, verify
+from as2fm_lsp.cli import compare, debug, draw, experiment, explain, init, migrate, simulate, translate, verify
 from as2fm_lsp.cli import format as layout
 from as2fm_lsp.cli.main import COMMANDS, EXAMPLES, parser
 from roaml.expr.operators import FUNCTIONS, Operator, UnaryOperator
@@ -238,7 +238,7 @@ def command_line() -> str:
     for group in parser()._action_groups:
         title = "General" if group.title in ("options", "positional arguments") else str(group.title).capitalize()
         lines += options(title, group._group_actions)
-    for command in (debug, draw, experiment, explain, init, layout, migrate, simulate, translate, verify):
+    for command in (compare, debug, draw, experiment, explain, init, layout, migrate, simulate, translate, verify):
         subparser = command.parser()
         lines += options(f"`{subparser.prog}`", subparser._actions, f"{subparser.description}\n")
     return "\n".join(lines)

@@ -22,10 +22,15 @@ FILES = {
     "translate": "--output --map",
     "verify": "--explain --plot",
     "experiment": "--output --plot",
+    "compare": "--output",
 }
 """The options that name a file to write."""
 
-FOLDERS = {"translate": "--scxml-dir --expand --dot --mermaid --plantuml", "verify": "--traces"}
+FOLDERS = {
+    "translate": "--scxml-dir --expand --dot --mermaid --plantuml",
+    "verify": "--traces",
+    "compare": "--pictures",
+}
 """The options that name a folder into which files are written."""
 
 IN_PLACE = {
@@ -41,7 +46,7 @@ IN_PLACE = {
 `--resume` only replaces the state of a verification, `--socket` only a socket."""
 
 MODEL = "--tree-semantics --max-time --reaction-time --constant --ros-path --mock --mocks --entry --tick-rate"
-MODEL += " --stdin-filename --set --params-file"
+MODEL += " --set --params-file"
 NOTHING = {
     "check": "paths --tree-semantics --format --ros-path --select --ignore --severity "
     "--warnings-as-errors --statistics "
@@ -57,14 +62,17 @@ NOTHING = {
     "init": "",
     "migrate": "--diff --with-related --ros-path",
     "serve": "--stdio --tcp --allow-remote",
-    "simulate": f"main --property --seed --trace --for --until --max-steps --script --interactive --theme {MODEL}",
+    "simulate": "main --property --seed --trace --for --until --max-steps --script --interactive --theme "
+    f"--stdin-filename {MODEL}",
     "translate": "main --tree-semantics --indent --property --max-array-size --max-time "
     "--reaction-time --ros-path --format --stdin-filename --set --params-file",
     "verify": "main --max-transitions --property --expect --confidence --epsilon --method "
     "--max-traces --max-steps --seed --jobs "
     "--scheduler --exhaustive --max-states --max-memory --no-reductions --stuck --separate --traces-limit --dask "
     "--over-time --band "
-    f"--format {MODEL}",
+    f"--format {MODEL} --stdin-filename",
+    "compare": "old new --property --structure --scheduler --exhaustive --max-states --max-transitions --confidence "
+    f"--epsilon --method --max-traces --max-steps --seed --fail-on --format {MODEL}",
 }
 """The options that write no file."""
 
@@ -112,6 +120,7 @@ def arguments(command: str, option: str, output: str) -> list[str]:
         "check": ["."],
         "verify": ["--max-traces=10", "--traces-limit=1", "--property=all_delivered"],
         "experiment": ["--max-traces=10", "--property=all_delivered"],
+        "compare": ["other/main.xml", "--structure"],
     }.get(command, [])
     return [command, *(["main.xml"] if command != "check" else []), *call, f"{option}={output}"]
 

@@ -197,7 +197,7 @@ def computed_options(options: argparse.Namespace) -> ExperimentOptions:
         is_exhaustive=options.exhaustive,
         max_transitions=options.max_transitions,
         max_states=options.max_states,
-        has_slopes=options.slopes,
+        has_slopes=getattr(options, "slopes", False),
     )
 
 

@@ -28,6 +28,7 @@ COMMANDS = {
     "translate": "translate a system to JANI and plain SCXML",
     "verify": "compute or estimate the probabilities of properties",
     "experiment": "compute properties for many values of parameters",
+    "compare": "compare two versions of a model",
     "draw": "draw a state machine, a tree or a ROS graph",
     "simulate": "run a system step by step",
     "debug": "run the debug adapter for an editor",
@@ -54,6 +55,8 @@ examples:
   as2fm-lsp simulate main.xml             the steps of one run; see simulate --help
   as2fm-lsp translate main.xml            write main.jani; see translate --help
   as2fm-lsp verify main.xml               probabilities of its properties; see verify --help
+  as2fm-lsp compare HEAD:main.xml main.xml
+                                          what changed, and by how much the properties; see compare --help
   as2fm-lsp                               language server on standard input and output
 
 exit status: 0 no errors, 1 errors found, 2 usage error, 3 internal error

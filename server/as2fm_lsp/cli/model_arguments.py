@@ -35,8 +35,9 @@ class UsageError(ValueError):
     """Wrong arguments; the message contains the reason."""
 
 
-def add_model_arguments(parser: ArgumentParser) -> None:
-    """Add the options that determine the model, except `main`."""
+def add_model_arguments(parser: ArgumentParser, *, reads_input: bool = True) -> None:
+    """Add the options that determine the model, except `main`. `reads_input` states whether it may be standard
+    input."""
     add = parser.add_argument
     add("--max-time", type=time_of, metavar="TIME", help='overrides <max_time> of MAIN.xml, for example "100 s"')
     add_reaction_time(parser)
@@ -44,7 +45,8 @@ def add_model_arguments(parser: ArgumentParser) -> None:
         "MODEL.jani, also one that has a value there; may be repeated")  # fmt: skip
     add("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages")
     add_semantics(parser)
-    add_stdin_filename(parser)
+    if reads_input:
+        add_stdin_filename(parser)
     add_set(parser)
     add_mock_options(parser)
 

@@ -131,7 +131,7 @@ def parser() -> ArgumentParser:
     return result
 
 
-def add_sampling(parser: ArgumentParser) -> None:
+def add_sampling(parser: ArgumentParser, *, has_jobs: bool = True) -> None:
     """Add the options of estimates from traces."""
     add = parser.add_argument
     add(
@@ -150,13 +150,14 @@ def add_sampling(parser: ArgumentParser) -> None:
     add("--max-steps", type=positive, metavar="N", help="cut traces after N steps; cut traces are "
         "undecided (1000000)")  # fmt: skip
     add("--seed", type=natural, metavar="N", help="seed of the random numbers (0)")
-    add(
-        "--jobs",
-        type=positive,
-        default=_processors(),
-        metavar="N",
-        help="number of processes (all processors); it does not change the results",
-    )
+    if has_jobs:
+        add(
+            "--jobs",
+            type=positive,
+            default=_processors(),
+            metavar="N",
+            help="number of processes (all processors); it does not change the results",
+        )
 
 
 def add_curves(parser: ArgumentParser) -> None:

@@ -23,6 +23,13 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from roaml.api.checking import CheckResult, check, fix
+    from roaml.api.comparing import (
+        ComparedPicture,
+        StructuralChanges,
+        Version,
+        compare_structure,
+        compare_values,
+    )
     from roaml.api.drawing import DrawingError, DrawnPicture, draw
     from roaml.api.experimenting import experiment, find_enough, grid_of
     from roaml.api.jani_files import JaniError, PathError, read_jani
@@ -43,6 +50,7 @@ if TYPE_CHECKING:
     from roaml.api.verifying import ConstantError, as_target, checker, target, verifier, verify
     from roaml.comparison import Comparison
     from roaml.diagnostics import Diagnostic, Severity
+    from roaml.experiments.changes import ValueChange, ValueVerdict
     from roaml.experiments.enough import Enough, Met, Trend
     from roaml.experiments.grid import ExperimentOptions, Grid
     from roaml.experiments.points import ExperimentPoint, PointKind, Schedulers
@@ -116,6 +124,13 @@ else:
     _IMPORTED_ON_USE = {
         "roaml.comparison": ("Comparison",),
         "roaml.api.checking": ("CheckResult", "check", "fix"),
+        "roaml.api.comparing": (
+            "ComparedPicture",
+            "StructuralChanges",
+            "Version",
+            "compare_structure",
+            "compare_values",
+        ),
         "roaml.api.drawing": ("DrawingError", "DrawnPicture", "draw"),
         "roaml.api.experimenting": ("experiment", "find_enough", "grid_of"),
         "roaml.api.jani_files": ("JaniError", "PathError", "read_jani"),
@@ -135,6 +150,7 @@ else:
         "roaml.api.trees": ("propose_mocks",),
         "roaml.api.verifying": ("ConstantError", "as_target", "checker", "target", "verifier", "verify"),
         "roaml.diagnostics": ("Diagnostic", "Severity"),
+        "roaml.experiments.changes": ("ValueChange", "ValueVerdict"),
         "roaml.experiments.enough": ("Enough", "Met", "Trend"),
         "roaml.experiments.grid": ("ExperimentOptions", "Grid"),
         "roaml.experiments.points": ("ExperimentPoint", "PointKind", "Schedulers"),
@@ -223,6 +239,7 @@ __all__ = [
     "CheckResult",
     "Choice",
     "Choices",
+    "ComparedPicture",
     "Comparison",
     "CompiledProperty",
     "Computed",
@@ -312,6 +329,7 @@ __all__ = [
     "StateLimits",
     "Story",
     "StoryLine",
+    "StructuralChanges",
     "Stuck",
     "StuckLevel",
     "StuckResult",
@@ -326,9 +344,12 @@ __all__ = [
     "Trend",
     "Undecided",
     "UnderAssumption",
+    "ValueChange",
+    "ValueVerdict",
     "Verdict",
     "VerificationTarget",
     "Verifier",
+    "Version",
     "Wait",
     "Watch",
     "WorkersLostError",
@@ -336,6 +357,8 @@ __all__ = [
     "check",
     "checker",
     "columns",
+    "compare_structure",
+    "compare_values",
     "counterexample",
     "draw",
     "experiment",

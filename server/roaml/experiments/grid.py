@@ -55,6 +55,18 @@ class ParametricModel(Protocol):
         """
 
 
+class FixedModel(Record, frozen=True):
+    """A model without parameters, whose grid has one setting."""
+
+    fixed: VerificationTarget
+
+    def target(self, _: Setting) -> VerificationTarget:
+        return self.fixed
+
+    def chances(self, _: Mapping[str, tuple[float, float]], __: Setting) -> Chances | None:
+        return None
+
+
 class ExperimentOptions(Record, frozen=True):
     """How the values of an experiment are computed.
 

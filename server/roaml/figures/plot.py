@@ -148,9 +148,14 @@ def plot_page(title: str, plots: Sequence[LinePlot | HeatMap], body: str = "") -
         body: HTML that follows the plots.
     """
     figures = "".join(f"<figure>{plot_svg(plot)}</figure>\n" for plot in plots)
+    return page(title, f"{figures}{body}")
+
+
+def page(title: str, body: str) -> str:
+    """The text of an HTML page, which is light, or dark if the reader prefers dark colors."""
     return (
         f'<!doctype html>\n<html lang="en"><meta charset="utf-8"><title>{escape(title)}</title>\n{_PAGE_STYLE}'
-        f"<h1>{escape(title)}</h1>\n{figures}{body}</html>\n"
+        f"<h1>{escape(title)}</h1>\n{body}</html>\n"
     )
 
 

@@ -20,6 +20,7 @@ _HEAD = (9.0, 4.5)
 
 PICTURE_STYLES, TIMELINE_STYLES = ("figure.css",), ("figure.css", "timeline.css")
 PLOT_STYLES = ("figure.css", "plot.css")
+CHANGE_STYLES = ("figure.css", "changes.css")
 
 
 def svg_file(

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The style sheet of pictures in files: `figure.css`, for timelines also `timeline.css`, for plots also `plot.css`,
-with the colors of a theme.
+"""The style sheet of pictures in files: `figure.css`, for timelines also `timeline.css`, for plots also `plot.css`, for
+comparisons of two versions also `changes.css`, with the colors of a theme.
 
 Many programs that show SVG do not support CSS variables, so files contain the colors themselves.
 """

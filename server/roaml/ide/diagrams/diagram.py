@@ -78,12 +78,23 @@ class DetailKind(enum.Enum):
     MOCK = "mock"
 
 
+class Change(enum.Enum):
+    """What happened to a part of a diagram between two versions of a model."""
+
+    SAME = "same"
+    ADDED = "added"
+    REMOVED = "removed"
+    CHANGED = "changed"
+
+
 class Detail(Record, frozen=True):
-    """A line below the label of a node. `key` is the name of the port that it describes; "" if it describes none."""
+    """A line below the label of a node. `key` is the name of the port that it describes; "" if it describes none.
+    `change` is `None` if the diagram compares no versions."""
 
     kind: DetailKind
     text: str
     key: str = ""
+    change: Change | None = None
 
 
 class TreeNodeTitle(Record, frozen=True):
@@ -111,6 +122,7 @@ class DiagramNode(Record, frozen=True):
             `<BehaviorTree>`.
         title: the parts of the label, for nodes of trees and subtrees.
         use: the place of the `<SubTree>` of a subtree; `None` for other nodes.
+        change: what happened to the node; `None` if the diagram compares no versions.
     """
 
     id: str
@@ -122,6 +134,7 @@ class DiagramNode(Record, frozen=True):
     place: Location | None = None
     title: TreeNodeTitle | None = None
     use: Location | None = None
+    change: Change | None = None
 
 
 class DiagramEdge(Record, frozen=True):
@@ -133,6 +146,7 @@ class DiagramEdge(Record, frozen=True):
         probabilistic: whether it is one of several edges of a choice, of which one is chosen at random.
         internal: whether it represents a transition without a target, which does not leave its state.
         place: the place in a file that the edge represents; `None` if there is none.
+        change: what happened to the edge; `None` if the diagram compares no versions.
     """
 
     source: str
@@ -143,6 +157,7 @@ class DiagramEdge(Record, frozen=True):
     probabilistic: bool = False
     internal: bool = False
     place: Location | None = None
+    change: Change | None = None
 
 
 class Picture(Record, frozen=True):

@@ -18,6 +18,7 @@ from roaml.figures.layout import LayoutDirection, Link, layered
 from roaml.figures.layout.packing import shelves
 from roaml.ide.diagrams.diagram import DetailKind, DiagramEdge, DiagramNodeKind, EdgeKind, Picture
 from roaml.ide.diagrams.drawings.cards import Card, Row, TextLine, is_shortened, paragraph, title
+from roaml.ide.diagrams.drawings.changes import is_marked, kind_of, signed, tone_of
 
 CARD_WIDTH, LABEL_WIDTH = 260.0, 210.0
 """The maximum widths of lines of text in cards and labels, in pixels."""
@@ -60,7 +61,7 @@ def _framed(picture: Picture, index: int, direction: LayoutDirection) -> Drawing
     )
     box = Box(0, 0, *size)
     items = (Shape(box, Outline.ROUNDED, "frame"), *heading.items(Box(0, 0, size.width, top)))
-    frame = Group("node", Tone.PLAIN, items, "thread", node=index)
+    frame = Group("node", tone_of(node.change, Tone.PLAIN), items, "thread", node=index)
     inner = [moved(group, _FRAME_MARGIN, top) for group in chart.groups]
     nodes = {number: place.moved(_FRAME_MARGIN, top) for number, place in chart.nodes.items()}
     return Drawing(size, (frame, *inner), {index: box, **nodes})
@@ -98,7 +99,9 @@ class _Chart:
         details = self._picture.nodes[self._index[state]].details
         for detail in details:
             lines = paragraph(detail.text, CARD_WIDTH, "muted", limit=MAX_ACTIONS)
-            yield Row(lines, hint=detail.text if is_shortened(lines, detail.text) else "")
+            hint = detail.text if is_shortened(lines, detail.text) else ""
+            tone = tone_of(detail.change, Tone.PLAIN)
+            yield Row(signed(lines, detail.change), tone, has_bar=is_marked(detail.change), hint=hint)
         returns = any(detail.kind is DetailKind.ACTIONS for detail in details)
         for index, edge in self._edges:
             if edge.source == state and edge.target == state:
@@ -161,9 +164,11 @@ class _Chart:
     def _node(self, index: int, box: Box) -> Group:
         node = self._picture.nodes[index]
         if node.kind is DiagramNodeKind.CHOICE:
-            return Group("node", Tone.CHANCE, (Shape(box, Outline.PILL, "junction"),), "choice", node=index)
+            shape = Shape(box, Outline.PILL, "junction")
+            return Group("node", tone_of(node.change, Tone.CHANCE), (shape,), "choice", node=index)
         items: tuple[Item, ...] = (Shape(box, Outline.ROUNDED, "card"), *self._cards[node.id].items(box))
-        return Group("node", Tone.PLAIN, items, "state initial" if node.initial else "state", node=index)
+        kind = kind_of(node.change, "state initial" if node.initial else "state")
+        return Group("node", tone_of(node.change, Tone.PLAIN), items, kind, node=index)
 
 
 def _row(index: int, edge: DiagramEdge, width: float, mark: str = "", *, joined: bool = False) -> Row:
@@ -180,9 +185,16 @@ def _row(index: int, edge: DiagramEdge, width: float, mark: str = "", *, joined:
     if not lines:
         lines = [TextLine(f"{mark}without event")]
     texts = (*edge.labels, *(f"/ {action}" for action in edge.actions))
-    tone = Tone.CHANCE if edge.probabilistic else _TONES.get(edge.kind, Tone.PLAIN)
     hint = "\n".join(texts) if is_shortened(lines, *texts) else ""
-    return Row(tuple(lines), tone, _kinds([(index, edge)]), (index,), has_bar=True, is_joined=joined, hint=hint)
+    return Row(
+        signed(lines, edge.change),
+        _edge_tone(edge),
+        _kinds([(index, edge)]),
+        (index,),
+        has_bar=True,
+        is_joined=joined,
+        hint=hint,
+    )
 
 
 def _label(edges: Sequence[tuple[int, DiagramEdge]]) -> Card:
@@ -198,12 +210,22 @@ def _split(edge: DiagramEdge) -> tuple[str, list[str]]:
 
 
 def _tone(edges: Sequence[tuple[int, DiagramEdge]]) -> Tone:
-    """The tone of a line: the common tone of its transitions, or `PLAIN` if they have different tones."""
-    tones = {Tone.CHANCE if edge.probabilistic else _TONES.get(edge.kind, Tone.PLAIN) for _, edge in edges}
-    return tones.pop() if len(tones) == 1 else Tone.PLAIN
+    """The tone of a line: the common tone of its transitions. If they have different tones, it is `PLAIN`, or `CHANGED`
+    if versions are compared."""
+    tones = {_edge_tone(edge) for _, edge in edges}
+    if len(tones) == 1:
+        return tones.pop()
+    return Tone.PLAIN if all(edge.change is None for _, edge in edges) else Tone.CHANGED
+
+
+def _edge_tone(edge: DiagramEdge) -> Tone:
+    return tone_of(edge.change, Tone.CHANCE if edge.probabilistic else _TONES.get(edge.kind, Tone.PLAIN))
 
 
 def _kinds(edges: Sequence[tuple[int, DiagramEdge]]) -> str:
     """The common kind of edges, for the style sheet; "" if they have different kinds."""
-    kinds = {f"{edge.kind.value} chance" if edge.probabilistic else edge.kind.value for _, edge in edges}
+    kinds = {
+        kind_of(edge.change, f"{edge.kind.value} chance" if edge.probabilistic else edge.kind.value)
+        for _, edge in edges
+    }
     return kinds.pop() if len(kinds) == 1 else ""

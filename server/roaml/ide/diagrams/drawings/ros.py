@@ -14,6 +14,7 @@ from roaml.figures.geometry import Box
 from roaml.figures.layout import LayoutDirection, Link, layered
 from roaml.ide.diagrams.diagram import DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
 from roaml.ide.diagrams.drawings.cards import Card, Row, paragraph, title
+from roaml.ide.diagrams.drawings.changes import is_marked, kind_of, signed, tone_of
 
 CARD_WIDTH = {LayoutDirection.RIGHT: 220.0, LayoutDirection.DOWN: 140.0}
 """The maximum widths of lines of text in cards, in pixels. They are smaller if nodes are drawn side by side."""
@@ -52,7 +53,7 @@ def draw_ros(picture: Picture, direction: LayoutDirection) -> Drawing:
     for (number, edge), label, route in zip(shown, labels, layout.routes, strict=True):
         tone = _tone(edge, picture.nodes[index[edge.source]], picture.nodes[index[edge.target]])
         lines = tuple(Polyline(part, has_arrow=part is route.parts[-1]) for part in route.parts)
-        groups.append(Group("edge", tone, lines, edge.kind.value, edges=(number,)))
+        groups.append(Group("edge", tone, lines, kind_of(edge.change, edge.kind.value), edges=(number,)))
         if label and route.label:
             shape = Shape(route.label, Outline.ROUNDED, "label-card")
             groups.append(Group("label", tone, (shape, *label.items(route.label))))
@@ -63,8 +64,10 @@ def draw_ros(picture: Picture, direction: LayoutDirection) -> Drawing:
 def _card(node: DiagramNode, width: float) -> Card:
     word = _WORDS.get(node.kind, "node")
     rows = [Row(title(node.label, width))]
-    texts = [detail.text for detail in node.details]
-    rows += [Row(paragraph(text, width, "muted"), is_joined=True) for text in (texts or [word])]
+    details = [(detail.text, detail.change) for detail in node.details] or [(word, None)]
+    for text, change in details:
+        lines = signed(paragraph(text, width, "muted"), change)
+        rows.append(Row(lines, tone_of(change, Tone.PLAIN), has_bar=is_marked(change), is_joined=True))
     return Card(tuple(rows), padding=14.0 if node.kind in _CHANNELS else 12.0)
 
 
@@ -73,16 +76,18 @@ def _label(number: int, edge: DiagramEdge) -> Card | None:
     if not edge.labels:
         return None
     lines = tuple(line for text in edge.labels for line in paragraph(text, LABEL_WIDTH, bold=True))
-    return Card((Row(lines, Tone.EVENT, edge.kind.value, (number,), has_bar=True),), padding=7.0)
+    row = Row(signed(lines, edge.change), tone_of(edge.change, Tone.EVENT), edge.kind.value, (number,), has_bar=True)
+    return Card((row,), padding=7.0)
 
 
 def _tone(edge: DiagramEdge, source: DiagramNode, target: DiagramNode) -> Tone:
     if edge.kind is EdgeKind.SENDS:
-        return Tone.EVENT
-    return _CHANNELS.get(source.kind) or _CHANNELS.get(target.kind) or Tone.PLAIN
+        return tone_of(edge.change, Tone.EVENT)
+    return tone_of(edge.change, _CHANNELS.get(source.kind) or _CHANNELS.get(target.kind) or Tone.PLAIN)
 
 
 def _node(node: DiagramNode, index: int, card: Card, box: Box) -> Group:
     shape = Shape(box, _OUTLINES.get(node.kind, Outline.ROUNDED), "card")
-    tone = _CHANNELS.get(node.kind, Tone.PLAIN)
-    return Group("node", tone, (shape, *card.items(box)), node.kind.value, node=index)
+    tone = tone_of(node.change, _CHANNELS.get(node.kind, Tone.PLAIN))
+    kind = kind_of(node.change, node.kind.value)
+    return Group("node", tone, (shape, *card.items(box)), kind, node=index)

@@ -10,11 +10,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from roaml.figures.drawing import MAX_ROUNDING, Drawing, Group, Item, Outline, Polyline, Shape, Tone
-from roaml.figures.geometry import Box, Extent
+from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.layout import LayoutDirection, tidy_tree
 from roaml.figures.layout.packing import shelves
 from roaml.ide.diagrams.diagram import DetailKind, DiagramNode, DiagramNodeKind, EdgeKind, Picture
 from roaml.ide.diagrams.drawings.cards import Card, Row, TextLine, is_shortened, paragraph, title
+from roaml.ide.diagrams.drawings.changes import is_marked, kind_of, signed, tone_of
 from roaml.ide.diagrams.drawings.glyphs import BADGE, badge
 
 TITLE_WIDTH, PORT_WIDTH = 190.0, 210.0
@@ -59,12 +60,15 @@ def draw_tree(picture: Picture, direction: LayoutDirection) -> Drawing:
     tree = tidy_tree({name: sizes[name] for name in sizes if name not in variables}, children, direction)
     boxes, size = _with_blackboard(tree.nodes, tree.size, {name: sizes[name] for name in variables})
     pairs = ((parent, child) for parent, group in children.items() for child in group)
-    groups = [
-        Group("link", Tone.PLAIN, (Polyline(route.parts[0]),), "child", edges=(numbers[pair],))
-        for pair, route in zip(pairs, tree.routes, strict=True)
-    ]
+    groups = [_link(picture, numbers[pair], route.parts[0]) for pair, route in zip(pairs, tree.routes, strict=True)]
     groups += [_node(picture.nodes[index[name]], index[name], cards[name], box) for name, box in boxes.items()]
     return Drawing(size, tuple(groups), {index[name]: box for name, box in boxes.items()})
+
+
+def _link(picture: Picture, number: int, points: tuple[Point, ...]) -> Group:
+    change = picture.edges[number].change
+    kind = kind_of(change, "child")
+    return Group("link", tone_of(change, Tone.PLAIN), (Polyline(points),), kind, edges=(number,))
 
 
 def _with_blackboard(
@@ -117,7 +121,9 @@ def _ports(picture: Picture, node: DiagramNode) -> Iterator[Row]:
         lines = paragraph(detail.text, PORT_WIDTH, "muted" if tone is None else "text", limit=MAX_PORT_LINES)
         hint = detail.text if is_shortened(lines, detail.text) else ""
         kind = " ".join(picture.edges[number].kind.value for number in edges)
-        yield Row(lines, tone or Tone.PLAIN, kind, edges, has_bar=tone is not None, hint=hint)
+        has_bar = tone is not None or is_marked(detail.change)
+        shown = tone_of(detail.change, tone or Tone.PLAIN)
+        yield Row(signed(lines, detail.change), shown, kind, edges, has_bar=has_bar, hint=hint)
 
 
 def _node(node: DiagramNode, index: int, card: Card, box: Box) -> Group:
@@ -129,5 +135,5 @@ def _node(node: DiagramNode, index: int, card: Card, box: Box) -> Group:
     first = next((item for item in rows if not isinstance(item, Group)), None)
     symbol = badge(node, inner.x + card.padding, getattr(first, "y", inner.y) - 13.5)
     items += symbol or ()
-    kind = f"{node.kind.value} initial" if node.initial else node.kind.value
-    return Group("node", _TONES.get(node.kind, Tone.PLAIN), tuple(items), kind, node=index)
+    kind = kind_of(node.change, f"{node.kind.value} initial" if node.initial else node.kind.value)
+    return Group("node", tone_of(node.change, _TONES.get(node.kind, Tone.PLAIN)), tuple(items), kind, node=index)
