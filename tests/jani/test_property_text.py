@@ -12,14 +12,14 @@ import stormpy
 from smc_models import automaton, document, edge, model, op, variable, way
 
 from roaml import api
-from roaml.jani.property_text import PropertyTextError, is_property_text, property_json
+from roaml.jani.property_text import PropertyTextError, is_property_text, read_property_text
 from roaml.verification.target import asking, target_of
 
 CLOCK = ("sec", "nanosec")
 
 
 def asked(text: str) -> Any:
-    return property_json(text, CLOCK)["expression"]["values"]
+    return read_property_text(text, CLOCK).expression["values"]
 
 
 @pytest.mark.parametrize(
@@ -73,7 +73,17 @@ def test_bounds_on_time() -> None:
     until = asked("P=? [ a U<=10500ms b ]")["exp"]
     assert until == {"op": "U", "left": "a", "right": op("∧", "b", within)}
     with pytest.raises(PropertyTextError, match="the model has no clock"):
-        property_json("P=? [ F<=10 s done ]")
+        read_property_text("P=? [ F<=10 s done ]")
+
+
+def test_conditions() -> None:
+    """`||` is a disjunction, except directly before a path."""
+    read = read_property_text("P=? [ F a || G b ]")
+    assert read.expression["values"] == {"op": "Pmin", "exp": {"op": "F", "exp": "a"}}
+    assert read.given is not None
+    assert read.given["values"] == {"op": "Pmin", "exp": {"op": "G", "exp": "b"}}
+    for text in ("P=? [ F a || b ]", "P=? [ (F a) || (F b) ]", "P=? [ (F a) | F b ]"):
+        assert read_property_text(text).given is None
 
 
 @pytest.mark.parametrize(
@@ -92,7 +102,7 @@ def test_bounds_on_time() -> None:
 )
 def test_what_is_not_a_property(text: str, problem: str) -> None:
     with pytest.raises(PropertyTextError) as raised:
-        property_json(text)
+        read_property_text(text)
     assert problem in str(raised.value)
 
 

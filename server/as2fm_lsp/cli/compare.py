@@ -33,7 +33,7 @@ from as2fm_lsp.cli.verify_arguments import add_sampling
 from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, OutputFiles, OutputFolder, OutputPath, outputs_of
 from as2fm_lsp.revisions import ModelVersion, RevisionError, model_version
 from roaml import api
-from roaml.api.comparing import StructuralChanges, Version, compare_structure, compare_values
+from roaml.api.comparing import ComparedVersion, StructuralChanges, compare_structure, compare_values
 from roaml.diagnostics import Diagnostic
 from roaml.exhaustive import Vocabulary, assert_never
 from roaml.experiments.changes import ValueChange
@@ -155,7 +155,7 @@ def _new_of(old: str) -> str:
 def _structure(options: argparse.Namespace, versions: Sequence[ModelVersion]) -> StructuralChanges:
     declared = declarations_in(options)
     mocks = declared.mocks() if declared.has_mocks else None
-    old, new = (Version(version.path, settings_of(version.path), None, mocks) for version in versions)
+    old, new = (ComparedVersion(version.path, settings_of(version.path), None, mocks) for version in versions)
     return compare_structure(old, new, options.ros_path)
 
 

@@ -19,7 +19,10 @@ def remarks(answer: Answer) -> list[str]:
     lines = []
     if answer.question.is_conditional and tally.traces:
         share = _share(tally.traces, tally.simulated)
-        lines.append(f"given its assumptions, which {share} satisfy; under uniform choices")
+        if answer.question.is_reward:
+            lines.append(f"given that its condition is reached, as in {share}; under uniform choices")
+        else:
+            lines.append(f"given its assumptions, which {share} satisfy; under uniform choices")
     if tally.traces and tally.closed + tally.idle == tally.traces:
         lines.append(f"warning: {warning(answer)}")
     else:

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from roaml.api.checking import CheckResult, check, fix
     from roaml.api.comparing import (
         ComparedPicture,
+        ComparedVersion,
         StructuralChanges,
-        Version,
         compare_structure,
         compare_values,
     )
@@ -127,7 +127,7 @@ else:
         "roaml.api.comparing": (
             "ComparedPicture",
             "StructuralChanges",
-            "Version",
+            "ComparedVersion",
             "compare_structure",
             "compare_values",
         ),
@@ -240,6 +240,7 @@ __all__ = [
     "Choice",
     "Choices",
     "ComparedPicture",
+    "ComparedVersion",
     "Comparison",
     "CompiledProperty",
     "Computed",
@@ -349,7 +350,6 @@ __all__ = [
     "Verdict",
     "VerificationTarget",
     "Verifier",
-    "Version",
     "Wait",
     "Watch",
     "WorkersLostError",

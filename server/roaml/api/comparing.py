@@ -47,7 +47,7 @@ class ComparedPicture(Record, frozen=True):
         return svg_file(draw_for(self.kind, self.picture, *PAGE), self.title, theme, CHANGE_STYLES, words)
 
 
-class Version(Record, frozen=True):
+class ComparedVersion(Record, frozen=True):
     """A version of a model for a comparison of its structure.
 
     Attributes:
@@ -81,7 +81,7 @@ class StructuralChanges(Record, frozen=True):
         return not (self.pictures or self.declarations or self.files)
 
 
-def compare_structure(old: Version, new: Version, ros_paths: Iterable[str] = ()) -> StructuralChanges:
+def compare_structure(old: ComparedVersion, new: ComparedVersion, ros_paths: Iterable[str] = ()) -> StructuralChanges:
     """What changed in the pictures and declarations of a model. Models with errors are compared as far as possible.
 
     Args:
@@ -172,7 +172,7 @@ def _definition(target: VerificationTarget, name: str) -> tuple[object, ...]:
 class _Side:
     """One version of a model."""
 
-    def __init__(self, version: Version, ros_paths: Iterable[str]) -> None:
+    def __init__(self, version: ComparedVersion, ros_paths: Iterable[str]) -> None:
         result = check([version.path], ros_paths, version.settings, version.texts)
         self.analysis: Analysis = result.snapshot.analysis
         self.path = os.path.abspath(version.path)

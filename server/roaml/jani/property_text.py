@@ -7,6 +7,8 @@
   about the clock of a translated system.
 - Names contain letters, digits, `_` and `.`; other names are written in double quotes. `"deadlock"` and `"init"` are
   the labels of PRISM.
+- `[ F a || G b ]` is about the traces in which `G b` holds, as in Storm: `||` directly before `F`, `G` or `X` is not a
+  disjunction.
 - `F`, `G` and `X` apply to everything that follows, up to a `U`, `W`, `R` or a closing bracket, as in PRISM.
 """
 
@@ -31,6 +33,10 @@ _FUNCTIONS = {
     "min": "min", "max": "max", "mod": "%", "pow": "pow", "log": "log", "floor": "floor", "ceil": "ceil",
 }  # fmt: skip
 _UNITS_NS = {"ns": 1, "us": 10**3, "ms": 10**6, "s": 10**9, "min": 60 * 10**9, "h": 3600 * 10**9}
+_TIME = "time"
+"""The reward that is the time of the model, in s."""
+_GIVEN = "||"
+"""The text of the token `||` that precedes the condition under which a property is asked."""
 _TEMPORAL = frozenset("FGXUWR")
 _BINARY_LEVELS = (("<=>",), ("=>",), ("|",), ("&",))
 _RELATIONS = frozenset(("=", "!=", "<", "<=", ">", ">="))
@@ -62,8 +68,21 @@ def is_property_text(text: str) -> bool:
     return "[" in text and _HEAD.match(text.strip()) is not None
 
 
-def property_json(text: str, clock: tuple[str, str] | None = None) -> Json:
-    """The JANI property, whose name is the text, as a value for JSON.
+class ReadProperty(NamedTuple):
+    """A property as a value for JSON.
+
+    Attributes:
+        given: the probability of the path that the considered traces satisfy; `None` if all traces are considered.
+        reward: the name in quotes that is the whole reward; "" if it is another expression.
+    """
+
+    expression: Json
+    given: Json | None
+    reward: str
+
+
+def read_property_text(text: str, clock: tuple[str, str] | None = None) -> ReadProperty:
+    """The JANI property that a text states.
 
     Args:
         clock: the variables with the seconds and nanoseconds of the time, for bounds with a unit.
@@ -71,13 +90,24 @@ def property_json(text: str, clock: tuple[str, str] | None = None) -> Json:
     Raises:
         PropertyTextError: the text is not a property.
     """
-    return {"name": text, "expression": _Parser(text, clock).property()}
+    return _Parser(text, clock).property()
 
 
 def _operation(symbol: str, left: Json, right: Json) -> Json:
     if symbol == "<=>":
         return _operation("&", _operation("=>", left, right), _operation("=>", right, left))
     return {"op": _JANI.get(symbol, symbol), "left": left, "right": right}
+
+
+def _filter(function: str, values: Json) -> Json:
+    return {"op": "filter", "fun": function, "values": values, "states": {"op": "initial"}}
+
+
+def _at_reach(operator: str, value: Json, reach: Json) -> Json:
+    """The expected value of an expression in the first state in which `reach` holds, as the sum of a reward that only
+    the step to this state earns."""
+    earned = {"op": "ite", "if": reach, "then": value, "else": 0}
+    return {"op": operator, "exp": earned, "accumulate": ["steps"], "reach": reach}
 
 
 def _negation(operand: Json) -> Json:
@@ -124,13 +154,14 @@ class _Parser:
 
     # ------------------------------------------------------------ properties
 
-    def property(self) -> Json:
+    def property(self) -> ReadProperty:
         head = self.next()
         match = _HEAD.fullmatch(head.text)
         if match is None:
             self.place = 0
             raise self.problem("expected `P`, `Pmin`, `Pmax`, `R`, `Rmin` or `Rmax`")
         is_reward, extreme = match["kind"] == "R", match["extreme"] or ""
+        is_quoted = is_reward and self.tokens[self.place + 1].kind == "quoted"
         reward = self.reward() if is_reward else None
         extreme = self.takes("min", "max") or extreme
         relation, threshold = self.asked()
@@ -138,16 +169,14 @@ class _Parser:
             extreme = "max" if relation in ("<", "<=") else "min"
         self.expect("[")
         value = self.expectation(f"E{extreme}", reward) if is_reward else {"op": f"P{extreme}", "exp": self.path()}
+        given = self.path() if self.takes(_GIVEN) else None
         self.expect("]")
         if self.token.text:
             raise self.problem("unexpected text")
         values = value if relation == "" else _operation(relation, value, threshold)
-        return {
-            "op": "filter",
-            "fun": "values" if relation == "" else "∀",
-            "values": values,
-            "states": {"op": "initial"},
-        }
+        function = "values" if relation == "" else "∀"
+        condition = None if given is None else _filter("values", {"op": "Pmin", "exp": given})
+        return ReadProperty(_filter(function, values), condition, str(reward) if is_quoted else "")
 
     def asked(self) -> tuple[str, Json]:
         """The comparison with a number; "" for `=?`."""
@@ -159,7 +188,8 @@ class _Parser:
         return relation, self.sum()
 
     def reward(self) -> Json:
-        """The reward in braces: an expression, or `"steps"`. In braces and quotes, it is the name of a variable."""
+        """The reward in braces: an expression, `"steps"` or `"time"`. Another text in quotes is the name of a
+        variable."""
         if not self.takes("{"):
             raise self.problem('expected the reward in braces, such as `R{"steps"}`,')
         reward = 1 if self.token.text in ("steps", '"steps"') and self.next() else self.formula()
@@ -171,13 +201,36 @@ class _Parser:
         value = {"op": operator, "exp": reward, "accumulate": accumulate}
         if self.takes("C"):
             self.expect("<=")
-            return {**value, "step-instant": self.sum()}
+            number, unit = self.sum(), self.unit()
+            if unit == 0:
+                return {**value, "step-instant": number}
+            return {**value, "reach": self.since(number, unit)}
         if self.takes("I"):
             self.expect("=")
-            return {"op": operator, "exp": reward, "step-instant": self.sum()}
+            number, unit = self.sum(), self.unit()
+            if unit == 0:
+                return {"op": operator, "exp": reward, "step-instant": number}
+            return _at_reach(operator, reward, self.since(number, unit))
         if not self.takes("F"):
             raise self.problem("expected `F`, `C<=` or `I=` in a reward")
-        return {**value, "reach": self.formula()}
+        reach = self.formula()
+        if reward != _TIME:
+            return {**value, "reach": reach}
+        seconds, nanoseconds = self.known_clock()
+        fraction = {"op": "/", "left": nanoseconds, "right": 10**9}
+        return _at_reach(operator, {"op": "+", "left": seconds, "right": fraction}, reach)
+
+    def since(self, number: Json, unit_ns: int) -> Json:
+        """The condition that the clock shows at least a number of time units."""
+        self.known_clock()
+        return self.compared(">=", number, unit_ns)
+
+    def known_clock(self) -> tuple[str, str]:
+        if self.clock is None:
+            raise PropertyTextError(
+                f"`{self.text.strip()}` is about the time of the model, but the model has no clock; count steps instead"
+            )
+        return self.clock
 
     # ------------------------------------------------------------ paths
 
@@ -376,4 +429,14 @@ def _tokens(text: str) -> list[_Token]:
         word = match[kind]
         tokens.append(_Token(kind, _SPELLINGS.get(word, word) if kind == "mark" else word, match.start(kind)))
         place = match.end()
-    return [*tokens, _Token("end", "", len(text))]
+    tokens.append(_Token("end", "", len(text)))
+    return [
+        token._replace(text=_GIVEN) if _is_given(text, token, after) else token
+        for token, after in zip(tokens, [*tokens[1:], tokens[-1]], strict=True)
+    ]
+
+
+def _is_given(text: str, token: _Token, after: _Token) -> bool:
+    """Whether a token is `||` before a path, which is not a disjunction."""
+    is_double = token.kind == "mark" and text.startswith(_GIVEN, token.start)
+    return is_double and after.kind == "name" and after.text in ("F", "G", "X")

@@ -36,6 +36,7 @@ from roaml.jani.properties import (
     UnaryPath,
     UnaryPathOperator,
     identifiers,
+    walk,
 )
 from roaml.jani.semantics import EvaluationError, evaluate
 from roaml.record import Record, replace
@@ -96,7 +97,8 @@ class Question(Record, frozen=True):
         is_stuck: whether it is about stuck traces (`compile_stuck`).
         can_be_vacuous: whether there may be traces that do not exercise the property (`Activity`).
         can_be_late: see `ObserverOutputs`.
-        is_conditional: whether it is only about traces that satisfy assumptions.
+        is_conditional: whether it is only about traces that satisfy assumptions; for a reward, about traces that reach
+            its condition.
         initial_states: the number of initial states.
         fold: how the property combines their values.
     """
@@ -194,12 +196,34 @@ def compile_property(
 
 
 def conditional(property_: CompiledProperty, assumptions: CompiledProperty) -> CompiledProperty:
-    """A copy of `property_` that is restricted to traces that satisfy `assumptions`."""
-    return replace(
-        property_,
-        question=replace(property_.question, is_conditional=True),
-        assumptions=assumptions.goal,
-    )
+    """A copy of `property_` that is restricted to traces that satisfy `assumptions`. A reward is restricted to traces
+    that reach its condition, which its own goal decides.
+
+    Raises:
+        FaultError: a reward is to be restricted otherwise.
+    """
+    question = replace(property_.question, is_conditional=True)
+    if not question.is_reward:
+        return replace(property_, question=question, assumptions=assumptions.goal)
+    if _reached(property_.property) is None or _reached(property_.property) != _reached(assumptions.property):
+        message = (
+            "a reward until a condition can only be restricted to traces that reach this condition, as in "
+            '`R{"steps"}=? [ F done || F done ]`'
+        )
+        raise FaultError(message, property_.property.origin, code=UNSUPPORTED)
+    return replace(property_, question=question)
+
+
+def _reached(property_: Property) -> Formula | None:
+    """The condition c of a reward until c, or of the probability of `F c` without bounds; `None` for others."""
+    for formula in walk(property_.expression):
+        match formula:
+            case Expectation(reach=reach):
+                return reach
+            case Probability(path=UnaryPath(operator=UnaryPathOperator.FINALLY, operand=operand) as path):
+                is_bounded = path.step_bounds or path.time_bounds or path.reward_bounds
+                return None if is_bounded else operand
+    return None
 
 
 STUCK_PROPERTY = "stuck"

@@ -197,10 +197,15 @@ class Inquiry(Record):
 
 
 def columns_of(questions: Iterable[Question]) -> list[tuple[int, ...]]:
-    """The numbers that each question and its assumptions have in a goal that joins the goals of all, in their order."""
+    """The numbers that each question and its assumptions have in a goal that joins the goals of all, in their order.
+    The assumption of a reward is its own goal."""
     columns: list[tuple[int, ...]] = []
     count = 0
     for question in questions:
+        if question.is_conditional and question.is_reward:
+            columns.append((count, count))
+            count += 1
+            continue
         size = 2 if question.is_conditional else 1
         columns.append(tuple(range(count, count + size)))
         count += size

@@ -108,28 +108,53 @@ def asking(target: VerificationTarget, names: Iterable[str]) -> VerificationTarg
     texts = [name for name in names if "[" in name]
     if not texts:
         return target
-    import json  # noqa: PLC0415 - most verifications need no parser of properties
+    # Most verifications need no parser of properties.
+    from roaml.jani.property_text import PropertyTextError, is_property_text, read_property_text  # noqa: PLC0415
+    from roaml.to_jani.counters import CounterError, is_counter, with_counter  # noqa: PLC0415
 
-    from roaml.jani.property_text import PropertyTextError, is_property_text, property_json  # noqa: PLC0415
-    from roaml.jani.reader import read_properties  # noqa: PLC0415
-    from roaml.jani.typecheck import check_property, model_scope  # noqa: PLC0415
-    from roaml.json_syntax import parse  # noqa: PLC0415
-
-    scope = model_scope(target.model)
+    model = target.model
     known = {property_.name for property_ in target.model.properties}
     added: list[Property] = []
+    assumptions = dict(target.assumptions)
     for text in dict.fromkeys(texts):
         if text in known or not is_property_text(text):
             continue
-        value, _ = parse(json.dumps({"properties": [property_json(text, target.clock)]}))
-        properties, findings = read_properties(value)
-        findings += tuple(finding for property_ in properties for finding in check_property(property_, scope))
-        if findings:
-            raise PropertyTextError(f"`{text}`: {findings[0].message}")
-        added += properties
-    model = replace(target.model, properties=(*target.model.properties, *added))
+        written = read_property_text(text, target.clock)
+        if is_counter(written.reward):
+            try:
+                model = with_counter(model, written.reward)
+            except CounterError as error:
+                raise PropertyTextError(f"`{text}`: {error}") from None
+        added.append(_checked(model, text, text, written.expression))
+        if written.given is not None:
+            assumptions[text] = _checked(model, text, assumptions_of(text), written.given)
+            added.append(assumptions[text])
+    model = replace(model, properties=(*model.properties, *added))
     if any(is_nested(formula) for property_ in added for formula in walk(property_.expression)):
         from roaml.to_jani.state_observers import with_state_observers  # noqa: PLC0415
 
         model = with_state_observers(model)
-    return replace(target, model=model)
+    return replace(target, model=model, assumptions=assumptions)
+
+
+def _checked(model: Model, text: str, name: str, expression: object) -> Property:
+    """The property with a name and an expression, which is a value for JSON and a part of a text.
+
+    Raises:
+        PropertyTextError: it names something that the model does not declare, or has a wrong type.
+    """
+    import json  # noqa: PLC0415
+
+    from roaml.jani.property_text import PropertyTextError  # noqa: PLC0415
+    from roaml.jani.reader import read_properties  # noqa: PLC0415
+    from roaml.jani.typecheck import check_property, model_scope  # noqa: PLC0415
+    from roaml.json_syntax import parse  # noqa: PLC0415
+    from roaml.verification.labels import with_labels  # noqa: PLC0415
+
+    labelled = with_labels(expression, model)
+    value, _ = parse(json.dumps({"properties": [{"name": name, "expression": labelled}]}))
+    properties, findings = read_properties(value)
+    findings += tuple(finding for property_ in properties for finding in check_property(property_, model_scope(model)))
+    if findings:
+        raise PropertyTextError(f"`{text}`: {findings[0].message}")
+    return properties[0]
