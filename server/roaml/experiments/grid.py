@@ -332,9 +332,9 @@ def _exact(task: _Task, checker: ModelChecker, property_: CompiledProperty) -> E
     options, question = task.options, property_.question
     try:
         if options.is_exhaustive:
-            exact: Exact | None = exact_values(checker, property_, task.limits)
+            exact: Exact | None = exact_values(checker, property_, task.limits, only_uniform=options.only_uniform)
         elif options.exact:
-            exact = attempt(checker, property_, task.limits).exact
+            exact = attempt(checker, property_, task.limits, only_uniform=options.only_uniform).exact
         else:
             exact = None
     except UndecidedError as error:

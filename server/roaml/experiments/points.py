@@ -165,12 +165,17 @@ def exact_point(
         _middle(asked),
         asked.lower,
         asked.upper,
-        _middle(minimum),
-        _middle(maximum),
+        _extreme(minimum),
+        _extreme(maximum),
         None if uniform is None else _middle(uniform),
         states,
         note="some traces get stuck" if can_get_stuck else "",
     )
+
+
+def _extreme(bounds: Bounds) -> float | None:
+    """The value of a minimum or maximum; `None` if only one of its bounds is known."""
+    return None if bounds.lower != bounds.upper and math.inf in (-bounds.lower, bounds.upper) else _middle(bounds)
 
 
 def _middle(bounds: Bounds) -> float:
@@ -189,7 +194,9 @@ def estimated_point(setting: Setting, answer: Answer, stuck: int = 0) -> Experim
         notes.append(f"{tally.undecided:,} of {tally.traces:,} traces undecided")
     if stuck:
         notes.append(f"{stuck:,} of {tally.traces:,} traces got stuck")
-    if not answer.is_complete:
+    if answer.question.is_conditional and not tally.traces:
+        notes.append(f"none of {tally.rejected:,} traces satisfies the condition")
+    elif not answer.is_complete:
         notes.append("the interval is wider than requested")
     value = math.nan if answer.is_unknown else answer.value
     return ExperimentPoint(

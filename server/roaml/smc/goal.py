@@ -146,12 +146,14 @@ class Activity(enum.IntEnum):
 
 
 class CompiledProperty(Record, frozen=True):
-    """A property with its question and its goal, and the goal of its assumptions if it has any."""
+    """A property with its question and its goal, and the goal of its assumptions if it has any. `given` is the property
+    that states the assumptions."""
 
     property: Property
     question: Question
     goal: Goal
     assumptions: Goal | None = None
+    given: Property | None = None
 
 
 class ObserverOutputs(Record, frozen=True):
@@ -204,7 +206,7 @@ def conditional(property_: CompiledProperty, assumptions: CompiledProperty) -> C
     """
     question = replace(property_.question, is_conditional=True)
     if not question.is_reward:
-        return replace(property_, question=question, assumptions=assumptions.goal)
+        return replace(property_, question=question, assumptions=assumptions.goal, given=assumptions.property)
     if _reached(property_.property) is None or _reached(property_.property) != _reached(assumptions.property):
         message = (
             "a reward until a condition can only be restricted to traces that reach this condition, as in "

@@ -124,6 +124,17 @@ class ModelChecker:
         """The compiled model with the goal of `property_`. Assumptions are left out."""
         return Compiled(self.program, property_.goal)
 
+    def asking(self, property_: Property) -> ModelChecker:
+        """A model checker for another property without observers of the same model.
+
+        Raises:
+            FaultError: the property cannot be answered.
+        """
+        other = ModelChecker(self.model, [property_], self._marks, actors=self._actors)
+        if other.refused:
+            raise other.refused[property_.name]
+        return other
+
     def reduced(self, property_: CompiledProperty) -> ModelChecker:
         """A model checker for one property, without the automata that only other properties need; `self` if there are
         none. The reduced model has fewer states and the same probabilities, but different traces for the same

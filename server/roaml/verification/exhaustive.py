@@ -22,6 +22,7 @@ from roaml.smc.goal import NOT, CompiledProperty, Question
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import AT_END, FALSE, TRUE
 from roaml.smc.statistics import Bounds
+from roaml.verification.conditional import of_condition, parts_of, quotient
 from roaml.verification.expectations import Expectation, Verdict
 from roaml.verification.growth import GrowingVariable, growing_variables
 from roaml.verification.number_text import number
@@ -62,14 +63,17 @@ def exact_values(
     property_: CompiledProperty,
     limits: StateLimits,
     watch: ExplorationWatch | None = None,
+    *,
+    only_uniform: bool = False,
 ) -> Exact:
     """The exact values of a property, from all states.
 
     Args:
         watch: see `roaml.explicit.space.explore`.
+        only_uniform: whether the value under uniform choices is sufficient for a property with a condition.
 
     Raises:
-        UndecidedError: a limit was reached, or the property has assumptions or no value that can be computed.
+        UndecidedError: a limit was reached, or the property has no value that can be computed.
         FaultError: an undefined operation is executed in a reachable state.
         ExplorationInterruptedError: Ctrl-C was pressed.
 
@@ -77,7 +81,7 @@ def exact_values(
     (docs/spec/reductions.md#when).
     """
     if property_.question.is_conditional:
-        raise UndecidedError(f"a minimum or maximum given assumptions cannot be computed from all states; {_ESTIMATE}")
+        return _conditional(checker, property_, limits, watch, only_uniform=only_uniform)
     checker, property_ = alone(checker, property_)
     try:
         if limits.reduces and can_be_reduced(checker.program, property_.goal):
@@ -89,6 +93,35 @@ def exact_values(
     except SearchInterruptedError as interrupt:
         variables = growing_variables(checker, interrupt.search)
         raise ExplorationInterruptedError(interrupt.search.count, variables) from None
+
+
+def _conditional(
+    checker: ModelChecker,
+    property_: CompiledProperty,
+    limits: StateLimits,
+    watch: ExplorationWatch | None,
+    *,
+    only_uniform: bool,
+) -> Exact:
+    """The exact value under a condition."""
+    parts, exact = parts_of(checker, property_), None
+    limits = replace(limits, reduces=limits.reduces and not only_uniform and parts is not None)
+    if parts is not None:
+        exact = quotient(*(exact_values(part, part.compiled_properties[0], limits, watch) for part in parts))
+    elif property_.question.is_reward:
+        own, plain = alone(checker, replace(property_, question=replace(property_.question, is_conditional=False)))
+        try:
+            space = explore(own, plain, limits, watch)
+        except LimitError as error:
+            raise UndecidedError(f"{error}; {_ESTIMATE}") from None
+        exact = of_condition(values_from(space, limits), property_.question, space)
+    else:
+        raise UndecidedError(f"a probability given assumptions cannot be computed from all states; {_ESTIMATE}")
+    if exact is None or not (only_uniform or is_same(exact.minimum, exact.maximum)):
+        raise UndecidedError(
+            f"a value under a condition is computed from all states only if all schedulers have the same; {_ESTIMATE}"
+        )
+    return exact
 
 
 def alone(checker: ModelChecker, property_: CompiledProperty) -> tuple[ModelChecker, CompiledProperty]:

@@ -25,7 +25,7 @@ _WORDS = frozenset({"op", "fun"})
 def with_labels(expression: Any, model: Model) -> Any:
     """A formula, as a value for JSON, in which the names of properties are replaced by their conditions. Names of
     variables and constants have precedence."""
-    declared = {declaration.name for declaration in (*model.variables, *model.constants)}
+    declared = {variable.name for variable in model.variables} | {constant.name for constant in model.constants}
     declared |= {variable.name for automaton in model.automata for variable in automaton.variables}
     properties = {p.name: p for p in model.properties if p.name not in declared and _is_reachability(p)}
 

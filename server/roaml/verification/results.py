@@ -146,6 +146,8 @@ def is_same(a: Bounds, b: Bounds) -> bool:
     if a == b:
         return True
     lower, upper = min(a.lower, b.lower), max(a.upper, b.upper)
+    if math.isinf(lower) or math.isinf(upper):
+        return False
     return upper - lower <= EXACT_WIDTH * max(1.0, abs(lower))
 
 

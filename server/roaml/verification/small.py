@@ -17,8 +17,9 @@ from roaml.smc.choices import Choices, Extreme, ExtremeMethod
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty, InitialFold
 from roaml.smc.model import ModelChecker
+from roaml.verification.conditional import of_condition, parts_of, quotient
 from roaml.verification.exhaustive import UndecidedError, alone, values_from
-from roaml.verification.results import Exact
+from roaml.verification.results import Exact, is_same
 
 MAX_SMALL_STATES = 20_000
 LIMITS = StateLimits(states=MAX_SMALL_STATES, bytes=4 << 30, combinations=4_096, transitions=200_000, work=100_000_000)
@@ -64,6 +65,7 @@ def attempt(
     watch: ExplorationWatch | None = None,
     *,
     leaves_out: bool = True,
+    only_uniform: bool = False,
 ) -> Attempt:
     """The exact values of a property, if the model is not too large, no undefined operation is executed, and not only
     traces can answer the property.
@@ -71,9 +73,10 @@ def attempt(
     Args:
         watch: see `roaml.explicit.space.explore`.
         leaves_out: whether choices may be left out if there are too many states.
+        only_uniform: whether the value under uniform choices is sufficient for a property with a condition.
     """
     if property_.question.is_conditional:
-        return Attempt(None)
+        return _conditional(checker, property_, limits, watch, only_uniform=only_uniform)
     cost, reason = setup_cost(checker), ""
     checker, property_ = alone(checker, property_)
     tables = search_tables(checker, property_, limits)
@@ -101,6 +104,34 @@ def attempt(
         if exact is not None:
             return Attempt(exact if exact.is_precise else None, cost, space=space)
     return Attempt(None, cost, reason)
+
+
+def _conditional(
+    checker: ModelChecker,
+    property_: CompiledProperty,
+    limits: StateLimits,
+    watch: ExplorationWatch | None,
+    *,
+    only_uniform: bool,
+) -> Attempt:
+    """The exact value under a condition."""
+    plain = replace(property_, question=replace(property_.question, is_conditional=False))
+    parts = parts_of(checker, property_)
+    if parts is not None:
+        joint, given = (
+            attempt(part, part.compiled_properties[0], limits, watch, leaves_out=not only_uniform) for part in parts
+        )
+        cost = joint.transitions + given.transitions
+        exact = None if joint.exact is None or given.exact is None else quotient(joint.exact, given.exact)
+    elif property_.question.is_reward:
+        whole = attempt(checker, plain, limits, watch, leaves_out=False)
+        cost = whole.transitions
+        exact = None if whole.exact is None else of_condition(whole.exact, property_.question, whole.space)
+    else:
+        return Attempt(None)
+    if exact is not None and not (only_uniform or is_same(exact.minimum, exact.maximum)):
+        exact = None
+    return Attempt(exact, cost)
 
 
 def setup_cost(checker: ModelChecker) -> int:
