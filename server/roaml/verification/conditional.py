@@ -23,7 +23,6 @@ from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty, Question
 from roaml.smc.model import ModelChecker
 from roaml.smc.statistics import Bounds
-from roaml.to_jani.counters import is_counter
 from roaml.verification.results import Exact
 
 
@@ -38,6 +37,8 @@ def of_condition(exact: Exact, question: Question, space: Space | None) -> Exact
         return exact  # it is infinite if a scheduler need not reach the condition
     if space is None:
         return None
+    from roaml.to_jani.counters import is_counter  # noqa: PLC0415 - JANI models need no translation
+
     counters = [variable.name for variable in space.checker.model.variables if is_counter(variable.name)]
     reached = reached_reward(space, counters)
     return None if reached is None else _valued(exact, reached.value, is_for_all=reached.is_deterministic)
