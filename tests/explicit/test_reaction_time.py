@@ -52,7 +52,7 @@ def extremes(model: Model, *, modules: object = None) -> tuple[float, float, int
 
 
 @given(clocked())
-@settings(max_examples=examples(60), deadline=None, phases=[Phase.generate])
+@settings(max_examples=examples(30), deadline=None, phases=[Phase.generate])
 def test_all_agree_with_the_definition(model: Model) -> None:
     known: dict[ReactionTime, tuple[float, float]] = {}
     for time in TIMES if is_local(model) else TIMES[:2]:

@@ -97,7 +97,7 @@ def test_automata_with_many_shared_variables(written: Json) -> None:
 
 
 @given(networks())
-@settings(max_examples=examples(40), deadline=None)
+@settings(max_examples=examples(20), deadline=None)
 def test_both_searches_leave_out_the_same(written: Json) -> None:
     ours = both(*question_of(written))
     if ours is None:
@@ -119,7 +119,7 @@ def test_paths_of_states_that_are_not_stored_are_remembered(monkeypatch: pytest.
     saved: list[int] = []
 
     @given(networks())
-    @settings(max_examples=examples(60), deadline=None)
+    @settings(max_examples=examples(30), deadline=None)
     def run(written: Json) -> None:
         checker, property_ = question_of(written)
         compiled = checker.compiled(property_)

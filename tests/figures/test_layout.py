@@ -186,7 +186,7 @@ def large_graphs(draw: st.DrawFn) -> tuple[dict[str, Extent], list[Link]]:
     return {str(number): Extent(100, 40) for number in range(count)}, [Link(str(a), str(b), label) for a, b in ends]
 
 
-@settings(max_examples=examples(25), deadline=None)
+@settings(max_examples=examples(12), deadline=None)
 @given(large_graphs(), DIRECTIONS)
 def test_large_graphs_are_wrapped(graph: tuple[dict[str, Extent], list[Link]], direction: LayoutDirection) -> None:
     """Neither side is more than three times as long as the other one, and nothing else is lost."""
