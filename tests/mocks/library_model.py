@@ -576,18 +576,19 @@ class Precondition(Decorator):
 
 
 class Loop(Decorator):
-    left: list[str]
+    left: tuple[str, ...] = ()
     filled = running = False
 
     def tick(self) -> str:
         if self.status == IDLE:
             if self.world.version >= (4, 7) or not self.filled:
-                self.left = self.ports["queue"].split(";")
+                self.left = tuple(self.ports["queue"].split(";"))
             self.filled, self.running = True, False
         if not self.running:
             if not self.left:
                 return self.ports.get("if_empty", S)
-            self.world.write(self.ports["value"].strip("{}"), int(self.left.pop(0)))
+            first, self.left = self.left[0], self.left[1:]
+            self.world.write(self.ports["value"].strip("{}"), int(first))
         if self.status == IDLE:
             self.status = R
         answer = self.child.execute()
