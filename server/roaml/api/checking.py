@@ -11,7 +11,7 @@ from roaml.api.jani_files import PathError
 from roaml.diagnostics import Diagnostic
 from roaml.disk import UnreadableReason
 from roaml.model.dialect import dialect_of
-from roaml.model.kinds import FileKind
+from roaml.model.kinds import FileKind, mocks_path
 from roaml.model.machine import Dialect
 from roaml.project.configuration import find_settings
 from roaml.project.fixing import fix_all, safe_fix
@@ -65,9 +65,10 @@ def check(
 ) -> CheckResult:
     """Check system files, single files and folders.
 
-    A system file is checked together with all files that it names, and a folder with all systems and files in it. Any
-    other file is checked as a part of the systems that name it. These systems are searched for in the configured roots;
-    without configured roots, in the enclosing repository; without a repository, in the folder of the file.
+    A system file is checked together with all files that it names, a tree with the mocks beside it, and a folder with
+    all systems and files in it. Any other file is checked as a part of the systems that name it. These systems are
+    searched for in the configured roots; without configured roots, in the enclosing repository; without a repository,
+    in the folder of the file.
 
     Args:
         paths: the files and folders to check.
@@ -157,6 +158,8 @@ def _files(named: list[str], snapshot: Snapshot, kinds: Mapping[str, FileKind]) 
             paths.update(dict.fromkeys(inside))
         elif kinds[path] is FileKind.SYSTEM:
             paths.update(dict.fromkeys((*analysis.files_of(path), *analysis.interface_files_of(path))))
+        elif kinds[path] is FileKind.TREE:
+            paths.update(dict.fromkeys((path, mocks_path(path))))
         else:
             paths[path] = None
     return tuple(path for path in paths if analysis.source(path) is not None)

@@ -12,6 +12,7 @@ from roaml.api.jani_files import read_jani
 from roaml.disk import MAX_DATA, required
 from roaml.durations import ANY_TIME, ReactionTime
 from roaml.jani.model import Model
+from roaml.model.kinds import mocks_path
 from roaml.model.parameters import NO_OVERRIDES, Overrides
 from roaml.project.settings import Settings
 from roaml.record import replace
@@ -69,14 +70,14 @@ def target(
     """
     from roaml.verification.target import target_of  # noqa: PLC0415
 
-    mocks_path = f"{os.path.splitext(path)[0]}.mocks"
-    if mocks is not None or (not path.endswith(".jani") and os.path.exists(mocks_path)):
+    beside = mocks_path(path)
+    if mocks is not None or (not path.endswith(".jani") and os.path.exists(beside)):
         from roaml.api.trees import load_tree  # noqa: PLC0415
         from roaml.mocks.mock import named_mocks, read_mocks  # noqa: PLC0415
         from roaml.mocks.network import DEFAULT_RATE, MockOptions  # noqa: PLC0415
 
         if mocks is None:
-            declared = read_mocks(required(mocks_path, MAX_DATA).decode("utf-8", "replace"))
+            declared = read_mocks(required(beside, MAX_DATA).decode("utf-8", "replace"))
         else:
             declared = named_mocks(mocks)
         rate = DEFAULT_RATE if tick_rate is None else Fraction(str(tick_rate))

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 from roaml.ide.code_actions.action import WorkspaceEdit
 from roaml.mocks.mock import Mock, read_mocks
 from roaml.mocks.proposal import MockableLeaf, mockable_leaves, proposed_text
+from roaml.model.kinds import mocks_path
 from roaml.project.analysis import Analysis
-from roaml.project.mock_files import mocks_path
 from roaml.project.paths import name_of
 from roaml.record import Record
 from roaml.text import Span, TextEdit

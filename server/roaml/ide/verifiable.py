@@ -10,10 +10,10 @@ from roaml.comparison import Comparison, read_comparison
 from roaml.ide.describe.markdown import plain
 from roaml.ide.navigation.document_symbol import DocumentSymbolKind
 from roaml.ide.navigation.document_symbols import document_symbols
-from roaml.model.kinds import FileKind
+from roaml.model.kinds import FileKind, mocks_path
 from roaml.model.property_file import PropertyFile
 from roaml.project.analysis import Analysis
-from roaml.project.mock_files import executed_tree, mocks_path
+from roaml.project.mock_files import executed_tree
 from roaml.record import Record
 from roaml.scxml.names import SUCCEEDS
 from roaml.text import SourceFile, Span

@@ -18,13 +18,14 @@ from roaml.interfaces.parse import parse
 from roaml.interfaces.search import SearchPath
 from roaml.interfaces.types import KIND_NAMES, KINDS, Definition, Kind
 from roaml.record import Record, replace
-from roaml.suggest import close_names, did_you_mean
+from roaml.suggest import are_similar, close_names, did_you_mean
 from roaml.text import SourceFile
 
 _MAX_CLOSE = 3
 """The maximum number of similar names that are suggested."""
 _MAX_NAME_LENGTH = 100
 """The number of characters at the beginning of a malformed name for which similar names are searched."""
+_KIND_SUFFIX = re.compile("_(?:msg|srv|interface|action)s?$")
 _WORD_BREAKS = re.compile(r"[^A-Za-z0-9_]+")
 
 
@@ -59,6 +60,15 @@ class NotFound(Record, frozen=True):
     size: str = ""
 
     @property
+    def meant(self) -> tuple[str, ...]:
+        """The names in `close` that were probably meant. If the package is unknown, it is often in a folder that is not
+        searched; then only a similar name of a package shows that it is misspelled."""
+        if self.reason is not Reason.UNKNOWN_PACKAGE:
+            return self.close
+        stem = _stem(self.type_name.partition("/")[0])
+        return tuple(name for name in self.close if are_similar(stem, _stem(name.partition("/")[0])))
+
+    @property
     def message(self) -> str:
         """The error and the correction, as a sentence."""
         kind = KIND_NAMES[self.kind]
@@ -79,6 +89,11 @@ class NotFound(Record, frozen=True):
                 return f"`{self.type_name}` is too large: with all nested messages, it has {self.size}"
             case Reason.SECTIONS:
                 return f"the file `{self.path}`, which defines `{self.type_name}`, has wrong lines `---`"
+
+
+def _stem(package: str) -> str:
+    """The name of a package without endings that many packages have, such as `_msgs`."""
+    return _KIND_SUFFIX.sub("", package)
 
 
 class Parsed(Record, frozen=True):

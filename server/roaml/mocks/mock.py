@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 from fractions import Fraction
 
 from roaml.record import Record
+from roaml.text import Span
 
 _MOCK = re.compile(r"(?P<name>.+?)\s*:\s*(?P<probability>[^\s:]+)(?:\s+in\s+(?P<duration>.+))?\Z")
 _DURATION = re.compile(r"(\d+(?:\.\d+)?)\s*(ms|s|min)\Z")
@@ -77,8 +78,17 @@ def read_mocks(text: str) -> tuple[Mock, ...]:
     Raises:
         MockError: a line is not a valid mock.
     """
-    lines = (line.partition("#")[0].strip() for line in text.splitlines())
-    return tuple(read_mock(line) for line in lines if line)
+    return tuple(read_mock(text[span.start : span.end]) for span in mock_spans(text))
+
+
+def mock_spans(text: str) -> Iterator[Span]:
+    """The places of the mocks in the text of a file, without comments and the blanks around them."""
+    start = 0
+    for line in text.splitlines(keepends=True):
+        mock = line.partition("#")[0].rstrip()
+        if mock.strip():
+            yield Span(start + len(mock) - len(mock.lstrip()), start + len(mock))
+        start += len(line)
 
 
 def named_mocks(mocks: Mapping[str, str]) -> tuple[Mock, ...]:
@@ -113,4 +123,9 @@ def mock_for(mocks: Sequence[Mock], name: str, type_: str, succeeds: bool = Fals
 def unused(mocks: Sequence[Mock], nodes: Iterable[tuple[str, str]]) -> tuple[Mock, ...]:
     """The mocks, except `*`, that match none of the nodes. Nodes are pairs of name and type."""
     words = {word for node in nodes for word in node}
-    return tuple(m for m in mocks if m.pattern != ALL and not any(fnmatchcase(word, m.pattern) for word in words))
+    return tuple(mock for mock in mocks if mock.pattern != ALL and not matches(mock.pattern, words))
+
+
+def matches(pattern: str, words: Iterable[str]) -> bool:
+    """Whether a pattern of a mock matches one of the names or types of nodes."""
+    return any(fnmatchcase(word, pattern) for word in words)

@@ -21,6 +21,7 @@ class FileKind(enum.Enum):
     XML_PROPERTIES = "property file in XML"
     JANI_MODEL = "JANI model"
     INTERFACE = "ROS interface definition"
+    MOCKS = "mocks of a tree"
     CONFIGURATION = "configuration of as2fm"
     SPECIFICATION = "specification of another tool"
     UNKNOWN = "file of another kind"
@@ -41,7 +42,7 @@ MOCKS_EXTENSION = ".mocks"
 PROJECT_EXTENSION = ".btproj"
 """The extension of Groot2 projects, which list files of trees. A project is read if a tree in its directory is read. It
 is never changed."""
-EXTENSIONS = (*MACHINE_EXTENSIONS, ".xml", ".jani", ".json", *INTERFACE_EXTENSIONS)
+EXTENSIONS = (*MACHINE_EXTENSIONS, ".xml", ".jani", ".json", *INTERFACE_EXTENSIONS, MOCKS_EXTENSION)
 """The extensions of files that are searched for. Files with other extensions are read only if a user or a file names
 them."""
 
@@ -60,7 +61,13 @@ _TREE_MARK = re.compile(r"<\s*(?:BehaviorTree|TreeNodesModel)\b|BTCPP_format|mai
 _JANI_MODEL = re.compile(r'"(?:jani-version|automata)"\s*:')
 _JSON_SCHEMA = re.compile(r'"type"\s*:\s*"object"')
 _OUR_TABLE = re.compile(r"^\s*\[.*\bas2fm\b|^\s*tool\b.*\bas2fm\b", re.MULTILINE)
+_EXTENSION = re.compile(r"(?<=[^/\\])\.[^./\\]+\Z")
 _HEAD = 20_000
+
+
+def mocks_path(tree: str) -> str:
+    """The path of the file with the mocks of a tree, which need not exist: `fetch.mocks` beside `fetch.xml`."""
+    return f"{_EXTENSION.sub('', tree)}{MOCKS_EXTENSION}"
 
 
 def root_name(text: str) -> str:
@@ -85,6 +92,8 @@ def kind_of(path: str, text: str) -> FileKind:
     extension = f".{path.rpartition('.')[2].lower()}"
     if extension in INTERFACE_EXTENSIONS:
         return FileKind.INTERFACE
+    if extension == MOCKS_EXTENSION:
+        return FileKind.MOCKS
     if extension in (".jani", ".json"):
         if _JANI_MODEL.search(text[:_HEAD]):
             return FileKind.JANI_MODEL

@@ -19,7 +19,7 @@ from collections.abc import Callable, Iterable, Iterator
 from roaml.diagnostics import Diagnostic, Finding, Related, RelatedPlace, Severity, Symbol, Tag
 from roaml.disk import UnreadableReason
 from roaml.interfaces.parse import parse as parse_interface
-from roaml.interfaces.registry import NotFound
+from roaml.interfaces.registry import NotFound, Reason
 from roaml.interfaces.report import CODE as INTERFACE_SYNTAX
 from roaml.interfaces.types import Definition, Kind
 from roaml.language import HL_SCXML, PLAIN_SCXML, Grammar
@@ -322,6 +322,8 @@ class _Run:
                 return (*parts, self._configuration_findings())
             case FileKind.INTERFACE:
                 return (*parts, self._interface_findings())
+            case FileKind.MOCKS:
+                return (*parts, self._mock_findings())
         return parts
 
     def findings(self) -> tuple[Finding, ...]:
@@ -395,6 +397,8 @@ class _Run:
                 return FileContext(self.source, findings)
             case FileKind.INTERFACE:
                 return FileContext(self.source, self._interface_findings())
+            case FileKind.MOCKS:
+                return FileContext(self.source, self._mock_findings())
             case FileKind.CONFIGURATION:
                 return FileContext(self.source, self._configuration_findings())
         document = self.analysis.document(self.path)
@@ -412,17 +416,22 @@ class _Run:
         return (*findings, *self._misspelled_fields(definition, findings))
 
     def _misspelled_fields(self, definition: Definition, findings: tuple[Finding, ...]) -> Iterator[Finding]:
-        """The types of fields that do not exist, but resemble existing ones. Other unknown packages may be in folders
-        that are not searched; the machines that use their types report them."""
+        """The types of fields that do not exist in a known package, or whose package resembles a known one. Other
+        unknown packages may be in folders that are not searched; the machines that use their types report them."""
         known = {finding.span for finding in findings}
         for section in definition.sections:
             for field in section.fields:
                 if field.type.is_primitive or field.type_span in known:
                     continue
                 problem = self.analysis.registry.resolve("msg", field.type.name)
-                if isinstance(problem, NotFound) and problem.close:
-                    fixes = replacements(field.type_span, problem.close)
+                if isinstance(problem, NotFound) and (problem.meant or problem.reason is Reason.UNKNOWN_TYPE):
+                    fixes = replacements(field.type_span, problem.meant)
                     yield Finding(INTERFACE_SYNTAX, field.type_span, problem.message, None, tuple(fixes))
+
+    def _mock_findings(self) -> tuple[Finding, ...]:
+        from roaml.project.mock_findings import mock_findings  # noqa: PLC0415 - few projects have mocks
+
+        return tuple(mock_findings(self.analysis, self.source))
 
     def _configuration_findings(self) -> tuple[Finding, ...]:
         configuration = self.analysis.configuration(self.path)

@@ -3,12 +3,10 @@
 
 from __future__ import annotations
 
-import os
-
 from roaml.lower.programs.refusal import TreeRefusal
 from roaml.mocks.mock import Mock, MockError, read_mocks
 from roaml.mocks.unfolding import main_tree
-from roaml.model.kinds import MOCKS_EXTENSION, FileKind
+from roaml.model.kinds import FileKind, mocks_path
 from roaml.model.tree import Tree
 from roaml.project.analysis import Analysis
 
@@ -23,11 +21,6 @@ def executed_tree(analysis: Analysis, path: str) -> Tree | None:
         return main_tree(forest) if forest is not None else None
     except TreeRefusal:
         return None
-
-
-def mocks_path(tree: str) -> str:
-    """The path of the file with the mocks of a tree, which need not exist: `fetch.mocks` beside `fetch.xml`."""
-    return f"{os.path.splitext(tree)[0]}{MOCKS_EXTENSION}"
 
 
 def mocks_beside(analysis: Analysis, tree: str) -> tuple[Mock, ...]:

@@ -63,11 +63,13 @@ JSON_SYNTAX = _parser_rule("json-syntax", Severity.ERROR, "The file is not well-
 MISSING_FOLDER = _parser_rule(
     "missing-folder", Severity.WARNING, "A configuration file names a folder that does not exist."
 )
+MOCK_SYNTAX = _parser_rule("mock-syntax", Severity.ERROR, "A line of a file of mocks is not a mock.")
 NESTING_TOO_DEEP = _parser_rule("nesting-too-deep", Severity.ERROR, "Elements are nested too deeply to be analysed.")
 TOML_SYNTAX = _parser_rule("toml-syntax", Severity.ERROR, "A configuration file is not valid TOML.")
 UNDEFINED_ENTITY = _parser_rule(
     "undefined-entity", Severity.ERROR, "An entity is not one of the five predefined entities."
 )
+UNMATCHED_MOCK = _parser_rule("unmatched-mock", Severity.WARNING, "A mock matches no node of the tree.")
 XML_SYNTAX = Rule("xml-syntax", Severity.ERROR, "The file is not well-formed XML.", file=xml_syntax)
 
 RULES = (
@@ -80,8 +82,10 @@ RULES = (
     JSON_SCHEMA,
     JSON_SYNTAX,
     MISSING_FOLDER,
+    MOCK_SYNTAX,
     NESTING_TOO_DEEP,
     TOML_SYNTAX,
     UNDEFINED_ENTITY,
+    UNMATCHED_MOCK,
     XML_SYNTAX,
 )

@@ -3,17 +3,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.interfaces.registry import NotFound, Reason
 from roaml.model.value_types import INTERFACE_KINDS
 from roaml.rules.rule import MachineContext, Rule, did_you_mean, replacements
-from roaml.suggest import are_similar
 from roaml.text import Span, TextEdit
-
-KIND_SUFFIX = re.compile("_(?:msg|srv|interface|action)s?$")
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -46,18 +42,13 @@ def _unknown_package(problem: NotFound, span: Span) -> Finding:
     """The finding for an unknown package. Its name may be misspelled; more often the package is in a folder that is not
     searched."""
     package = problem.type_name.partition("/")[0]
-    meant = tuple(name for name in problem.close if are_similar(_stem(package), _stem(name.partition("/")[0])))
+    meant = problem.meant
     searched = ", ".join(problem.looked_in)
     where = f"; searched {searched}; add the folder of the package with `--ros-path` or the setting `ros-path`"
     message = f"there is no package `{package}`{did_you_mean(meant) or where}"
     others = (name for name in problem.close if name not in meant)
     elsewhere = (Fix(f"Change to `{name}`", (TextEdit(span, name),), preferred=False) for name in others)
     return RULE.at(span, message, *replacements(span, meant), *elsewhere)
-
-
-def _stem(package: str) -> str:
-    """The name of a package without endings that many packages have, such as `_msgs`."""
-    return KIND_SUFFIX.sub("", package)
 
 
 RULE = Rule("unknown-ros-type", Severity.ERROR, "A ROS type cannot be found.", machine=check)
