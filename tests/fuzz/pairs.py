@@ -60,11 +60,6 @@ def base() -> dict[str, str]:
     return split_files(SYSTEM.read_text(encoding="utf-8"))
 
 
-OF_VALUES = frozenset({"constant-condition"})
-"""Rules about computed values. If an error makes a value unknown, they report nothing, because the value may be right.
-"""
-
-
 @cache
 def mistakes() -> tuple[Mistake, ...]:
     """All errors, in a fixed order. Some have no effect."""
@@ -79,8 +74,7 @@ def alone(mistake: Mistake) -> Report:
 def outcome(first: Mistake, second: Mistake) -> tuple[Outcome, str]:
     """The result of two errors in different files, and a description of the findings that are lost or suppressed."""
     together = report({**base(), first.file: first.text, second.file: second.text})
-    expected = {(file, code) for file, code in alone(first).findings | alone(second).findings if code not in OF_VALUES}
-    missing = sorted(expected - together.findings)
+    missing = sorted((alone(first).findings | alone(second).findings) - together.findings)
     if not missing or _are_consequences(missing, first, second):
         return Outcome.BOTH, ""
     said = together.not_checked - alone(first).not_checked - alone(second).not_checked

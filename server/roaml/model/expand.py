@@ -715,7 +715,7 @@ def _variables(tree: TreeOutline) -> frozenset[str]:
 
 
 _NO_REMAPS = _OWN_ATTRIBUTES | {"xmlns"}
-_WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+_WORD = re.compile(r"(?<!\w)[A-Za-z_]\w*", re.ASCII)
 _REFERENCE = re.compile(r"\{([^{}]*)\}")
 _STRING = re.compile(r"'[^']*'")
 _SCRIPT_WORDS = {"true", "false"}

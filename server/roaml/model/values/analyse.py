@@ -13,8 +13,9 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple, TypeAlias
 
-from roaml.expr.tree import ArrayLiteral, Expr, Index, Member, Number, ObjectLiteral, walk
+from roaml.expr.tree import ArrayLiteral, Expr, Index, Member, Number, ObjectLiteral, access_path, walk
 from roaml.expr.types import INTEGER_RANGES, Array, Scalar, ScalarKind, Type, is_kind, leaves
+from roaml.language import HL_SCXML
 from roaml.model.behavior.explore import EVENT_VARIABLES
 from roaml.model.machine import (
     Assign,
@@ -51,6 +52,7 @@ from roaml.model.values.remembered import Memory, RememberedPart, effects, names
 from roaml.record import Record, field
 from roaml.roles import ProtocolPart
 from roaml.scxml.names import STATUSES
+from roaml.suggest import close_names
 from roaml.text import Span
 
 MAX_VISITS = 14
@@ -153,7 +155,7 @@ def analyse(
     sent: dict[DataChannel, Fields] = {}
     broken = {v.place.chart for v in typed.values if isinstance(v.value, Expression) and v.value.broken}
     for chart in machine.charts:
-        if chart not in broken and _is_whole(chart):
+        if chart not in broken and _is_whole(chart) and not _is_misread(chart, typed):
             interpreter = _Interpreter(machine, chart, typed, arriving, ignored, is_bounded, memory)
             charts[chart.scope] = interpreter.run()
             for channel, fields in interpreter.sent.items():
@@ -192,6 +194,19 @@ def _is_whole(chart: Chart) -> bool:
     states = {state.id.value for state in chart.states if state.id}
     targets = [t.state for s in chart.states for h in s.handlers if h.effective for t in h.targets]
     return all(name is not None and name.value in states for name in (chart.initial, *targets))
+
+
+def _is_misread(chart: Chart, typed: TypedMachine) -> bool:
+    """Whether a chart contains an assignment whose location is unknown, or a misspelled element, which may be an
+    assignment or a transition: then variables have other values than the rest of the chart assigns."""
+    known = typed.variables.get(chart.scope, {})
+    for statement in chart.statements:
+        if isinstance(statement, Assign):
+            path = () if statement.location is None else access_path(statement.location.tree) or ()
+            if not path or path[0] not in known:
+                return True
+    inside = (element for state in chart.states for element in state.element.walk() if not element.prefix)
+    return any(close_names(name, HL_SCXML.elements) for name in {e.name for e in inside} - HL_SCXML.elements.keys())
 
 
 _DATA_OF = {
