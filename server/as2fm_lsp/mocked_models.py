@@ -152,7 +152,7 @@ def load_mocked_tree(
         MissingMocksError,
         MockOptions,
     )
-    from roaml.project.mock_files import mocks_path  # noqa: PLC0415
+    from roaml.model.kinds import mocks_path  # noqa: PLC0415
 
     beside = mocks_path(path)
     if not declared.has_mocks and Path(beside).is_file():
@@ -190,7 +190,7 @@ def keep_proposal(path: str, leaves: Sequence[MockableLeaf]) -> int:
     """
     from as2fm_lsp.atomic_write import write_file  # noqa: PLC0415 - most trees have mocks
     from roaml.mocks.proposal import completed_text, proposed_text  # noqa: PLC0415
-    from roaml.project.mock_files import mocks_path  # noqa: PLC0415
+    from roaml.model.kinds import mocks_path  # noqa: PLC0415
 
     beside = mocks_path(path)
     if Path(beside).is_file():

@@ -70,3 +70,10 @@ def test_constants_name_the_client_that_they_mean(tmp_path: Path) -> None:
     [(message, related)] = messages_of(tmp_path, "paths_goal", "a constant id with two clients", "wrong-goal-id")
     assert "which is always the id of `Client`, but `/draw` has 2 clients" in message
     assert [text for _, text in related] == ["also used here"]
+
+
+def test_the_state_in_which_a_lost_tick_arrived_is_named(tmp_path: Path) -> None:
+    title = "the handler of the response does not answer"
+    [(message, related)] = messages_of(tmp_path, "paths_tick", title, "unanswered-tick")
+    assert message.startswith("the tick that arrived in the state `")
+    assert related[0][1] == "the tick arrives"

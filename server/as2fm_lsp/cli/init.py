@@ -40,7 +40,7 @@ def _write_mocks(tree: str) -> int:
     from as2fm_lsp.cli.model_arguments import UsageError, error_report, settings_of  # noqa: PLC0415
     from as2fm_lsp.mocked_models import keep_proposal  # noqa: PLC0415
     from roaml import api  # noqa: PLC0415
-    from roaml.project.mock_files import mocks_path  # noqa: PLC0415
+    from roaml.model.kinds import mocks_path  # noqa: PLC0415
 
     beside = shown_path(mocks_path(tree))
     try:

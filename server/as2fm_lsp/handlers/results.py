@@ -33,9 +33,8 @@ from roaml.ide.describe import markdown
 from roaml.ide.diagrams import highlights
 from roaml.ide.system_names import system_names
 from roaml.ide.verifiable import Verifiable, fingerprint, verifiable
-from roaml.model.kinds import FileKind
+from roaml.model.kinds import FileKind, mocks_path
 from roaml.project.analysis import Analysis
-from roaml.project.mock_files import mocks_path
 from roaml.project.paths import is_on_disk
 from roaml.project.workspace import Snapshot
 from roaml.simulation.session import Session

@@ -12,8 +12,9 @@ from roaml.api.trees import loaded_tree
 from roaml.ide.verifiable import Texts, expected_beside, fingerprint
 from roaml.mocks.mock import Mock, read_mocks
 from roaml.mocks.network import MissingMocksError, MockOptions
+from roaml.model.kinds import mocks_path
 from roaml.project.analysis import Analysis
-from roaml.project.mock_files import executed_tree, mocks_path
+from roaml.project.mock_files import executed_tree
 from roaml.project.workspace import Snapshot
 from roaml.record import Record, replace
 from roaml.verification.target import VerificationTarget

@@ -64,7 +64,8 @@ def _message(path: OpenPath) -> str:
     end = f"end it with {results}" if ends else "accept or reject it"
     which = "a goal that is accepted here" if ends else "a goal that is handled here"
     if not path.receives:
-        which = "the goal that is pending here"
+        how_begun = "was accepted" if ends else "arrived"
+        which = f"the goal that {how_begun} in the state `{path.received_in}`"
     return f"{which} {how}{when}, so its client waits for ever; {end} on every path"
 
 

@@ -70,7 +70,9 @@ def _message(path: OpenPath) -> str:
         reason = f"{path.dropped}, so the halt is never confirmed,"
         tag = f"<{path.step.handler.element.name}>"
         return f"{reason} and the tree waits for ever; add a `{tag}` without `cond` after it"
-    where = "a halt that is handled here" if path.receives else "the halt that is pending here"
+    where = (
+        "a halt that is handled here" if path.receives else f"the halt that arrived in the state `{path.received_in}`"
+    )
     how = "is not confirmed on every path" if path.choice or not path.certain else "is never confirmed"
     when = f" {path.order}" if path.order else ""
     return f"{where} {how}{when}, so the tree waits for ever; send one `<bt_return_halted>` on every path"

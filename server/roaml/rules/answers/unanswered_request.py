@@ -46,7 +46,11 @@ def _message(path: OpenPath) -> str:
             reason = f"{path.dropped}, so the request for `{name}` is"
         tag = f"<{step.handler.element.name}>"
         return f"{reason} never answered, and the client waits for ever; add a `{tag}` without `cond` after it"
-    where = "a request that is handled here" if path.receives else f"the request for `{name}` that is pending here"
+    where = (
+        "a request that is handled here"
+        if path.receives
+        else f"the request for `{name}` that arrived in the state `{path.received_in}`"
+    )
     how = "is not answered on every path" if path.choice or not path.certain else "is never answered"
     when = f" {path.order}" if path.order else ""
     return f"{where} {how}{when}, so the client waits for ever; send one `<ros_service_send_response>` on every path"

@@ -60,7 +60,9 @@ def _message(path: OpenPath) -> str:
         if not path.receives:
             reason = f"{path.dropped}, so no status is returned for the tick,"
         return f"{reason} and the tree waits for ever; add a `{tag}` without `cond` after it"
-    tick = "a tick that is handled here" if path.receives else "the tick that is pending here"
+    tick = (
+        "a tick that is handled here" if path.receives else f"the tick that arrived in the state `{path.received_in}`"
+    )
     how = "does not return a status on every path" if path.choice or not path.certain else "never returns a status"
     when = f" {path.order}" if path.order else ""
     return f"{tick} {how}{when}, so the tree waits for ever; send one `<bt_return_status>` on every path"

@@ -98,11 +98,13 @@ class OpenPath(Record, frozen=True, eq=False):
     Attributes:
         certain: whether the answer is missing whatever the conditions in the bodies are.
         choices: whether the answer is missing only if the handler selects this one of its targets.
+        received_in: the name of the state in which the event of the duty arrives.
     """
 
     loss: Loss
     certain: bool
     choice: bool
+    received_in: str
 
     @property
     def step(self) -> BehaviorStep:
@@ -207,19 +209,21 @@ def missed(context: MachineContext, behavior: Behavior, duty: Duty) -> Iterator[
         choices = {loss.step.choice for loss in unexplained if not loss.step.ignored}
         if handler.is_probabilistic and choices and len(choices) < len(handler.targets):
             for choice in sorted(choices):
-                yield _worst([loss for loss in unexplained if loss.step.choice == choice], True)
+                yield _worst(behavior, [loss for loss in unexplained if loss.step.choice == choice], True)
         elif unexplained:
-            yield _worst(unexplained, False)
+            yield _worst(behavior, unexplained, False)
 
 
-def _worst(of_handler: list[Loss], choice: bool) -> OpenPath:
+def _worst(behavior: Behavior, of_handler: list[Loss], choice: bool) -> OpenPath:
     """The path that is certain and depends on no order of requests, if there is one."""
 
     def rank(loss: Loss) -> tuple[bool, bool, bool]:
         return (not loss.step.certain or loss.step.ignored, loss.between is not None, loss.overwritten is not None)
 
     worst = min(of_handler, key=rank)
-    return OpenPath(worst, worst.step.certain and not worst.step.ignored, choice)
+    first = (*worst.path, worst.step)[0]
+    state = behavior.configurations[first.source].state
+    return OpenPath(worst, worst.step.certain and not worst.step.ignored, choice, state)
 
 
 def _may_stay(context: MachineContext, behavior: Behavior, step: BehaviorStep) -> bool:
