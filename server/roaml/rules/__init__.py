@@ -66,6 +66,7 @@ from roaml.rules.events import (
 from roaml.rules.expressions import (
     coarse_random,
     condition_not_boolean,
+    constant_expression,
     division_by_zero,
     expression_syntax,
     index_out_of_bounds,

@@ -62,16 +62,19 @@ _CHECKED_BEFORE = frozenset(
 
 
 def _adds_findings(snapshot: Snapshot, path: str, fix: Fix) -> bool:
-    """Whether a file has an additional error or warning after a fix."""
+    """Whether a file, or another one of its systems, has an additional error or warning after a fix."""
     source = snapshot.analysis.source(path)
     if source is None:
         return False
     after = snapshot.with_texts({path: apply_edits(source.text, tuple(sorted(fix.edits)))})
-    return bool(_problems(after, path) - _problems(snapshot, path))
+    systems = snapshot.analysis.memberships.get(path, ())
+    paths = dict.fromkeys((path, *(member for system in systems for member in snapshot.analysis.files_of(system))))
+    return bool(_problems(after, paths) - _problems(snapshot, paths))
 
 
-def _problems(snapshot: Snapshot, path: str) -> Counter[str]:
-    return Counter(d.code for d in snapshot.checker.diagnostics(path) if d.severity >= Severity.WARNING)
+def _problems(snapshot: Snapshot, paths: Iterable[str]) -> Counter[tuple[str, str]]:
+    found = ((path, d) for path in paths for d in snapshot.checker.diagnostics(path))
+    return Counter((path, d.code) for path, d in found if d.severity >= Severity.WARNING)
 
 
 def _made(path: str, fix: Fix) -> WorkspaceEdit:

@@ -406,6 +406,10 @@ class _Interpreter(Record, eq=False, dict=True):
         if part is ProtocolPart.RESULT:
             code = handler.type.code
             data["_wrapped_result.code"] = exactly(code) if code else listed(GOAL_STATUSES)
+        if part is ProtocolPart.THREAD_FREE and handler.handle is not None:
+            threads = [t for t in self.machine.threads if t.server and t.server.value == handler.handle.value]
+            if threads and (threads[0].count or 0) > 1:  # a test of the only number is harmless
+                data["_event.data.thread_id"] = listed(range(threads[0].count))
         if part in _DATA_OF:
             if part is ProtocolPart.EVENT:
                 name = handler.event.value if handler.event else ""

@@ -11,10 +11,10 @@ MAX_NAMED = 4
 """The maximum number of values that a text lists."""
 
 
-def described(values: ValueSet) -> str:
+def described(values: ValueSet, most: int = MAX_NAMED) -> str:
     """The values as a phrase after a verb, such as ``0``, ``1, 2 or 3`` or `between 0 and 5`; "" if nothing is known
-    about them."""
-    if values.only is not None and len(values.only) <= MAX_NAMED:
+    about them. At most `most` values are listed."""
+    if values.only is not None and len(values.only) <= most:
         texts = [_text(value) for value in sorted(values.only, key=lambda v: (isinstance(v, str), v))]
         return texts[0] if len(texts) == 1 else " or ".join((", ".join(texts[:-1]), texts[-1])) if texts else ""
     if values.only is not None:

@@ -33,6 +33,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         if isinstance(value.value, Expression) and not value.value.broken:
             yield from _unbounded(context, value.place, value.value.tree)
             yield from _computed(context, value.place, value.value.tree)
+            yield from _behind(context, value)
             if value.use is ValueUse.LOCATION:
                 yield from _append(context, value, value.value.tree)
                 yield from _length(context, value, value.value.tree)
@@ -102,6 +103,24 @@ def _computed(context: MachineContext, place: ValuePlace, tree: Expr) -> Iterato
                 message = f"no condition limits `{text}` here; {reason} {room - 1}"
                 yield RULE.at(node.index.span, message, severity=Severity.INFORMATION)
             break
+
+
+def _behind(context: MachineContext, value: TypedValue) -> Iterator[Finding]:
+    """Report reads of `v[v.length]`, the element behind the last one."""
+    assert isinstance(value.value, Expression)
+    written_to: list[Expr] = []
+    location = value.value.tree if value.use is ValueUse.LOCATION else None
+    while isinstance(location, Member | Index):
+        written_to.append(location)
+        location = location.object
+    for node in walk(value.value.tree):
+        if not isinstance(node, Index) or any(node is part for part in written_to):
+            continue
+        if _is_length_of(context, node.index, node.object):
+            name = written(context, node.object)
+            message = f"`{name}` has no element `{name}.length`; the last index is `{name}.length - 1`"
+            fix = Fix(f"Change to `{name}.length - 1`", (TextEdit(node.index.span, f"{name}.length - 1"),))
+            yield RULE.at(node.index.span, message, fix)
 
 
 def _append(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[Finding]:

@@ -5,21 +5,23 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.expr.infer import constant
 from roaml.expr.operators import Operator, OperatorKind
 from roaml.expr.tree import Binary, Expr, Member, Name, String, walk
+from roaml.expr.types import INTEGER_RANGES, Scalar
 from roaml.model.behavior.explore import condition_facts
 from roaml.model.behavior.knowledge import NOTHING, ConditionFacts, variables_in
 from roaml.model.machine import Assign, Chart, Handler, If, State
 from roaml.model.syntax import Expression
 from roaml.model.triggers import trigger
-from roaml.model.value_types import find_handle
-from roaml.model.values.analyse import ChartValues, DataChannel, MachineValues, analyse
+from roaml.model.value_types import ValuePlace, ValueUse, find_handle
+from roaml.model.values.analyse import ChartValues, DataChannel, MachineValues, analyse, of_type
 from roaml.model.values.arriving import arriving_by_type
 from roaml.model.values.describe import described, is_informative
-from roaml.model.values.domain import FALSE, TRUE, Origin, ValueSet
+from roaml.model.values.domain import FALSE, MAX_LISTED, TRUE, Origin, ValueSet, exactly, joined
 from roaml.model.values.evaluate import compared, place_of
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule, close_names
@@ -28,6 +30,13 @@ from roaml.text import Span, TextEdit
 
 _FROM_SENDERS = {ProtocolPart.MESSAGE: "_msg.", ProtocolPart.EVENT: "_event.data."}
 """What machines send without being asked -> the beginning of the places of its data."""
+_ASKED = {ProtocolPart.REQUEST: "_req.", ProtocolPart.GOAL: "_goal."}
+"""What clients ask for -> the beginning of the places of its data."""
+
+_CONDITIONS = (ValueUse.CONDITION, ValueUse.BRANCH)
+
+MAX_TRIED = 8
+"""The maximum number of conditions that are examined as the cause of the others."""
 
 MAX_NAMED = 3
 """The maximum number of variables whose values a message states."""
@@ -36,15 +45,51 @@ MAX_NAMED = 3
 def check(context: MachineContext) -> Iterator[Finding]:
     findings = _findings(context, context.local_values)
     if len(findings) > 1:
-        # A condition may be constant only because another one is: a part that is never executed assigns no values.
-        arriving = arriving_by_type(context.machine, context.interface)
-        relaxed = analyse(context.machine, context.typed, arriving, frozenset(findings))
-        causes = _findings(context, relaxed).keys() & findings.keys()
-        findings = {span: finding for span, finding in findings.items() if span in causes} or dict(
-            [*findings.items()][:1]
-        )
+        causes = _causes(context, findings)
+        findings = {span: finding for span, finding in findings.items() if span in causes}
     yield from findings.values()
     yield from _never_sent(context, findings.keys())
+    yield from _beyond_type(context, findings.keys())
+
+
+def _causes(context: MachineContext, findings: Mapping[Span, Finding]) -> Collection[Span]:
+    """The conditions that are constant by themselves. Others are constant only because one of these is: a part that is
+    never executed assigns no values."""
+    arriving = arriving_by_type(context.machine, context.interface)
+
+    def constant_without(ignored: frozenset[Span]) -> Collection[Span]:
+        relaxed = analyse(context.machine, context.typed, arriving, ignored)
+        return _findings(context, relaxed).keys() & findings.keys()
+
+    causes = constant_without(frozenset(findings))
+    if causes:
+        return causes
+    # Each one is constant because of another one: the cause is the one without which the fewest others are constant.
+    tried = list(findings)[:MAX_TRIED]
+    return (min(tried, key=lambda span: len(constant_without(frozenset((span,))))),)
+
+
+def _beyond_type(context: MachineContext, reported: Collection[Span]) -> Iterator[Finding]:
+    """Report comparisons of a variable with a constant that its type does not have."""
+    for value in context.typed.values:
+        tree = value.value.tree if isinstance(value.value, Expression) else None
+        if tree is None or value.use not in _CONDITIONS or value.value.span in reported:
+            continue
+        types = context.typed.variables.get(value.place.chart.scope, {})
+        for node in walk(tree):
+            if not isinstance(node, Binary) or node.operator.kind not in (OperatorKind.EQUALITY, OperatorKind.ORDER):
+                continue
+            for variable, other in ((node.left, node.right), (node.right, node.left)):
+                type_ = types.get(variable.name) if isinstance(variable, Name) else None
+                number = constant(other)
+                if not isinstance(type_, Scalar) or type_.name not in INTEGER_RANGES or number is None:
+                    continue
+                sides = [of_type(type_) if side is variable else exactly(number) for side in (node.left, node.right)]
+                result = compared(node.operator, *sides)
+                if result.value is not None:
+                    how = "always" if result == TRUE else "never"
+                    range_ = described(of_type(type_))
+                    yield RULE.at(node.span, f"this comparison is {how} true: the values of `{type_}` are {range_}")
 
 
 def _never_sent(context: MachineContext, reported: Collection[Span]) -> Iterator[Finding]:
@@ -94,9 +139,44 @@ def _numbers_never_sent(context: MachineContext, reported: Collection[Span]) -> 
         for node in walk(tree):
             if isinstance(node, Binary) and node.operator.kind in (OperatorKind.EQUALITY, OperatorKind.ORDER):
                 for field, other in ((node.left, node.right), (node.right, node.left)):
-                    sent = _sent(context, value.place.handler, field)
+                    sent = _sent(context, value.place.handler, field, _FROM_SENDERS)
                     if sent is not None:
                         yield from _compared_with_sent(chart, node, field, other, tree, sent)
+                    elif node.operator is Operator.EQUAL and value.use in _CONDITIONS:
+                        yield from _never_chosen(context, value.place, chart, node, field, other)
+
+
+def _never_chosen(
+    context: MachineContext, place: ValuePlace, chart: ChartValues, node: Binary, choice: Expr, other: Expr
+) -> Iterator[Finding]:
+    """Report that a field of a request or goal, or a variable that stores a received field, is compared with a constant
+    that it never has, although it has several values."""
+    number = chart.at(other)
+    known = _sent(context, place.handler, choice, _ASKED)
+    if known is None and isinstance(choice, Name) and _stores_received(place.chart, choice.name):
+        known = _compared_values(context, chart, choice.name)
+    if number is None or number.value is None or known is None or known.only is None or known.value is not None:
+        return
+    if known.only and not known.includes(number.value) and not isinstance(number.value, str | bool):
+        sent = described(known, most=MAX_LISTED)
+        yield RULE.at(node.span, f"this comparison is never true: the values that machines send are {sent}")
+
+
+def _compared_values(context: MachineContext, values: ChartValues, name: str) -> ValueSet:
+    """The values of a variable in all conditions of a chart: earlier conditions exclude values in later ones."""
+    trees = (v.value.tree for v in context.typed.values if v.use in _CONDITIONS and isinstance(v.value, Expression))
+    names = (n for tree in trees for n in walk(tree) if isinstance(n, Name) and n.name == name)
+    return joined(known for n in names if (known := values.at(n)) is not None)
+
+
+def _stores_received(chart: Chart, name: str) -> bool:
+    """Whether all assignments to a variable store a field of a message, event, request or goal as it is."""
+    values = [
+        s.value for s in chart.statements if isinstance(s, Assign) and s.location and place_of(s.location.tree) == name
+    ]
+    places = [place_of(value.tree) if isinstance(value, Expression) else None for value in values]
+    prefixes = (*_FROM_SENDERS.values(), *_ASKED.values())
+    return bool(places) and all(place is not None and place.startswith(prefixes) for place in places)
 
 
 def _reached(values: ValueSet) -> ValueSet:
@@ -108,10 +188,12 @@ def _reached(values: ValueSet) -> ValueSet:
     return ValueSet(None, low, high, values.low_from, values.high_from)
 
 
-def _sent(context: MachineContext, handler: Handler | None, field: Expr) -> ValueSet | None:
-    """The values of a field of a message or event that machines send; `None` for other expressions."""
+def _sent(
+    context: MachineContext, handler: Handler | None, field: Expr, parts: Mapping[ProtocolPart, str]
+) -> ValueSet | None:
+    """The values of a field of one of the `parts` that machines send; `None` for other expressions."""
     place = place_of(field)
-    prefix = _FROM_SENDERS.get(handler.trigger) if handler is not None and handler.trigger is not None else None
+    prefix = parts.get(handler.trigger) if handler is not None and handler.trigger is not None else None
     if handler is None or handler.trigger is None or prefix is None or place is None or not place.startswith(prefix):
         return None
     declaration = find_handle(context.machine, handler)

@@ -16,11 +16,16 @@ from roaml.rules.support.property_problems import problems
 from roaml.rules.support.settings import place_of
 from roaml.rules.support.timing import duration, durations, timers
 
+SHORT_RUN = 10**10
+"""The `max_time`, in ns, from which on it is probably right if no timer ticks before it: 10 s."""
+
 
 def _machine(context: MachineContext) -> Iterator[Finding]:
     end = context.system.parameters.max_time if context.system else None
-    if context.system is None or end is None or not context.automata or _nothing_ticks(context.system, end):
+    if context.system is None or end is None or not context.automata:
         return
+    if not _is_end_usual(end) and _nothing_ticks(context.system, end):
+        return  # reported at `max_time`
     for _, rate, hertz in timers(context):
         ns = period(hertz).nanoseconds
         if ns > end:
@@ -47,7 +52,7 @@ def _system(context: SystemContext) -> Iterator[Finding]:
     ns = period(Fraction(str(context.file.parameters.tick_rate))).nanoseconds
     shown, rate = context.file.parameter("max_time"), context.file.parameter("bt_tick_rate")
     unit = min((p.unit for p in periods(context.system, context.file.parameters)), default=1)
-    if _nothing_ticks(context.system, end) and shown is not None:
+    if shown is not None and not _is_end_usual(end) and _nothing_ticks(context.system, end):
         if end % unit:
             return  # inexact-max-time reports it
         shortest = min(timer.period.nanoseconds for timer in rates(context.system, context.file.parameters))
@@ -68,6 +73,11 @@ def _system(context: SystemContext) -> Iterator[Finding]:
 
 def _properties(file: LinkedFile) -> Iterator[Finding]:
     return problems(RULE, ProblemKind.BEYOND_END, file)
+
+
+def _is_end_usual(end: int) -> bool:
+    """Whether `max_time`, in ns, is so long that the periods of timers are probably wrong if nothing ticks."""
+    return end >= SHORT_RUN
 
 
 def _nothing_ticks(system: System, end: int) -> bool:
