@@ -408,8 +408,9 @@ class _Interpreter(Record, eq=False, dict=True):
             data["_wrapped_result.code"] = exactly(code) if code else listed(GOAL_STATUSES)
         if part is ProtocolPart.THREAD_FREE and handler.handle is not None:
             threads = [t for t in self.machine.threads if t.server and t.server.value == handler.handle.value]
-            if threads and (threads[0].count or 0) > 1:  # a test of the only number is harmless
-                data["_event.data.thread_id"] = listed(range(threads[0].count))
+            count = threads[0].count if threads else None
+            if count is not None and count > 1:  # a test of the only number is harmless
+                data["_event.data.thread_id"] = listed(range(count))
         if part in _DATA_OF:
             if part is ProtocolPart.EVENT:
                 name = handler.event.value if handler.event else ""
