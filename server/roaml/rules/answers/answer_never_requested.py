@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.model.behavior.explore import Behavior, ChartConfiguration
 from roaml.model.behavior.phases import AWAITED_ANSWER, Phase, Subject
-from roaml.model.machine import Handler, State
+from roaml.model.machine import Handler, ReturnStatus, State, statements
 from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
@@ -49,10 +49,23 @@ def _dead_waits(context: MachineContext, behavior: Behavior) -> Iterator[Finding
 
 
 def _waits_for_answers(context: MachineContext, state: State) -> bool:
-    handlers = [handler for handler in state.handlers if handler.effective]
-    return any(h.trigger in AWAITED_ANSWER for h in handlers) and all(
-        handler.trigger in _WAITING and find_handle(context.machine, handler) is not None for handler in handlers
+    """Whether only answers end a state, besides halts. A tick that returns RUNNING and stays there does not end it."""
+    handlers = [h for h in state.handlers if h.effective and h.trigger is not ProtocolPart.BT_HALT]
+    waiting = [h for h in handlers if not _keeps_running(state, h)]
+    return any(h.trigger in AWAITED_ANSWER for h in waiting) and all(
+        handler.trigger in _WAITING and find_handle(context.machine, handler) is not None for handler in waiting
     )
+
+
+def _keeps_running(state: State, handler: Handler) -> bool:
+    """Whether a handler of ticks stays in its state and returns only RUNNING."""
+    if handler.trigger is not ProtocolPart.BT_TICK:
+        return False
+    stays = all(
+        t.state is not None and state.id is not None and t.state.value == state.id.value for t in handler.targets
+    )
+    inside = [s for target in handler.targets for s in statements(target.body) if isinstance(s, ReturnStatus)]
+    return stays and bool(inside) and all(s.status is not None and s.status.value == "RUNNING" for s in inside)
 
 
 def _awaited(context: MachineContext, state: State) -> Iterator[tuple[ProtocolPart, str]]:

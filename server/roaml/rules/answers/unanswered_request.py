@@ -13,7 +13,16 @@ from roaml.model.ros import InterfaceType
 from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.answers import OpenPath, answered, answered_in, behaviors, is_spelled, missed
+from roaml.rules.support.answers import (
+    OpenPath,
+    answered,
+    answered_in,
+    behaviors,
+    is_spelled,
+    misdirected,
+    missed,
+    named_right,
+)
 from roaml.rules.support.interfaces import response
 
 
@@ -34,6 +43,11 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 def _missed(context: MachineContext, behavior: Behavior, duty: Duty, handler: Handler) -> Iterator[Finding]:
     for path in missed(context, behavior, duty):
+        wrong = misdirected(behavior, duty)
+        if wrong is not None:
+            span, message, fix = named_right(wrong, duty)
+            yield RULE.at(span, message, fix, related=path.related)
+            return
         fixes = _fixes(context, behavior, path, handler)
         yield RULE.at(path.span, _message(path), *fixes, severity=path.severity, related=path.related)
 

@@ -15,7 +15,7 @@ from roaml.model.system import Channel, ChannelEndpoint, System, SystemAutomaton
 from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.answers import behaviors, missed
+from roaml.rules.support.answers import behaviors, misdirected, missed, named_right
 from roaml.rules.support.interfaces import declared, find_use, name_span, response
 from roaml.text import Span
 
@@ -58,6 +58,13 @@ def _service(
     related = [Related(clients[0].symbol, "a client")]
     subject = f"the service `{channel.name}` is called but"
     if not sends(automaton, declaration, ProtocolPart.RESPONSE):
+        duty = Duty(DutyKind.REQUEST, declaration.handle.value if declaration.handle else "")
+        for behavior in behaviors(context):
+            wrong = misdirected(behavior, duty)
+            if wrong is not None:
+                span, message, fix = named_right(wrong, duty)
+                yield RULE.at(span, message, fix, related=related)
+                return
         message = f"{subject} never answers: `<ros_service_send_response>` is missing"
         span = _lost(context, declaration, DutyKind.REQUEST)
         yield RULE.at(span, message, *_answer(context, declaration), related=related)

@@ -15,9 +15,9 @@ from roaml.diagnostics import Fix, Related, Severity
 from roaml.edit.elements import after, first_in, last_in
 from roaml.language import HL_SCXML
 from roaml.model.behavior.duties import Possible, always, is_suspicious, untaken
-from roaml.model.behavior.explore import Behavior, BehaviorStep, FaultKind, explore
+from roaml.model.behavior.explore import Behavior, BehaviorStep, Fault, FaultKind, explore
 from roaml.model.behavior.instants import Instants, is_readable
-from roaml.model.behavior.phases import HALT, Duty, DutyKind, Phase
+from roaml.model.behavior.phases import HALT, Duty, DutyKind, Phase, ProtocolEvent
 from roaml.model.machine import Handler, If, Machine, RosSend, State, Statement, statements
 from roaml.model.obligations.losses import Loss, losses, waiting_behind
 from roaml.model.obligations.protocols import ClientProtocols
@@ -30,7 +30,7 @@ from roaml.rules.support import misspelled
 from roaml.rules.support.node_calls import statuses_at_halt, statuses_at_tick
 from roaml.rules.support.removed_events import uses_removed_events
 from roaml.rules.support.triggers import has_shadowed
-from roaml.text import Span
+from roaml.text import Span, TextEdit
 from roaml.xml_syntax import Element
 
 SENT = {
@@ -77,6 +77,45 @@ def is_spelled(context: MachineContext, duty: Duty) -> bool:
     names = ELEMENTS[SENT.get(duty.kind, ProtocolPart.GOAL)]
     elements = list(context.machine.element.walk())
     return not any(misspelled.among(elements, name, HL_SCXML) for name in names)
+
+
+def misdirected(behavior: Behavior, duty: Duty) -> RosSend | None:
+    """The first answer to another service, whose request never waits there, that is sent while `duty` is owed: it
+    probably names the wrong service."""
+    received = {s.event.name for s in behavior.steps if s.event and s.event.part is ProtocolPart.REQUEST} - {
+        duty.handle
+    }
+    for step in behavior.steps:
+        for fault in step.faults:
+            is_other = fault.duty.kind is duty.kind and fault.duty.handle in received
+            if fault.kind is not FaultKind.UNASKED or not is_other or not isinstance(fault.statement, RosSend):
+                continue
+            owed = behavior.configurations[step.target].owes(duty)
+            if owed and fault.statement.handle and not _is_right_elsewhere(behavior, step, fault):
+                return fault.statement
+    return None
+
+
+def _is_right_elsewhere(behavior: Behavior, step: BehaviorStep, fault: Fault) -> bool:
+    """Whether the state that a step enters also sends the answer of a fault on a path on which it is requested."""
+    answer = ProtocolEvent(SENT[fault.duty.kind], fault.duty.handle)
+    state = behavior.configurations[step.target].state
+    return any(
+        answer in other.sent and behavior.configurations[other.target].state == state
+        for other in behavior.steps
+        if not any(known.statement is fault.statement for known in other.faults)
+    )
+
+
+def named_right(statement: RosSend, duty: Duty) -> tuple[Span, str, Fix]:
+    """The place of the name in an answer to the wrong service, a message, and a fix that changes the name."""
+    assert statement.handle is not None
+    wrong, span = statement.handle.value, statement.handle.span
+    message = (
+        f"this answers `{wrong}`, but the request that waits here is one for `{duty.handle}`, whose client waits for "
+        f"ever; answer `{duty.handle}`"
+    )
+    return span, message, Fix(f"Change to `{duty.handle}`", (TextEdit(span, duty.handle),))
 
 
 def answered_in(machine: Machine, duty: Duty) -> set[str]:
