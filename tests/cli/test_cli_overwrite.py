@@ -69,7 +69,7 @@ NOTHING = {
     "verify": "main --max-transitions --property --expect --confidence --epsilon --method "
     "--max-traces --max-steps --seed --jobs "
     "--scheduler --exhaustive --max-states --max-memory --no-reductions --stuck --separate --traces-limit --dask "
-    "--over-time --band "
+    "--over-time --band --quantiles "
     f"--format {MODEL} --stdin-filename",
     "compare": "old new --property --structure --scheduler --exhaustive --max-states --max-transitions --confidence "
     f"--epsilon --method --max-traces --max-steps --seed --fail-on --format {MODEL}",

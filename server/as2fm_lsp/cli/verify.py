@@ -241,6 +241,8 @@ class _Verification:
                 except KeyboardInterrupt:
                     self.interrupts.ignore()
                     interrupted = True
+        if not interrupted and self.options.quantiles:
+            self.results = [self._with_quantiles(result) for result in self.results]
         self._print()
         self._print_faults()
         is_met = all(r.is_met for r in self.results) and (self.stuck_result is None or self.stuck_result.is_met)
@@ -252,6 +254,17 @@ class _Verification:
         if not interrupted and self.options.plot:
             self._write_plots()
         return status
+
+    def _with_quantiles(self, result: Result) -> Result:
+        """The result of a reward, with the quantiles that the options ask for."""
+        question = result.question
+        if question is None or not question.is_reward:
+            return result
+        from roaml.experiments.quantiles import reward_quantiles  # noqa: PLC0415 - most verifications have none
+
+        property_ = self.verifier.question(result.name)
+        shares = self.options.quantiles
+        return replace(result, quantiles=reward_quantiles(self.verifier.checker, property_, shares, self.limits))
 
     def _write_plots(self) -> None:
         from as2fm_lsp.cli.plot_files import write_plots  # noqa: PLC0415 - most verifications draw nothing

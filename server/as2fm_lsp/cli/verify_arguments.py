@@ -123,6 +123,8 @@ def parser() -> ArgumentParser:
         metavar="FILE", help="show the shortest trace in which the property fails (if only upper limits are "
         "expected: in which it holds), as text or in FILE.txt, FILE.mmd (Mermaid) or FILE.html; may be "
         "repeated")  # fmt: skip
+    add("--quantiles", type=_shares, default=(), metavar="P,...", help="also estimate the values that these shares of "
+        "the traces do not exceed, for each reward, such as 0.5,0.9")  # fmt: skip
     add_curves(result)
     add("--dask", metavar="ADDRESS", help="run on the Dask cluster with the scheduler at this address (needs the "
         "Python package distributed)")  # fmt: skip
@@ -193,6 +195,16 @@ def _share(text: str) -> float:
     if not 0 < value < 1:
         raise argparse.ArgumentTypeError("expected a number between 0 and 1")
     return value
+
+
+def _shares(text: str) -> tuple[float, ...]:
+    try:
+        shares = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        shares = ()
+    if not shares or not all(0 < share < 1 for share in shares):
+        raise argparse.ArgumentTypeError("expected shares greater than 0 and less than 1, such as 0.5,0.9")
+    return shares
 
 
 def _width(text: str) -> float:

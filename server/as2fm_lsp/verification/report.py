@@ -25,6 +25,7 @@ from roaml.verification.results import (
     Estimated,
     Refused,
     Result,
+    RewardQuantile,
     Sampled,
     Undecided,
     UnderAssumption,
@@ -106,6 +107,7 @@ def _block(result: Result, place_of: PlaceOf, level: StuckLevel, shown: str, *, 
             assert_never(never)
     lines += _doubt_lines(result, level)
     lines += _conditional_lines(result)
+    lines += [f"  {_quantile_text(quantile)}" for quantile in result.quantiles]
     for verdict in result.verdicts:
         if isinstance(result.outcome, Undecided):
             lines.append(f"  expected {verdict.expectation.text}: undecided")
@@ -118,6 +120,14 @@ def _block(result: Result, place_of: PlaceOf, level: StuckLevel, shown: str, *, 
     if not is_alone and result.comment and lines:
         lines.insert(1, f"  {' '.join(result.comment.split())}")
     return "\n".join(lines)
+
+
+def _quantile_text(quantile: RewardQuantile) -> str:
+    interval = f"[{number(quantile.low)}, {number(quantile.high)}]"
+    return (
+        f"{100 * quantile.share:g} % of the traces: at most {number(quantile.value)} in {interval}, from "
+        f"{quantile.traces:,} traces with uniform choices"
+    )
 
 
 def _conditional_lines(result: Result) -> list[str]:
@@ -326,6 +336,17 @@ def row(result: Result) -> dict[str, Any]:
             assert_never(never)
     if result.conditional:
         values["conditional"] = [_conditional_row(under) for under in result.conditional]
+    if result.quantiles:
+        values["quantiles"] = [
+            {
+                "share": quantile.share,
+                "value": _finite(quantile.value),
+                "low": _finite(quantile.low),
+                "high": _finite(quantile.high),
+                "traces": quantile.traces,
+            }
+            for quantile in result.quantiles
+        ]
     values["interrupted"] = result.is_interrupted
     values["verdict"] = _verdict(result)
     values["expectations"] = [

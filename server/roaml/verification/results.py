@@ -323,6 +323,23 @@ class UnderAssumption(Record, frozen=True):
     remark: str = ""
 
 
+class RewardQuantile(Record, frozen=True):
+    """The least number such that the reward of at least a share of the traces is not greater.
+
+    Attributes:
+        share: the share, greater than 0 and less than 1.
+        value: the estimate; infinite if too few traces reach the condition.
+        low, high: the interval.
+        traces: the number of traces from which it was estimated.
+    """
+
+    share: float
+    value: float
+    low: float
+    high: float
+    traces: int
+
+
 class Result(Record, frozen=True):
     """The result of one property.
 
@@ -332,6 +349,7 @@ class Result(Record, frozen=True):
         seconds: the duration of the verification, in s.
         comment: a description of what the property requires; "" if the model contains none.
         conditional: the results under assumptions that the property does not make.
+        quantiles: those of a reward that were asked for, from further traces with uniform choices.
     """
 
     name: str
@@ -340,6 +358,7 @@ class Result(Record, frozen=True):
     seconds: float = 0.0
     comment: str = ""
     conditional: tuple[UnderAssumption, ...] = ()
+    quantiles: tuple[RewardQuantile, ...] = ()
 
     @property
     def estimated(self) -> Estimated | None:
