@@ -9,6 +9,7 @@ Columns in UTF-8 and UTF-16 exist only here and in `buffer`.
 
 from __future__ import annotations
 
+import functools
 import os
 from collections.abc import Iterable, Iterator, Mapping
 
@@ -144,6 +145,7 @@ def _file(uri: str) -> str:
     return path if os.path.isabs(path) and is_valid_path(path) else ""
 
 
+@functools.cache  # a file may have a thousand findings, and each look-up asks the disk several times
 def rule_uri(code: str) -> str:
     """The URI of a rule's document. The document is installed with the server, so it needs no network and has the right
     version."""

@@ -3,6 +3,8 @@
 
 - The newest text takes precedence: a change cancels the pending work for older texts. The changed file is checked
   first, then all other files.
+- The diagnostics of a long machine are first provisional (`roaml.project.provisional`). The complete check follows when
+  the user pauses; its results are those of the command line.
 - Messages of the client take precedence: the work yields to them, and its results so far are kept.
 - A file is published only when its diagnostics differ from those that the client already has.
 """
@@ -21,6 +23,7 @@ from typing import TypeVar
 
 from lsprotocol import types
 
+from as2fm_lsp.buffer import MARK
 from as2fm_lsp.client import Client
 from as2fm_lsp.inbox import Inbox
 from as2fm_lsp.progress import Progress, ProgressReporter
@@ -28,6 +31,7 @@ from as2fm_lsp.session import Moment, Session
 from roaml.diagnostics import Diagnostic
 from roaml.ide.names.occurrences import uses
 from roaml.project.memo import Interrupted
+from roaml.project.provisional import Checked, after, checked
 from roaml.project.workspace import Snapshot
 from roaml.text import SourceFile
 
@@ -65,6 +69,7 @@ class Diagnostics:
         self._task: asyncio.Task[None] | None = None
         self._waiting: dict[str, None] = {}
         self._all_waiting = False
+        self._checked: dict[str, Checked] = {}
 
     def checkpoint(self) -> None:
         """Stop a computation that must give way to messages.
@@ -79,7 +84,9 @@ class Diagnostics:
 
     def schedule(self, *paths: str) -> None:
         """Schedule a check, because the files at `paths` have changed. Without paths, any file may have changed."""
-        self._all_waiting |= not paths
+        if not paths:
+            self._all_waiting = True
+            self._checked.clear()
         self._waiting = dict.fromkeys((*paths, *self._waiting))
         if self._task is not None:
             self._task.cancel()
@@ -88,6 +95,8 @@ class Diagnostics:
     async def _work(self) -> None:
         await self._let_messages_by()
         if self.pushes:
+            if self._send_provisional():
+                await asyncio.sleep(IDLE_DELAY_S)
             await self._check_all()
         else:
             self._client.refresh_diagnostics()
@@ -96,6 +105,25 @@ class Diagnostics:
         self.finished()
         await asyncio.sleep(IDLE_DELAY_S)
         await self._prepare()
+
+    def _send_provisional(self) -> bool:
+        """Send the provisional diagnostics of the changed documents. Return whether all of them have such
+        diagnostics, so that the complete check can wait."""
+        versions = [self._newer(path) for path in self._waiting]
+        for version in filter(None, versions):
+            self._checked[version.source.path] = version
+            source_of, diagnostics = version.runner.analysis.source, version.diagnostics
+            related = {r.location.path for d in diagnostics for r in d.related}
+            sources = {path: source for path in related if (source := source_of(path)) is not None}
+            sources[version.source.path] = version.source
+            sent = [self.session.convert.diagnostic(d, version.source, sources) for d in diagnostics]
+            self._send(version.source.path, sent, self.session.version(version.source.path))
+        return bool(versions) and None not in versions
+
+    def _newer(self, path: str) -> Checked | None:
+        """The provisional result for the current text of a document; `None` if there is none."""
+        known, text = self._checked.pop(path, None), self.session.text(path)
+        return None if known is None or text is None else after(known, text.removeprefix(MARK))
 
     async def _prepare(self) -> None:
         """Compute, while the user is idle, data that the next request is likely to need, and collect garbage."""
@@ -131,6 +159,8 @@ class Diagnostics:
             log.exception("%s cannot be checked", path)
         else:
             self._send(path, diagnostics, moment.versions.get(path))
+            if path in moment.versions and (result := checked(moment.snapshot(path).checker, path)) is not None:
+                self._checked[path] = result
 
     async def _interruptible(self, compute: Callable[[], T]) -> T:
         """The result of a computation that stops when a message arrives and begins again afterwards. After

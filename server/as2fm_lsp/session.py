@@ -139,6 +139,10 @@ class Session:
         """The text of an open document, as the client has it; `None` if the document is not open."""
         return self._texts.get(path)
 
+    def version(self, path: str) -> int | None:
+        """The version of an open document, as the client has sent it."""
+        return self._versions.get(path)
+
     def close(self, path: str) -> None:
         self._texts.pop(path, None)
         self._versions.pop(path, None)

@@ -15,6 +15,7 @@ import itertools
 import logging
 import os
 from collections.abc import Callable, Iterable, Iterator
+from typing import TypeAlias
 
 from roaml.diagnostics import Diagnostic, Finding, Related, RelatedPlace, Severity, Symbol, Tag
 from roaml.disk import UnreadableReason
@@ -37,6 +38,7 @@ from roaml.project.configuration import missing_folders
 from roaml.project.edits import laid_out
 from roaml.project.files import MAX_CHARACTERS
 from roaml.project.locate import locate
+from roaml.project.memo import Memo
 from roaml.project.paths import slashed
 from roaml.project.settings import Settings
 from roaml.project.suppress import Suppression, covering, suppressions
@@ -61,6 +63,7 @@ from roaml.rules.rule import (
 from roaml.rules.support.end_tags import without_misnamed_ends
 from roaml.suggest import close_names
 from roaml.text import Location, SourceFile, Span
+from roaml.xml_syntax import Document
 
 log = logging.getLogger(__name__)
 
@@ -71,6 +74,9 @@ fixes."""
 _FORM = ("xml-syntax", "nesting-too-deep")
 _CRASH = internal_error_rule.RULE.code
 _OF_CONFIGURATION = (TOML_SYNTAX.code, INVALID_SETTING.code)
+
+Check: TypeAlias = "tuple[Rule, Callable[[], Iterable[Finding]]]"
+"""A rule, and a function that returns its findings in one file."""
 
 _XML_KINDS = (*GRAMMARS, FileKind.SPECIFICATION, FileKind.UNKNOWN)
 
@@ -101,13 +107,23 @@ class RuleRunner:
                     finding for finding in self._unused(source, systems, hidden) if self._is_selected(finding)
                 )
             )
-        around = covering(hidden)
-        diagnostics = [
-            self._publish(path, finding)
-            for finding in _without_repetition(findings)
-            if finding.code == _CRASH or not any(_hides(comment, finding) for comment in around(finding.span.start))
-        ]
-        return tuple(sorted(diagnostics, key=lambda d: (d.span, -d.severity, d.code, d.message)))
+        return tuple(sorted((self._publish(path, f) for f in _visible(findings, hidden)), key=order))
+
+    def provisional(self, source: SourceFile, document: Document, findings: Iterable[Finding]) -> Iterator[Diagnostic]:
+        """Diagnostics of a text that differs from the one that has been checked. They have no fixes and no places in
+        other files."""
+        selected = [finding for finding in findings if self._is_selected(finding)]
+        for finding in _visible(selected, suppressions(document)):
+            places = [(r.place, r.message) for r in finding.related if isinstance(r.place, Span)]
+            related = tuple(RelatedPlace(Location(source.path, place), message) for place, message in places)
+            severity = self.settings.severities.get(finding.code, _own_severity(finding))
+            yield Diagnostic(
+                *(source.path, finding.code, severity, finding.span, finding.message),
+                related=related,
+                tags=finding.tags,
+                facts=finding.facts,
+                source=source,
+            )
 
     def _unused(self, source: SourceFile, systems: tuple[str, ...], hidden: Iterable[Suppression]) -> Iterator[Finding]:
         """The findings about unused suppression comments. There are none for a file that is not in a system, that is in
@@ -157,6 +173,16 @@ class RuleRunner:
         except Exception as error:  # an internal error in one file must not prevent the check of the others
             log.exception("%s cannot be analysed", path)
             return (internal_error("the analysis of this file", error),)
+
+    def contexts(self, path: str, system: str | None) -> tuple[FileContext, MachineContext] | None:
+        """The contexts in which the rules check the machine in the file `path` as a part of `system`; `None` if it is
+        not a machine, or if its text is expanded."""
+        source = self.analysis.source(path)
+        if source is None or self._expanded(path, system, varied=False) is not None:
+            return None
+        run = _Run(self.analysis, path, source, self.analysis.kind_in(path, system), system, self.settings.limits)
+        machine = run.machine_context() if run.kind is FileKind.MACHINE else None
+        return None if machine is None else (run.file_context(), machine)
 
     def _expanded_findings(self, path: str, system: str | None) -> tuple[Finding, ...] | None:
         """The findings in the expanded texts of a file, at their places in the file, after those about its parameters
@@ -245,6 +271,19 @@ def _limited(rule: Rule, findings: Iterable[Finding]) -> list[Finding]:
     return kept
 
 
+def order(diagnostic: Diagnostic) -> tuple[object, ...]:
+    """The key by which the diagnostics of a file are sorted."""
+    return diagnostic.span, -diagnostic.severity, diagnostic.code, diagnostic.message
+
+
+def _visible(findings: Iterable[Finding], hidden: Iterable[Suppression]) -> Iterator[Finding]:
+    """The findings without repetitions, and without those that a comment suppresses."""
+    around = covering(hidden)
+    for finding in _without_repetition(findings):
+        if finding.code == _CRASH or not any(_hides(comment, finding) for comment in around(finding.span.start)):
+            yield finding
+
+
 def _hides(comment: Suppression, finding: Finding) -> bool:
     """Whether a comment suppresses a finding. A comment without codes does not suppress the finding that the comment
     itself is unused."""
@@ -327,28 +366,9 @@ class _Run:
         return parts
 
     def findings(self) -> tuple[Finding, ...]:
-        findings = without_misnamed_ends(tuple(self._all()))
-        if any(finding.code in _FORM for finding in findings):
-            # A declaration that seems unused may be used in an unreadable part.
-            return tuple(finding for finding in findings if Tag.UNNECESSARY not in finding.tags)
-        return findings
+        return found(self.path, [*file_checks(self.file_context()), *self._own_checks()], self.analysis.memo)
 
-    def _all(self) -> Iterator[Finding]:
-        file = self._file_context()
-        checks: list[tuple[Rule, Callable[[], Iterable[Finding]]]] = []
-        for rule in RULES:
-            if rule.file is not None:
-                checks.append((rule, functools.partial(rule.file, file)))
-        checks += self._own_checks()
-        for rule, check in checks:
-            self.analysis.memo.checkpoint()
-            try:
-                yield from _limited(rule, check())
-            except Exception as error:  # an internal error must not stop the other rules
-                log.exception("rule %s failed on %s", rule.code, self.path)
-                yield internal_error(f"the rule `{rule.code}`", error)
-
-    def _own_checks(self) -> list[tuple[Rule, Callable[[], Iterable[Finding]]]]:
+    def _own_checks(self) -> list[Check]:
         try:
             match self.kind:
                 case FileKind.MACHINE:
@@ -380,7 +400,8 @@ class _Run:
 
     # -------------------------------------------------------------- contexts
 
-    def _file_context(self) -> FileContext:
+    def file_context(self) -> FileContext:
+        """The context of the rules about files of any kind."""
         match self.kind:
             case FileKind.PROPERTIES:
                 _, findings = self.analysis.json(self.path) or (None, ())
@@ -458,20 +479,24 @@ class _Run:
         assert document is not None
         return dialect_of(machine, document, self.system.older if self.system else None)
 
-    def _machine_checks(self) -> list[tuple[Rule, Callable[[], Iterable[Finding]]]]:
+    def _machine_checks(self) -> list[Check]:
+        context = self.machine_context()
+        return [] if context is None else machine_checks(context)
+
+    def machine_context(self) -> MachineContext | None:
+        """The context of the rules about machines; `None` if the file is not a machine."""
         machine, document = self.analysis.machine(self.path), self.analysis.document(self.path)
         if machine is None or document is None:
-            return []
-        dialect = self._dialect()
+            return None
         structs = self.analysis.structs(self.system_path)
         listed = self.analysis.listed(self.system_path) if self.system_path else ()
         events = self.system.event_data if self.system else {}
-        context = MachineContext(
+        return MachineContext(
             self.source,
             document,
             machine,
             self.analysis.typed_in(self.path, self.system_path),
-            dialect,
+            self._dialect(),
             self.system,
             self.system.automata_of(self.path) if self.system else (),
             frozenset(f.input.section for f in listed if f.path == self.path),
@@ -485,8 +510,6 @@ class _Run:
             local_values(self.analysis, self.path, self.system_path),
             values_in(self.analysis, self.path, self.system_path),
         )
-        plain = dialect in (Dialect.PLAIN, Dialect.FOREIGN)
-        return [(r, functools.partial(r.machine, context)) for r in RULES if r.machine and (r.plain or not plain)]
 
     def _machine_gaps(self, machine: Machine) -> tuple[PlacedGap, ...]:
         automata = self.system.automata_of(self.path) if self.system else ()
@@ -614,6 +637,36 @@ class _Run:
         variables = self.analysis.globals(self.system_path) if self.system_path else None
         taken = dict(self.analysis.names_before(self.path, self.system_path)) if self.system_path else {}
         return PropertiesContext(self.source, json[0], properties, self.system, variables, taken)
+
+
+def file_checks(context: FileContext) -> list[Check]:
+    """The checks of the rules about files of any kind."""
+    return [(rule, functools.partial(rule.file, context)) for rule in RULES if rule.file]
+
+
+def machine_checks(context: MachineContext) -> list[Check]:
+    """The checks of the rules about machines that apply to the dialect of the machine."""
+    plain = context.dialect in (Dialect.PLAIN, Dialect.FOREIGN)
+    return [(r, functools.partial(r.machine, context)) for r in RULES if r.machine and (r.plain or not plain)]
+
+
+def found(path: str, checks: Iterable[Check], memo: Memo) -> tuple[Finding, ...]:
+    """The findings of checks in the file `path`."""
+    findings = without_misnamed_ends(tuple(_all(path, checks, memo)))
+    if any(finding.code in _FORM for finding in findings):
+        # A declaration that seems unused may be used in an unreadable part.
+        return tuple(finding for finding in findings if Tag.UNNECESSARY not in finding.tags)
+    return findings
+
+
+def _all(path: str, checks: Iterable[Check], memo: Memo) -> Iterator[Finding]:
+    for rule, check in checks:
+        memo.checkpoint()
+        try:
+            yield from _limited(rule, check())
+        except Exception as error:  # an internal error must not stop the other rules
+            log.exception("rule %s failed on %s", rule.code, path)
+            yield internal_error(f"the rule `{rule.code}`", error)
 
 
 def internal_error(subject: str, error: Exception) -> Finding:

@@ -209,6 +209,9 @@ class Rule(Record, frozen=True):
         summary: one sentence that states the problem.
         file, machine, tree, system, structs, properties, xml_properties: the checks for files of these kinds.
         plain: whether the machine check also applies to plain SCXML.
+        whole: whether the machine check reports problems of a state that depend on what the other states contain, or on
+            what the whole system does with the machine. `roaml.project.provisional` delays such a check. Findings in a
+            state that do not depend on these come from this state, the declarations and the names of the states.
         facts: the type of the facts of the findings, for rules whose fixes read facts.
     """
 
@@ -223,6 +226,7 @@ class Rule(Record, frozen=True):
     properties: Callable[[PropertiesContext], Iterable[Finding]] | None = None
     xml_properties: Callable[[LinkedFile], Iterable[Finding]] | None = None
     plain: bool = False
+    whole: bool = False
     facts: type[Facts] | None = None
 
     def at(

@@ -149,4 +149,5 @@ RULE = Rule(
     Severity.WARNING,
     "A tick or halt ends only after time has passed, which can stop the clock for ever.",
     machine=check,
+    whole=True,
 )

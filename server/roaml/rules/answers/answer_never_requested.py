@@ -88,4 +88,5 @@ RULE = Rule(
     Severity.WARNING,
     "A machine waits for an answer that it has not requested.",
     machine=check,
+    whole=True,
 )

@@ -105,4 +105,5 @@ RULE = Rule(
     Severity.WARNING,
     "A client sends a cancel request while it has no accepted goal.",
     machine=check,
+    whole=True,
 )

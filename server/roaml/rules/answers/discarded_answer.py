@@ -121,4 +121,5 @@ RULE = Rule(
     Severity.WARNING,
     "A state that waits for an answer discards some of the answers.",
     machine=check,
+    whole=True,
 )

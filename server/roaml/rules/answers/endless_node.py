@@ -47,4 +47,4 @@ def _returns(behavior: Behavior, step: BehaviorStep, endless: set[int]) -> bool:
     return step.event is not None and step.event.part is ProtocolPart.BT_TICK and step.target in endless
 
 
-RULE = Rule("endless-node", Severity.WARNING, "A plugin returns RUNNING for ever.", machine=check)
+RULE = Rule("endless-node", Severity.WARNING, "A plugin returns RUNNING for ever.", machine=check, whole=True)

@@ -230,4 +230,6 @@ def _is_last(handler: Handler, statement: Statement) -> bool:
     return any(statement in target.body for target in handler.targets)
 
 
-RULE = Rule("repeated-answer", Severity.WARNING, "A machine answers twice, or without a request.", machine=check)
+RULE = Rule(
+    "repeated-answer", Severity.WARNING, "A machine answers twice, or without a request.", machine=check, whole=True
+)

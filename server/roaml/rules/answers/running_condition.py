@@ -45,4 +45,4 @@ def _fixes(statement: ReturnStatus) -> Iterator[Fix]:
             yield Fix(f"Return `{status}`", (TextEdit(statement.status.span, status),), preferred=False)
 
 
-RULE = Rule("running-condition", Severity.WARNING, "A condition returns RUNNING.", machine=check)
+RULE = Rule("running-condition", Severity.WARNING, "A condition returns RUNNING.", machine=check, whole=True)

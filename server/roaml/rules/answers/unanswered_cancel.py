@@ -117,4 +117,5 @@ RULE = Rule(
     Severity.WARNING,
     "A server handles cancel requests, but never ends a goal as canceled.",
     machine=check,
+    whole=True,
 )

@@ -70,5 +70,9 @@ def _message(path: OpenPath) -> str:
 
 
 RULE = Rule(
-    "unanswered-goal", Severity.ERROR, "A goal is not accepted or rejected, or not ended, on every path.", machine=check
+    "unanswered-goal",
+    Severity.ERROR,
+    "A goal is not accepted or rejected, or not ended, on every path.",
+    machine=check,
+    whole=True,
 )

@@ -116,4 +116,10 @@ def _add_handler(context: MachineContext, state: State) -> Iterator[Fix]:
         yield Fix("Add `<bt_halt>`", (last_in(context.document, state.element, *lines),))
 
 
-RULE = Rule("unanswered-halt", Severity.ERROR, "A halt is not handled or not confirmed on every path.", machine=check)
+RULE = Rule(
+    "unanswered-halt",
+    Severity.ERROR,
+    "A halt is not handled or not confirmed on every path.",
+    machine=check,
+    whole=True,
+)

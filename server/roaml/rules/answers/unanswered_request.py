@@ -81,4 +81,4 @@ def _fixes(context: MachineContext, behavior: Behavior, path: OpenPath, request_
         yield from answered(context, path, behavior.chart.states, title, lines, preferred=False)
 
 
-RULE = Rule("unanswered-request", Severity.ERROR, "A request is not answered on every path.", machine=check)
+RULE = Rule("unanswered-request", Severity.ERROR, "A request is not answered on every path.", machine=check, whole=True)

@@ -140,4 +140,5 @@ RULE = Rule(
     Severity.ERROR,
     "A tick is not handled, or does not return a status, on some path.",
     machine=check,
+    whole=True,
 )

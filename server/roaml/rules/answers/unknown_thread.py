@@ -41,4 +41,6 @@ def _finding(context: MachineContext, step: BehaviorStep, fault: Fault, statemen
     return RULE.at(place(step.handler, statement), message, related=related)
 
 
-RULE = Rule("unknown-thread", Severity.WARNING, "A machine starts a thread that does not exist.", machine=check)
+RULE = Rule(
+    "unknown-thread", Severity.WARNING, "A machine starts a thread that does not exist.", machine=check, whole=True
+)

@@ -162,4 +162,4 @@ def _store(context: MachineContext, step: BehaviorStep, variable: str) -> Iterat
         yield Fix(f"Store the goal id in `{variable}`", (edit,))
 
 
-RULE = Rule("wrong-goal-id", Severity.WARNING, "An answer names a goal by the wrong id.", machine=check)
+RULE = Rule("wrong-goal-id", Severity.WARNING, "An answer names a goal by the wrong id.", machine=check, whole=True)

@@ -35,4 +35,6 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     yield RULE.at(statement.event.span, message, *fixes, severity=severity)
 
 
-RULE = Rule("event-never-received", Severity.HINT, "No machine receives an event that is sent.", machine=check)
+RULE = Rule(
+    "event-never-received", Severity.HINT, "No machine receives an event that is sent.", machine=check, whole=True
+)

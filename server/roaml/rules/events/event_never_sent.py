@@ -72,4 +72,10 @@ def _generated(context: MachineContext, system: System) -> frozenset[str]:
     return event_names(system, interface).union(timers)
 
 
-RULE = Rule("event-never-sent", Severity.ERROR, "No machine sends an event that a transition waits for.", machine=check)
+RULE = Rule(
+    "event-never-sent",
+    Severity.ERROR,
+    "No machine sends an event that a transition waits for.",
+    machine=check,
+    whole=True,
+)

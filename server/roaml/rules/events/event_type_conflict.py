@@ -128,4 +128,5 @@ RULE = Rule(
     Severity.ERROR,
     "Senders of an event use different types for a parameter.",
     machine=check,
+    whole=True,
 )

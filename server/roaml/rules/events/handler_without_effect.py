@@ -53,5 +53,9 @@ def _has_effect(state: State, handler: Handler) -> bool:
 
 
 RULE = Rule(
-    "handler-without-effect", Severity.WARNING, "All handlers of an event or message do nothing.", machine=check
+    "handler-without-effect",
+    Severity.WARNING,
+    "All handlers of an event or message do nothing.",
+    machine=check,
+    whole=True,
 )

@@ -125,4 +125,5 @@ RULE = Rule(
     Severity.WARNING,
     "Event data are read in a step in which they may belong to a newer event.",
     machine=check,
+    whole=True,
 )

@@ -39,5 +39,9 @@ def _check(problem: UnknownMember, event: PlainEvent, params: list[str]) -> Iter
 
 
 RULE = Rule(
-    "unknown-event-parameter", Severity.ERROR, "No sender of an event sends a parameter that is read.", machine=check
+    "unknown-event-parameter",
+    Severity.ERROR,
+    "No sender of an event sends a parameter that is read.",
+    machine=check,
+    whole=True,
 )

@@ -146,4 +146,6 @@ def _comparison_advice(name: str, operator: Operator, bound: Fraction, values: i
     return _advice(enough)
 
 
-RULE = Rule("coarse-random", Severity.WARNING, "A random number has too few values for its use.", machine=check)
+RULE = Rule(
+    "coarse-random", Severity.WARNING, "A random number has too few values for its use.", machine=check, whole=True
+)

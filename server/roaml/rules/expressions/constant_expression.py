@@ -60,5 +60,9 @@ def _why(chart: ChartValues, node: Expr) -> str:
 
 
 RULE = Rule(
-    "constant-expression", Severity.WARNING, "A comparison or a limit always has the same value.", machine=check
+    "constant-expression",
+    Severity.WARNING,
+    "A comparison or a limit always has the same value.",
+    machine=check,
+    whole=True,
 )

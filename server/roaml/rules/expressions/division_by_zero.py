@@ -48,4 +48,6 @@ def _reaches_zero(divisor: ValueSet) -> bool:
     )
 
 
-RULE = Rule("division-by-zero", Severity.WARNING, "The divisor of a division is or can be zero.", machine=check)
+RULE = Rule(
+    "division-by-zero", Severity.WARNING, "The divisor of a division is or can be zero.", machine=check, whole=True
+)

@@ -266,4 +266,4 @@ def _below(operator: Operator, number: float | None, bound: int) -> bool:
     return False
 
 
-RULE = Rule("index-out-of-bounds", Severity.ERROR, "An index is outside of its array.", machine=check)
+RULE = Rule("index-out-of-bounds", Severity.ERROR, "An index is outside of its array.", machine=check, whole=True)

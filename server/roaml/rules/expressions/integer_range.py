@@ -182,4 +182,5 @@ RULE = Rule(
     Severity.WARNING,
     "A value is or can be outside the range of its integer type.",
     machine=check,
+    whole=True,
 )

@@ -71,4 +71,4 @@ def _text(context: MachineContext, expr: Expr) -> str:
     return context.source.text[expr.span.start : expr.span.end]
 
 
-RULE = Rule("real-equality", Severity.WARNING, "Real numbers are compared for equality.", machine=check)
+RULE = Rule("real-equality", Severity.WARNING, "Real numbers are compared for equality.", machine=check, whole=True)

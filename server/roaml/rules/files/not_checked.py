@@ -192,4 +192,5 @@ RULE = Rule(
     machine=check,
     tree=check,
     system=check,
+    whole=True,
 )

@@ -59,4 +59,4 @@ def _misspelt(text: str, comment: Span, code: str, known: Iterable[str]) -> Find
     return RULE.at(comment, f"there is no rule `{code}`{did_you_mean(close)}", *fixes)
 
 
-RULE = Rule("unused-suppression", Severity.INFORMATION, "A comment suppresses findings that do not occur.")
+RULE = Rule("unused-suppression", Severity.INFORMATION, "A comment suppresses findings that do not occur.", whole=True)

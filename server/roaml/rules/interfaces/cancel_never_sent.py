@@ -48,4 +48,5 @@ RULE = Rule(
     Severity.INFORMATION,
     "A handler waits for cancel requests that no client sends.",
     machine=check,
+    whole=True,
 )

@@ -100,4 +100,5 @@ RULE = Rule(
     Severity.ERROR,
     "A topic, service or action is declared with different types.",
     machine=check,
+    whole=True,
 )

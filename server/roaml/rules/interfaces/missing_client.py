@@ -32,4 +32,6 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 yield RULE.at(name_span(declaration), message, *fixes)
 
 
-RULE = Rule("missing-client", Severity.WARNING, "No machine uses a service or action that is served.", machine=check)
+RULE = Rule(
+    "missing-client", Severity.WARNING, "No machine uses a service or action that is served.", machine=check, whole=True
+)

@@ -43,4 +43,10 @@ def _handlers(context: MachineContext, declaration: Declaration) -> Iterator[Han
                     yield handler
 
 
-RULE = Rule("missing-feedback", Severity.INFORMATION, "A handler waits for feedback that is never sent.", machine=check)
+RULE = Rule(
+    "missing-feedback",
+    Severity.INFORMATION,
+    "A handler waits for feedback that is never sent.",
+    machine=check,
+    whole=True,
+)

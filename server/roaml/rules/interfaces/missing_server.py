@@ -66,5 +66,10 @@ def _handle_spans(machine: Machine, declaration: Declaration) -> Iterator[Span]:
 
 
 RULE = Rule(
-    "missing-server", Severity.ERROR, "No machine serves a service or action that is used.", machine=check, tree=check
+    "missing-server",
+    Severity.ERROR,
+    "No machine serves a service or action that is used.",
+    machine=check,
+    tree=check,
+    whole=True,
 )

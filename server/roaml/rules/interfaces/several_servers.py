@@ -65,4 +65,6 @@ def _finding(
     return RULE.at(span, f"{message}; it must have exactly one")
 
 
-RULE = Rule("several-servers", Severity.ERROR, "A service or action has more than one server.", machine=check)
+RULE = Rule(
+    "several-servers", Severity.ERROR, "A service or action has more than one server.", machine=check, whole=True
+)

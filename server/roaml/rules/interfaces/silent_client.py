@@ -82,4 +82,5 @@ RULE = Rule(
     Severity.ERROR,
     "A handler waits for an answer to a request or goal that is never sent.",
     machine=check,
+    whole=True,
 )

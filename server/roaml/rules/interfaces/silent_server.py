@@ -149,4 +149,4 @@ def receives(automaton: SystemAutomaton, declaration: Declaration, part: Protoco
     return use is not None and part in use.receives
 
 
-RULE = Rule("silent-server", Severity.ERROR, "A server never answers.", machine=check)
+RULE = Rule("silent-server", Severity.ERROR, "A server never answers.", machine=check, whole=True)

@@ -43,4 +43,5 @@ RULE = Rule(
     "No machine publishes on a topic that is subscribed to.",
     machine=check,
     tree=check,
+    whole=True,
 )

@@ -34,5 +34,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 RULE = Rule(
-    "topic-without-subscriber", Severity.HINT, "No machine subscribes to a topic that is published.", machine=check
+    "topic-without-subscriber",
+    Severity.HINT,
+    "No machine subscribes to a topic that is published.",
+    machine=check,
+    whole=True,
 )

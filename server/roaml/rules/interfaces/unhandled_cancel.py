@@ -47,5 +47,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 RULE = Rule(
-    "unhandled-cancel", Severity.WARNING, "A client cancels a goal, but the server rejects the request.", machine=check
+    "unhandled-cancel",
+    Severity.WARNING,
+    "A client cancels a goal, but the server rejects the request.",
+    machine=check,
+    whole=True,
 )

@@ -74,4 +74,5 @@ RULE = Rule(
     Severity.WARNING,
     "A client cancels goals, but drops the result of a canceled goal.",
     machine=check,
+    whole=True,
 )

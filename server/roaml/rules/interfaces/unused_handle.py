@@ -33,4 +33,6 @@ def check(context: MachineContext) -> Iterator[Finding]:
             yield RULE.at(declaration.handle.span, message, drop, tags=(Tag.UNNECESSARY,))
 
 
-RULE = Rule("unused-handle", Severity.HINT, "A ROS interface or timer is declared and never used.", machine=check)
+RULE = Rule(
+    "unused-handle", Severity.HINT, "A ROS interface or timer is declared and never used.", machine=check, whole=True
+)

@@ -306,4 +306,6 @@ def _why(values: ChartValues, tree: Expr) -> str:
     return ", ".join(list(texts)[:MAX_NAMED])
 
 
-RULE = Rule("constant-condition", Severity.WARNING, "A condition is always true or never true.", machine=check)
+RULE = Rule(
+    "constant-condition", Severity.WARNING, "A condition is always true or never true.", machine=check, whole=True
+)

@@ -216,4 +216,6 @@ def _described(system: System, link: Reaction) -> str:
     return f"`{link.automaton.name}` sends {sent} whenever it has received {received}"
 
 
-RULE = Rule("time-stops", Severity.WARNING, "Machines take steps for ever without time passing.", machine=check)
+RULE = Rule(
+    "time-stops", Severity.WARNING, "Machines take steps for ever without time passing.", machine=check, whole=True
+)

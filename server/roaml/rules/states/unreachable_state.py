@@ -68,4 +68,4 @@ def _reached(chart: Chart) -> set[str] | None:
     return reached
 
 
-RULE = Rule("unreachable-state", Severity.WARNING, "A state is never entered.", machine=check)
+RULE = Rule("unreachable-state", Severity.WARNING, "A state is never entered.", machine=check, whole=True)

@@ -94,4 +94,5 @@ RULE = Rule(
     tree=_tree,
     system=_system,
     xml_properties=_properties,
+    whole=True,
 )

@@ -83,4 +83,6 @@ def _wait(context: MachineContext, state: State, handler: Handler, own: dict[str
     return max((own[name] for name in names if name in own), key=lambda timer: timer.hertz, default=None)
 
 
-RULE = Rule("lost-messages", Severity.WARNING, "Messages arrive faster than they are handled.", machine=check)
+RULE = Rule(
+    "lost-messages", Severity.WARNING, "Messages arrive faster than they are handled.", machine=check, whole=True
+)

@@ -73,4 +73,5 @@ RULE = Rule(
     "A rate is very high, or does not stay in step with another rate.",
     machine=_machine,
     system=_system,
+    whole=True,
 )

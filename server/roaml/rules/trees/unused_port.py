@@ -27,4 +27,4 @@ def check(context: MachineContext) -> Iterator[Finding]:
             yield RULE.at(port.key.span, message, *fixes, tags=(Tag.UNNECESSARY,))
 
 
-RULE = Rule("unused-port", Severity.HINT, "A port is declared and never used.", machine=check)
+RULE = Rule("unused-port", Severity.HINT, "A port is declared and never used.", machine=check, whole=True)

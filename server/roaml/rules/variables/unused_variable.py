@@ -85,4 +85,4 @@ def _named(chart: Chart) -> set[str]:
     return named
 
 
-RULE = Rule("unused-variable", Severity.HINT, "A variable is never used.", machine=check)
+RULE = Rule("unused-variable", Severity.HINT, "A variable is never used.", machine=check, whole=True)
