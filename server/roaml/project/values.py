@@ -26,8 +26,8 @@ Rounds: TypeAlias = "tuple[Arriving, ...]"
 
 
 def arriving_at(analysis: Analysis, path: str, system: str | None) -> Arriving:
-    """What can arrive at the machine in the file `path` as a part of `system`. Without a system, and where unreadable
-    parts of the system may send, it is determined by the types."""
+    """What can arrive at the machine in the file `path` as a part of `system`. In an incomplete system, and without a
+    system, it is determined by the types."""
     return _rounds_at(analysis, path, system)[-1]
 
 
@@ -49,13 +49,13 @@ def _by_type(analysis: Analysis, path: str) -> Arriving:
 
 def _rounds_at(analysis: Analysis, path: str, system: str | None) -> Rounds:
     linked = analysis.system(system) if system else None
-    if system is None or linked is None:
+    if system is None or linked is None or not linked.complete:
         return (_by_type(analysis, path),)
     return _rounds_in(analysis, system).get(path, ({},))
 
 
 def _rounds_in(analysis: Analysis, system: str) -> Mapping[str, Rounds]:
-    """Path of a machine -> what can arrive at it, for the machines of a system."""
+    """Path of a machine -> what can arrive at it, for the machines of a complete system."""
     linked = analysis.system(system)
     assert linked is not None
     listed = [f.path for f in analysis.listed(system) if f.required_kind is FileKind.MACHINE and f.usable]
@@ -67,8 +67,7 @@ def _rounds_in(analysis: Analysis, system: str) -> Mapping[str, Rounds]:
             sent: dict[str, Sent | None] = {}
             for path in machines:
                 values = _analysed(analysis, path, system, result[path])
-                is_read = not any(linked.facts_of(automaton) for automaton in linked.automata_of(path))
-                sent[path] = values.sent if values.complete and is_read else None
+                sent[path] = values.sent if values.complete else None
             for path, machine in machines.items():
                 result[path] += (arriving(machine, path, linked, sent, analysis.interface),)
         return result

@@ -10,10 +10,9 @@ from roaml.expr.parse import parse
 from roaml.expr.types import leaves
 from roaml.interfaces.registry import NotFound
 from roaml.model.expand import PortConstant
-from roaml.model.gaps import GapAct, InterfaceAct
 from roaml.model.machine import Declaration, Machine, Port
 from roaml.model.ros import InterfaceType
-from roaml.model.system import System, SystemAutomaton
+from roaml.model.system import ChannelEndpoint, System, SystemAutomaton
 from roaml.model.value_types import INTERFACE_KINDS, section_of
 from roaml.model.values.analyse import Arriving, DataChannel, Fields, Sent, merged, of_type
 from roaml.model.values.domain import ANYTHING, ValueSet, exactly, joined
@@ -30,14 +29,6 @@ _RECEIVED: Mapping[SymbolKind, tuple[ProtocolPart, ...]] = {
     SymbolKind.ACTION_SERVER: (ProtocolPart.GOAL, ProtocolPart.THREAD_START),
     SymbolKind.ACTION_CLIENT: (ProtocolPart.FEEDBACK, ProtocolPart.RESULT),
 }
-_SENDER: Mapping[ProtocolPart, SymbolKind] = {
-    ProtocolPart.MESSAGE: SymbolKind.PUBLISHER,
-    ProtocolPart.REQUEST: SymbolKind.SERVICE_CLIENT,
-    ProtocolPart.RESPONSE: SymbolKind.SERVICE_SERVER,
-    ProtocolPart.GOAL: SymbolKind.ACTION_CLIENT,
-    ProtocolPart.FEEDBACK: SymbolKind.ACTION_SERVER,
-    ProtocolPart.RESULT: SymbolKind.ACTION_SERVER,
-}
 _FROM_USERS = (ProtocolPart.REQUEST, ProtocolPart.GOAL)
 """The parts that clients send; servers and publishers send the others."""
 
@@ -50,8 +41,7 @@ def arriving_by_type(machine: Machine, interface: FindInterface) -> Arriving:
 def arriving(
     machine: Machine, path: str, system: System, sent: Mapping[str, Sent | None], interface: FindInterface
 ) -> Arriving:
-    """What can arrive at the machine in the file `path`. Where an unreadable part of the system may send, too, the
-    types determine it.
+    """What can arrive at the machine in the file `path`. `system` must be complete.
 
     Args:
         sent: path of a machine -> what it sends; `None` if this is not known.
@@ -59,12 +49,11 @@ def arriving(
     automata = system.automata_of(path)
     result = dict(arriving_by_type(machine, interface))
     for declaration, channel in _channels(machine):
-        senders = _senders(system, automata, declaration.kind, channel)
-        fields = None if senders is None else _from(senders, sent)
+        fields = _from(_senders(system, automata, declaration.kind, channel), sent)
         result[channel] = {**result[channel], **(fields or {})}
     for name in {h.event.value for c in machine.charts for s in c.states for h in s.handlers if h.event}:
         event, channel = system.events.get(name), DataChannel(ProtocolPart.EVENT, name)
-        if event is not None and not system.may(GapAct.PARAMETER, name):
+        if event is not None:
             fields = _from(dict.fromkeys((automaton.path, channel) for automaton, _ in event.senders), sent)
             if fields:
                 result[channel] = fields
@@ -93,9 +82,8 @@ def _of_interface(declaration: Declaration, part: ProtocolPart, interface: FindI
 
 def _senders(
     system: System, automata: Iterable[SystemAutomaton], kind: SymbolKind, channel: DataChannel
-) -> Iterable[tuple[str, DataChannel]] | None:
-    """The paths of the machines that may send what arrives through `channel`, each with its own channel; `None` if an
-    unreadable part may send it."""
+) -> Iterable[tuple[str, DataChannel]]:
+    """The paths of the machines that may send what arrives through `channel`, each with its own channel."""
     senders: dict[tuple[str, DataChannel], None] = {}
     for automaton in automata:
         if channel.part is ProtocolPart.THREAD_START:
@@ -103,10 +91,10 @@ def _senders(
             continue
         use = automaton.outline.use(kind, channel.name)
         connection = system.channel(automaton, use) if use is not None else None
-        sender = InterfaceAct(_SENDER[channel.part], channel.part)
-        if connection is None or system.may(sender, connection.name):
-            return None
-        for endpoint in connection.users if channel.part in _FROM_USERS else connection.sources:
+        endpoints: list[ChannelEndpoint] = []
+        if connection is not None:
+            endpoints = connection.users if channel.part in _FROM_USERS else connection.sources
+        for endpoint in endpoints:
             senders[endpoint.automaton.path, DataChannel(channel.part, endpoint.use.handle)] = None
     return senders
 
