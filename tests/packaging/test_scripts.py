@@ -130,6 +130,7 @@ def test_all_passes(tree: Path, tools: Path) -> None:
     assert (done.returncode, done.stderr) == (0, "")
     said = [line for line in done.stdout.splitlines() if line.startswith(("==", "  ✔"))]
     assert said == [
+        "== preparation, which takes a minute the first time",
         "== ruff check",
         "== ruff format",
         "== mypy",
