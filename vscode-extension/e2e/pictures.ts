@@ -3,89 +3,78 @@ import assert from "node:assert/strict";
 import * as fs from "node:fs";
 import * as path from "node:path";
 import type { Frame, Locator, Page } from "playwright-core";
-import { MEND, sample, type Stage } from "./support/stage";
+import { MEND, sample, SharedFolder, type Stage } from "./support/stage";
 import { OUTPUT } from "./support/paths";
 import type { Window } from "./support/window";
 import { temporaryFolder, write } from "./support/workbench";
 
 export function pictures(stage: Stage): void {
     stage.use();
+    const mended = new SharedFolder(() => sample(MEND));
 
-    stage.test(
-        "a machine: its states, navigation by click and by caret",
-        () => sample(MEND),
-        async (window) => {
-            await window.openFile("battery.ascxml");
-            await window.running();
-            await window.run("AS2FM: Show State Machine");
-            const picture = await window.picture();
-            await window.becomes(() => labels(picture), ["driving", "charging"]);
-            assert.equal(await picture.locator(".scene .edge.is-ros").count(), 3);
-            assert.equal(await picture.locator(".dot").count(), 1);
-            assert.equal(await picture.locator("svg.picture .link .line").count(), 4);
-            const inside = picture.locator('.node[data-label="driving"] .edge.is-ros');
-            assert.match((await inside.textContent()) ?? "", /timer second.*publish \/battery/);
-            await picture.locator('.node[data-label="charging"]').click();
-            await window.statusItem("Ln 25, Col 5").waitFor();
-            await picture.locator('.node.here[data-label="charging"]').waitFor();
-            await window.screenshot("machine");
-            await window.goBehind("nodes/battery.ascxml", "Math.max(");
-            await picture.locator(".edge.here").first().waitFor();
-            // Another machine is drawn when its editor becomes active. Edits are shown before they are saved.
-            await window.openFile("building.ascxml");
-            await picture.locator('.node[data-label="open"]').waitFor();
-            await window.becomes(() => picture.locator(".scene .edge.is-chance").count(), 2);
-            await window.goBehind("nodes/building.ascxml", '<state id="open');
-            await window.type("ed");
-            await picture.locator('.node[data-label="opened"]').waitFor();
-        },
-    );
+    stage.test("a machine: its states, navigation by click and by caret", mended, async (window) => {
+        await window.openFile("battery.ascxml");
+        await window.running();
+        await window.run("AS2FM: Show State Machine");
+        const picture = await window.picture();
+        await window.becomes(() => labels(picture), ["driving", "charging"]);
+        assert.equal(await picture.locator(".scene .edge.is-ros").count(), 3);
+        assert.equal(await picture.locator(".dot").count(), 1);
+        assert.equal(await picture.locator("svg.picture .link .line").count(), 4);
+        const inside = picture.locator('.node[data-label="driving"] .edge.is-ros');
+        assert.match((await inside.textContent()) ?? "", /timer second.*publish \/battery/);
+        await picture.locator('.node[data-label="charging"]').click();
+        await window.statusItem("Ln 25, Col 5").waitFor();
+        await picture.locator('.node.here[data-label="charging"]').waitFor();
+        await window.screenshot("machine");
+        await window.goBehind("nodes/battery.ascxml", "Math.max(");
+        await picture.locator(".edge.here").first().waitFor();
+        // Another machine is drawn when its editor becomes active. Edits are shown before they are saved.
+        await window.openFile("building.ascxml");
+        await picture.locator('.node[data-label="open"]').waitFor();
+        await window.becomes(() => picture.locator(".scene .edge.is-chance").count(), 2);
+        await window.goBehind("nodes/building.ascxml", '<state id="open');
+        await window.type("ed");
+        await picture.locator('.node[data-label="opened"]').waitFor();
+    });
 
-    stage.test(
-        "the behavior tree and its ports",
-        () => sample(MEND),
-        async (window) => {
-            await window.openFile("tree.xml");
-            await window.running();
-            await window.run("AS2FM: Show Behavior Tree");
-            const picture = await window.picture();
-            const names = ["ReactiveSequence", "ReactiveFallback", "BatteryAbove", "Charge", "Deliver"];
-            await window.becomes(() => labels(picture), names);
-            assert.match((await picture.locator('.node[data-label="Deliver"]').textContent()) ?? "", /parcels = 3/);
-            assert.equal(await picture.locator(".link.is-child").count(), 4);
-            await picture.locator('.node[data-label="Deliver"]').click();
-            await window.statusItem("Ln 10, Col 13").waitFor();
-            await window.screenshot("tree");
-        },
-    );
+    stage.test("the behavior tree and its ports", mended, async (window) => {
+        await window.openFile("tree.xml");
+        await window.running();
+        await window.run("AS2FM: Show Behavior Tree");
+        const picture = await window.picture();
+        const names = ["ReactiveSequence", "ReactiveFallback", "BatteryAbove", "Charge", "Deliver"];
+        await window.becomes(() => labels(picture), names);
+        assert.match((await picture.locator('.node[data-label="Deliver"]').textContent()) ?? "", /parcels = 3/);
+        assert.equal(await picture.locator(".link.is-child").count(), 4);
+        await picture.locator('.node[data-label="Deliver"]').click();
+        await window.statusItem("Ln 10, Col 13").waitFor();
+        await window.screenshot("tree");
+    });
 
-    stage.test(
-        "the ROS graph: keyboard navigation and search",
-        () => sample(MEND),
-        async (window) => {
-            await window.openFile("main.xml");
-            await window.running();
-            await window.run("AS2FM: Show ROS Graph");
-            const picture = await window.picture();
-            const machines = ["Battery", "Building", "BatteryAbove", "Charge", "Deliver"];
-            await window.becomes(() => labels(picture), [...machines, "/battery", "/dock", "/parcels", "/hand_over"]);
-            await window.screenshot("ros-graph");
-            await picture.locator("svg.picture").press("/");
-            await window.type("hand");
-            await picture.locator('.node.found[data-label="/hand_over"]').waitFor();
-            await window.becomes(() => picture.locator(".node.found").count(), 1);
-            await window.screenshot("search");
-            await window.press("Escape", "ArrowLeft");
-            await picture.locator(".node.selected:not([data-label='/hand_over'])").waitFor();
-            await picture.locator('.node[data-label="/hand_over"]').click();
-            await window.page.locator('.tab.active[data-resource-name="building.ascxml"]').waitFor();
-            await picture.locator('.node.here[data-label="/hand_over"], .edge.here').first().waitFor();
-        },
-    );
+    stage.test("the ROS graph: keyboard navigation and search", mended, async (window) => {
+        await window.openFile("main.xml");
+        await window.running();
+        await window.run("AS2FM: Show ROS Graph");
+        const picture = await window.picture();
+        const machines = ["Battery", "Building", "BatteryAbove", "Charge", "Deliver"];
+        await window.becomes(() => labels(picture), [...machines, "/battery", "/dock", "/parcels", "/hand_over"]);
+        await window.screenshot("ros-graph");
+        await picture.locator("svg.picture").press("/");
+        await window.type("hand");
+        await picture.locator('.node.found[data-label="/hand_over"]').waitFor();
+        await window.becomes(() => picture.locator(".node.found").count(), 1);
+        await window.screenshot("search");
+        await window.press("Escape", "ArrowLeft");
+        await picture.locator(".node.selected:not([data-label='/hand_over'])").waitFor();
+        await picture.locator('.node[data-label="/hand_over"]').click();
+        await window.page.locator('.tab.active[data-resource-name="building.ascxml"]').waitFor();
+        await picture.locator('.node.here[data-label="/hand_over"], .edge.here').first().waitFor();
+    });
 
     stage.test(
         "actions on a machine change its text, with the pointer and with the keyboard",
-        () => sample(MEND),
+        mended,
         async (window) => {
             const { page } = window;
             await window.openFile("battery.ascxml");
@@ -143,6 +132,83 @@ export function pictures(stage: Stage): void {
         },
     );
 
+    stage.test("actions on a tree change its text", mended, async (window) => {
+        const { page } = window;
+        await window.openFile("tree.xml");
+        await window.running();
+        await window.run("AS2FM: Show Behavior Tree");
+        const picture = await window.picture();
+        const nodeOf = (label: string) => picture.locator(`.node[data-label="${label}"]`);
+        const openMenu = (label: string) => nodeOf(label).click({ button: "right", position: { x: 20, y: 12 } });
+
+        await nodeOf("Charge").waitFor();
+        await openMenu("ReactiveFallback");
+        await menuItem(page, "Set Name…").waitFor();
+        await menuItem(page, "Add Child…").waitFor();
+        await window.screenshot("tree-menu");
+        await chooseItem(window, "Add Child…");
+        await window.question("The node to add").waitFor();
+        await page.locator(".quick-input-widget input").first().fill("RetryUntil");
+        await choose(window, "The node to add", "RetryUntilSuccessful");
+        await window.answer("num_attempts", "3");
+        await nodeOf("RetryUntilSuccessful").filter({ hasText: "num_attempts = 3" }).waitFor();
+        await window.screenshot("tree-actions");
+
+        await openMenu("Charge");
+        await chooseItem(window, "Move Earlier");
+        await window.until(async () => {
+            const now = await labels(picture);
+            return now.indexOf("Charge") < now.indexOf("BatteryAbove");
+        });
+        await openMenu("Deliver");
+        await chooseItem(window, "Wrap in…");
+        await choose(window, "The node around it", "Inverter");
+        await nodeOf("Inverter").waitFor();
+        await openMenu("Deliver");
+        await chooseItem(window, "Set Name…");
+        await window.answer("The name of the node", "last");
+        await nodeOf("last : Deliver").waitFor();
+        await openMenu("Inverter");
+        await chooseItem(window, "Remove, Keep Children");
+        await nodeOf("Inverter").waitFor({ state: "detached" });
+        await openMenu("RetryUntilSuccessful");
+        await chooseItem(window, "Delete");
+        await nodeOf("RetryUntilSuccessful").waitFor({ state: "detached" });
+
+        // Each action is undone in the text.
+        await window.clickTab("tree.xml");
+        await window.press("Control+Z");
+        await nodeOf("RetryUntilSuccessful").waitFor();
+        await window.press("Control+Z");
+        await nodeOf("Inverter").waitFor();
+    });
+
+    stage.test("a diagram is saved as SVG, PNG and PDF", mended, async (window) => {
+        await window.openFile("main.xml");
+        await window.running();
+        await window.run("AS2FM: Show ROS Graph");
+        const picture = await window.picture();
+        for (const format of ["SVG", "PNG", "PDF"]) {
+            await picture.getByRole("button", { name: `Save as ${format}` }).click();
+            const file = path.join(window.folder, `main.ros.${format.toLowerCase()}`);
+            const input = window.page.locator(".quick-input-widget:visible input[type=text]").first();
+            await window.until(async () => (await input.inputValue()) === file);
+            await window.press("Enter");
+            await window.until(() => fs.existsSync(file) && fs.statSync(file).size > 0);
+        }
+        const svg = fs.readFileSync(path.join(window.folder, "main.ros.svg"), "utf8");
+        assert.match(svg, /^<svg xmlns="http:\/\/www.w3.org\/2000\/svg"/);
+        assert.match(svg, />\/hand_over</);
+        const theme = svg.replace(/^.*<style>/s, "").replace(/<\/style>.*$/s, "");
+        assert.match(theme, /-card \{ fill: #/);
+        assert.doesNotMatch(svg, /var\(--/);
+        const png = fs.readFileSync(path.join(window.folder, "main.ros.png"));
+        assert.equal(png.subarray(1, 4).toString(), "PNG");
+        const pdf = fs.readFileSync(path.join(window.folder, "main.ros.pdf"));
+        assert.match(pdf.toString("latin1"), /^%PDF-1\.4[^]*%%EOF\n$/);
+        keep(window.folder, "main.ros.svg", "main.ros.png", "main.ros.pdf");
+    });
+
     stage.test("a large tree without a system: map, search and collapsed nodes", largeTree, async (window) => {
         await window.openFile("tour.xml");
         await window.running();
@@ -185,91 +251,6 @@ export function pictures(stage: Stage): void {
         await visit.filter({ hasNotText: "…" }).waitFor();
         await window.becomes(() => labels(picture), all);
     });
-
-    stage.test(
-        "actions on a tree change its text",
-        () => sample(MEND),
-        async (window) => {
-            const { page } = window;
-            await window.openFile("tree.xml");
-            await window.running();
-            await window.run("AS2FM: Show Behavior Tree");
-            const picture = await window.picture();
-            const nodeOf = (label: string) => picture.locator(`.node[data-label="${label}"]`);
-            const openMenu = (label: string) => nodeOf(label).click({ button: "right", position: { x: 20, y: 12 } });
-
-            await nodeOf("Charge").waitFor();
-            await openMenu("ReactiveFallback");
-            await menuItem(page, "Set Name…").waitFor();
-            await menuItem(page, "Add Child…").waitFor();
-            await window.screenshot("tree-menu");
-            await chooseItem(window, "Add Child…");
-            await window.question("The node to add").waitFor();
-            await page.locator(".quick-input-widget input").first().fill("RetryUntil");
-            await choose(window, "The node to add", "RetryUntilSuccessful");
-            await window.answer("num_attempts", "3");
-            await nodeOf("RetryUntilSuccessful").filter({ hasText: "num_attempts = 3" }).waitFor();
-            await window.screenshot("tree-actions");
-
-            await openMenu("Charge");
-            await chooseItem(window, "Move Earlier");
-            await window.until(async () => {
-                const now = await labels(picture);
-                return now.indexOf("Charge") < now.indexOf("BatteryAbove");
-            });
-            await openMenu("Deliver");
-            await chooseItem(window, "Wrap in…");
-            await choose(window, "The node around it", "Inverter");
-            await nodeOf("Inverter").waitFor();
-            await openMenu("Deliver");
-            await chooseItem(window, "Set Name…");
-            await window.answer("The name of the node", "last");
-            await nodeOf("last : Deliver").waitFor();
-            await openMenu("Inverter");
-            await chooseItem(window, "Remove, Keep Children");
-            await nodeOf("Inverter").waitFor({ state: "detached" });
-            await openMenu("RetryUntilSuccessful");
-            await chooseItem(window, "Delete");
-            await nodeOf("RetryUntilSuccessful").waitFor({ state: "detached" });
-
-            // Each action is undone in the text.
-            await window.clickTab("tree.xml");
-            await window.press("Control+Z");
-            await nodeOf("RetryUntilSuccessful").waitFor();
-            await window.press("Control+Z");
-            await nodeOf("Inverter").waitFor();
-        },
-    );
-
-    stage.test(
-        "a diagram is saved as SVG, PNG and PDF",
-        () => sample(MEND),
-        async (window) => {
-            await window.openFile("main.xml");
-            await window.running();
-            await window.run("AS2FM: Show ROS Graph");
-            const picture = await window.picture();
-            for (const format of ["SVG", "PNG", "PDF"]) {
-                await picture.getByRole("button", { name: `Save as ${format}` }).click();
-                const file = path.join(window.folder, `main.ros.${format.toLowerCase()}`);
-                const input = window.page.locator(".quick-input-widget:visible input[type=text]").first();
-                await window.until(async () => (await input.inputValue()) === file);
-                await window.press("Enter");
-                await window.until(() => fs.existsSync(file) && fs.statSync(file).size > 0);
-            }
-            const svg = fs.readFileSync(path.join(window.folder, "main.ros.svg"), "utf8");
-            assert.match(svg, /^<svg xmlns="http:\/\/www.w3.org\/2000\/svg"/);
-            assert.match(svg, />\/hand_over</);
-            const theme = svg.replace(/^.*<style>/s, "").replace(/<\/style>.*$/s, "");
-            assert.match(theme, /-card \{ fill: #/);
-            assert.doesNotMatch(svg, /var\(--/);
-            const png = fs.readFileSync(path.join(window.folder, "main.ros.png"));
-            assert.equal(png.subarray(1, 4).toString(), "PNG");
-            const pdf = fs.readFileSync(path.join(window.folder, "main.ros.pdf"));
-            assert.match(pdf.toString("latin1"), /^%PDF-1\.4[^]*%%EOF\n$/);
-            keep(window.folder, "main.ros.svg", "main.ros.png", "main.ros.pdf");
-        },
-    );
 }
 
 function menuItem(page: Page, label: string): Locator {

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import * as fs from "node:fs";
 import * as path from "node:path";
-import { MEND, sample, type Stage } from "./support/stage";
+import { MEND, sample, SharedFolder, type Stage } from "./support/stage";
 import { temporaryFolder, write } from "./support/workbench";
 
 const OLD_SYSTEM = `<convince_mc_tc>
@@ -18,10 +18,12 @@ const OLD_MACHINE = `<scxml name="Clock" version="1.0" initial="on">
 
 export function systems(stage: Stage): void {
     stage.use();
+    const broken = new SharedFolder(sample);
+    const mended = new SharedFolder(() => sample(MEND));
 
     stage.test(
         "translation writes a compact JANI file and opens it formatted, with its outline",
-        () => sample(MEND),
+        mended,
         async (window) => {
             await window.openFile("tree.xml");
             await window.running();
@@ -47,7 +49,25 @@ export function systems(stage: Stage): void {
         },
     );
 
-    stage.test("a system with errors is not translated; the message leads to the error", sample, async (window) => {
+    stage.test("plain SCXML beside its source follows the caret and edits", mended, async (window) => {
+        await window.openFile("battery.ascxml");
+        await window.running();
+        await window.run("AS2FM: Show Plain SCXML");
+        await window.page.locator('.tab[data-resource-name="battery (plain).scxml"]').waitFor();
+        const plain = window.page.locator(".editor-group-container").nth(1);
+        await plain.locator(".view-line", { hasText: "Math.max" }).waitFor();
+        await window.goBehind("nodes/battery.ascxml", 'location="docked');
+        await plain.locator(".view-line", { hasText: "docked" }).first().waitFor();
+        await window.screenshot("plain");
+        await window.goBehind("nodes/battery.ascxml", "Math.max(level - 1");
+        await window.type("5");
+        await plain.locator(".view-line", { hasText: "Math.max(level - 150, 0)" }).waitFor();
+        // In the other direction, a click in the plain form moves to the source.
+        await plain.locator(".view-line", { hasText: '<data id="docked"' }).click();
+        await window.until(async () => (await window.caretLine(0)).includes('<data id="docked"'));
+    });
+
+    stage.test("a system with errors is not translated; the message leads to the error", broken, async (window) => {
         await window.openFile("main.xml");
         await window.running();
         await window.run("AS2FM: Translate to JANI");
@@ -57,7 +77,7 @@ export function systems(stage: Stage): void {
         assert.ok(!fs.existsSync(path.join(window.folder, "main.jani")));
     });
 
-    stage.test("the lens of a system with errors counts them and leads to the first one", sample, async (window) => {
+    stage.test("the lens of a system with errors counts them and leads to the first one", broken, async (window) => {
         await window.openFile("main.xml");
         await window.running();
         const lens = window.page.locator(".codelens-decoration a", {
@@ -85,6 +105,19 @@ export function systems(stage: Stage): void {
         const file = path.join(window.folder, "nodes/battery.ascxml");
         fs.writeFileSync(file, fs.readFileSync(file, "utf8").replace("levle", "level"));
         await window.page.locator(".codelens-decoration a", { hasText: "Translate to JANI" }).waitFor();
+    });
+
+    stage.test("the command Check Workspace runs a task and marks its findings", broken, async (window) => {
+        await window.openFile("main.xml");
+        await window.running();
+        await window.run("AS2FM: Check Workspace");
+        await window.page.locator(".xterm-rows", { hasText: "9 files checked: 1 error" }).waitFor();
+        await window.screenshot("task");
+        // The editor and the task find the same problem, and it is shown once.
+        await window.run("View: Focus Problems");
+        const rows = window.page.locator(".markers-panel .monaco-list-row", { hasText: "there is no variable" });
+        await rows.first().waitFor();
+        await window.becomes(() => rows.count(), 1);
     });
 
     const configured = () => {
@@ -136,41 +169,6 @@ export function systems(stage: Stage): void {
         await boxes.first().waitFor();
         await window.screenshot("unicode");
         await window.becomes(() => boxes.count(), 1);
-    });
-
-    stage.test(
-        "plain SCXML beside its source follows the caret and edits",
-        () => sample(MEND),
-        async (window) => {
-            await window.openFile("battery.ascxml");
-            await window.running();
-            await window.run("AS2FM: Show Plain SCXML");
-            await window.page.locator('.tab[data-resource-name="battery (plain).scxml"]').waitFor();
-            const plain = window.page.locator(".editor-group-container").nth(1);
-            await plain.locator(".view-line", { hasText: "Math.max" }).waitFor();
-            await window.goBehind("nodes/battery.ascxml", 'location="docked');
-            await plain.locator(".view-line", { hasText: "docked" }).first().waitFor();
-            await window.screenshot("plain");
-            await window.goBehind("nodes/battery.ascxml", "Math.max(level - 1");
-            await window.type("5");
-            await plain.locator(".view-line", { hasText: "Math.max(level - 150, 0)" }).waitFor();
-            // In the other direction, a click in the plain form moves to the source.
-            await plain.locator(".view-line", { hasText: '<data id="docked"' }).click();
-            await window.until(async () => (await window.caretLine(0)).includes('<data id="docked"'));
-        },
-    );
-
-    stage.test("the command Check Workspace runs a task and marks its findings", sample, async (window) => {
-        await window.openFile("main.xml");
-        await window.running();
-        await window.run("AS2FM: Check Workspace");
-        await window.page.locator(".xterm-rows", { hasText: "9 files checked: 1 error" }).waitFor();
-        await window.screenshot("task");
-        // The editor and the task find the same problem, and it is shown once.
-        await window.run("View: Focus Problems");
-        const rows = window.page.locator(".markers-panel .monaco-list-row", { hasText: "there is no variable" });
-        await rows.first().waitFor();
-        await window.becomes(() => rows.count(), 1);
     });
 
     stage.test("migration shows the changes and applies them", oldSystem, async (window) => {

@@ -3,43 +3,36 @@ import assert from "node:assert/strict";
 import * as fs from "node:fs";
 import * as path from "node:path";
 import type { Locator } from "playwright-core";
-import { MEND, sample, type Stage } from "./support/stage";
+import { MEND, sample, SharedFolder, type Stage } from "./support/stage";
 import type { Window } from "./support/window";
 import { write } from "./support/workbench";
 
 export function verification(stage: Stage): void {
     stage.use();
+    const mended = new SharedFolder(() => sample(MEND));
 
-    stage.test(
-        "a sentence becomes a verified property",
-        () => sample(MEND),
-        async (window) => {
-            await window.openFile("main.xml");
-            await window.running();
-            await window.runUntilAsked("AS2FM: New Property…", "A happens at some time");
-            const choice = window.page.locator(".quick-input-widget .monaco-list-row");
-            await window.screenshot("new-property");
-            await choice.filter({ hasText: "A happens at some time" }).first().click();
-            await choice.filter({ hasText: "a message is published on" }).first().click();
-            await window.answer("within how many seconds");
-            await lens(window, "Verify").first().waitFor();
-            await window.until(() => fs.readFileSync(path.join(window.folder, "main.xml"), "utf8").includes('"xml"'));
-            await lens(window, "Verify").last().click();
-            await hint(window, "existence", "=\\s[01].*no\\sexpectation\\sset").waitFor();
-        },
-    );
+    stage.test("a sentence becomes a verified property", mended, async (window) => {
+        await window.openFile("main.xml");
+        await window.running();
+        await window.runUntilAsked("AS2FM: New Property…", "A happens at some time");
+        const choice = window.page.locator(".quick-input-widget .monaco-list-row");
+        await window.screenshot("new-property");
+        await choice.filter({ hasText: "A happens at some time" }).first().click();
+        await choice.filter({ hasText: "a message is published on" }).first().click();
+        await window.answer("within how many seconds");
+        await lens(window, "Verify").first().waitFor();
+        await window.until(() => fs.readFileSync(path.join(window.folder, "main.xml"), "utf8").includes('"xml"'));
+        await lens(window, "Verify").last().click();
+        await hint(window, "existence", "=\\s[01].*no\\sexpectation\\sset").waitFor();
+    });
 
-    stage.test(
-        "a lens verifies a property and shows the result",
-        () => sample(MEND),
-        async (window) => {
-            await window.openFile("properties.jani");
-            await window.running();
-            await lens(window, "Verify").nth(1).click();
-            await hint(window, "never_empty", "=\\s1,\\sexact,\\sno\\sexpectation\\sset").waitFor();
-            await window.screenshot("verified");
-        },
-    );
+    stage.test("a lens verifies a property and shows the result", mended, async (window) => {
+        await window.openFile("properties.jani");
+        await window.running();
+        await lens(window, "Verify").nth(1).click();
+        await hint(window, "never_empty", "=\\s1,\\sexact,\\sno\\sexpectation\\sset").waitFor();
+        await window.screenshot("verified");
+    });
 
     stage.test("the Test Explorer runs properties and shows their results", late, async (window) => {
         await window.openFile("properties.jani");

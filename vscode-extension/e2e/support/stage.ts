@@ -3,19 +3,35 @@ import assert from "node:assert/strict";
 import * as fs from "node:fs";
 import * as path from "node:path";
 import { setTimeout as wait } from "node:timers/promises";
-import { after, afterEach, before, test } from "node:test";
+import { after, before, test } from "node:test";
 import { inspect, isDeepStrictEqual } from "node:util";
 import { INSTALLATION_TIMEOUT_MS, type Window } from "./window";
 import { EXTENSION } from "./paths";
-import { temporaryFolder, Workbench, type Options } from "./workbench";
+import { temporaryFolder, Workbench, write, type Options } from "./workbench";
 
 /** The time limit for compiling the kernel, in ms. It only prevents an endless wait. */
 const KERNEL_TIMEOUT_MS = 600_000;
+
+/**
+ * A folder for consecutive tests, which are then done in the same page, because a page takes longer to open than most
+ * tests. Each of them starts with the same files, without open editors, views of the panel, and notifications.
+ */
+export class SharedFolder {
+    constructor(readonly make: () => string) {}
+}
+
+/** A page that the next test with the same folder uses again. */
+interface SharedPage {
+    readonly folder: SharedFolder;
+    readonly window: Window;
+    readonly files: ReadonlyMap<string, Buffer>;
+}
 
 /** A workbench that the groups of tests share. Its home folder contains the server's environment. */
 export class Stage {
     private running: Workbench | undefined;
     private options: Options = {};
+    private shared: SharedPage | undefined;
     home: string | undefined;
 
     constructor() {
@@ -34,9 +50,14 @@ export class Stage {
             if (installs && !(this.home !== undefined && hasKernel(this.home))) await this.install();
             await this.start(options);
         });
-        afterEach(async () => {
-            await this.running?.leave();
+        after(async () => {
+            await this.leave();
         });
+    }
+
+    private async leave(): Promise<void> {
+        this.shared = undefined;
+        await this.running?.leave();
     }
 
     private async start(options: Options): Promise<void> {
@@ -68,10 +89,10 @@ export class Stage {
     }
 
     /**
-     * A test with a window, whose final picture is saved. On a busy machine, a workbench may lose a key. So a test that
-     * fails is repeated once, in a new page.
+     * A test with a window. On a busy machine, a workbench may lose a key. So a test that fails is repeated once, in a
+     * new page.
      */
-    test(name: string, folder: () => string, run: (window: Window) => Promise<void>): void {
+    test(name: string, folder: SharedFolder | (() => string), run: (window: Window) => Promise<void>): void {
         test(name, async () => {
             try {
                 await this.attempt(name, folder, run);
@@ -82,15 +103,34 @@ export class Stage {
         });
     }
 
-    private async attempt(name: string, folder: () => string, run: (window: Window) => Promise<void>): Promise<void> {
-        const window = await this.workbench.open(folder());
+    private async attempt(
+        name: string,
+        folder: SharedFolder | (() => string),
+        run: (window: Window) => Promise<void>,
+    ): Promise<void> {
+        let window: Window | undefined;
         try {
+            window = await this.open(folder);
             await run(window);
         } catch (error) {
-            await window.screenshot(`failed-${name.replaceAll(/\W+/g, "-")}`);
+            await window?.screenshot(`failed-${name.replaceAll(/\W+/g, "-")}`);
+            this.shared = undefined;
             await this.workbench.forget();
             throw error;
         }
+    }
+
+    private async open(folder: SharedFolder | (() => string)): Promise<Window> {
+        if (this.shared?.folder === folder) {
+            await this.shared.window.closeAll();
+            restore(this.shared.window.folder, this.shared.files);
+            return this.shared.window;
+        }
+        await this.leave();
+        if (!(folder instanceof SharedFolder)) return await this.workbench.open(folder());
+        const place = folder.make();
+        this.shared = { folder, window: await this.workbench.open(place), files: contents(place) };
+        return this.shared.window;
     }
 }
 
@@ -107,6 +147,25 @@ function hasKernel(home: string): boolean {
     const environments = path.join(home, "data/data/User/globalStorage/as2fm-lsp.as2fm/environments");
     if (!fs.existsSync(environments)) return false;
     return fs.readdirSync(environments).some((name) => fs.existsSync(path.join(environments, name, "kernel.json")));
+}
+
+/** The files of a folder, by their paths in it. */
+function contents(folder: string): Map<string, Buffer> {
+    const names = fs.readdirSync(folder, { recursive: true, encoding: "utf8" });
+    const files = names.filter((name) => fs.statSync(path.join(folder, name)).isFile());
+    return new Map(files.map((name) => [name, fs.readFileSync(path.join(folder, name))]));
+}
+
+/** Gives the files of a folder the contents that they had, and removes all others. */
+function restore(folder: string, files: ReadonlyMap<string, Buffer>): void {
+    for (const [name, now] of contents(folder)) {
+        const before = files.get(name);
+        if (before === undefined) fs.rmSync(path.join(folder, name));
+        else if (!now.equals(before)) fs.writeFileSync(path.join(folder, name), before);
+    }
+    for (const [name, before] of files) {
+        if (!fs.existsSync(path.join(folder, name))) write(path.join(folder, name), before);
+    }
 }
 
 /** The sample as the walkthrough writes it, with an error. */

@@ -4,6 +4,7 @@
 import assert from "node:assert/strict";
 import * as fs from "node:fs";
 import * as path from "node:path";
+import { setTimeout as wait } from "node:timers/promises";
 import { isDeepStrictEqual } from "node:util";
 import type { Frame, Locator, Page } from "playwright-core";
 import { OUTPUT, VERSION } from "./paths";
@@ -125,6 +126,22 @@ export class Window {
         await this.goTo(line, column + text.length);
     }
 
+    /** Closes what a test has opened: editors, without saving them, the panel, and notifications. */
+    async closeAll(): Promise<void> {
+        const { page } = this;
+        await this.press("Escape", "Escape");
+        const tabs = page.locator(".editor-group-container .tab");
+        const discard = page.locator(".monaco-dialog-box").getByRole("button", { name: "Don't Save" });
+        await this.until(async () => {
+            if ((await tabs.count()) === 0) return true;
+            if (await discard.isVisible()) await discard.click();
+            else await this.run("View: Close All Editors");
+            return (await tabs.count()) === 0;
+        });
+        if (await page.locator(".part.panel .composite.panel").isVisible()) await this.run("View: Hide Panel");
+        if (await this.notification("").first().isVisible()) await this.run("Notifications: Clear All Notifications");
+    }
+
     async save(): Promise<void> {
         await this.page.keyboard.press("Control+S");
         await this.page.locator(".tab.active:not(.dirty)").first().waitFor();
@@ -202,14 +219,7 @@ export class Window {
             const value = await get();
             if (value) return value;
             if (Date.now() > end) throw new Error(`still not: ${get.toString()}`);
-            await this.page.waitForFunction(
-                () =>
-                    new Promise((resolve) =>
-                        requestAnimationFrame(() => {
-                            resolve(true);
-                        }),
-                    ),
-            );
+            await wait(INTERVAL_MS);
         }
     }
 
@@ -271,6 +281,9 @@ export const TIMEOUT_MS = 120_000;
 
 /** The time limit for the installation of the server, in ms. Creating an environment may take minutes. */
 export const INSTALLATION_TIMEOUT_MS = 300_000;
+
+/** The time between two looks at a condition, in ms. A look at each frame would take a third of a core. */
+const INTERVAL_MS = 50;
 
 /** The time after which an action is repeated if its result is not visible, in ms. */
 const REPETITION_MS = 20_000;

@@ -242,7 +242,7 @@ export function temporaryFolder(name: string): string {
     return folder;
 }
 
-export function write(file: string, text: string): void {
+export function write(file: string, text: string | Buffer): void {
     fs.mkdirSync(path.dirname(file), { recursive: true });
     fs.writeFileSync(file, text);
 }
