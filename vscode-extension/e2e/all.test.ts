@@ -10,7 +10,7 @@ import { serverLifeCycle } from "./serverLifeCycle";
 import { pictures } from "./pictures";
 import { restricted } from "./restricted";
 import { systems } from "./systems";
-import { themes } from "./themes";
+import { walkthroughPictures } from "./themes";
 import { loneTrees } from "./trees";
 import { verification } from "./verification";
 import { withoutPython } from "./withoutPython";
@@ -45,7 +45,7 @@ describe("walkthrough and templates", () => {
     walkthrough(stage);
 });
 describe("themes", () => {
-    themes(stage);
+    walkthroughPictures(stage);
 });
 describe("server life cycle", () => {
     serverLifeCycle(stage);

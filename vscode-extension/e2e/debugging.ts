@@ -4,6 +4,7 @@ import * as fs from "node:fs";
 import * as path from "node:path";
 import type { Frame, Locator } from "playwright-core";
 import { MEND, sample, type Stage } from "./support/stage";
+import { themes } from "./support/themes";
 import type { Window } from "./support/window";
 import { ROOT } from "./support/paths";
 import { temporaryFolder, write } from "./support/workbench";
@@ -11,9 +12,11 @@ import { temporaryFolder, write } from "./support/workbench";
 const PROPERTY = "never_placed_empty";
 
 /** A copy of the robot that drops the block. The configuration leaves the system to the active file. */
-function robot(attributes: object): string {
-    const folder = temporaryFolder("robot");
+function robot(attributes: object, theme?: string): string {
+    const folder = path.join(temporaryFolder("robot"), "assembly_robot");
     fs.cpSync(path.join(ROOT, "examples/assembly_robot"), folder, { recursive: true });
+    if (theme !== undefined)
+        write(path.join(folder, ".vscode/settings.json"), JSON.stringify({ "workbench.colorTheme": theme }));
     const configuration = { type: "as2fm", request: "launch", name: "Debug", ...attributes };
     const configurations = { version: "0.2.0", configurations: [configuration] };
     write(path.join(folder, ".vscode/launch.json"), JSON.stringify(configurations));
@@ -51,52 +54,58 @@ function withBlackboard(): string {
 
 export function debugging(stage: Stage): void {
     stage.use();
-    const dropping = () => robot({ property: PROPERTY, against: 1 });
     const fromStart = () => robot({ seed: 3 });
 
-    stage.test("F5 goes to the dropped block, and back to where chance decides otherwise", dropping, async (window) => {
-        const { page } = window;
-        await window.openFile("arm.ascxml");
-        await window.running();
-        await window.goBehind("arm.ascxml", '<target id="moving">');
-        await page.keyboard.press("F9");
-        await page.locator(".codicon-debug-breakpoint, .codicon-debug-breakpoint-unverified").first().waitFor();
-        await window.openFile("main_with_bug.xml");
-        await startRun(window);
-        const frame = page
-            .locator(".debug-call-stack .monaco-list-row", { hasText: "Arm: <target> by chance" })
-            .first();
-        const choices = choicesOf(window);
+    for (const [look, theme] of themes("light", "light", "dark")) {
+        const dropping = () => robot({ property: PROPERTY, against: 1 }, theme);
+        stage.test(
+            `F5 goes to the dropped block, and back to where chance decides otherwise, ${look}`,
+            dropping,
+            async (window) => {
+                const { page } = window;
+                await window.openFile("arm.ascxml");
+                await window.running();
+                await window.goBehind("arm.ascxml", '<target id="moving">');
+                await page.keyboard.press("F9");
+                await page.locator(".codicon-debug-breakpoint, .codicon-debug-breakpoint-unverified").first().waitFor();
+                await window.openFile("main_with_bug.xml");
+                await startRun(window);
+                const frame = page
+                    .locator(".debug-call-stack .monaco-list-row", { hasText: "Arm: <target> by chance" })
+                    .first();
+                const choices = choicesOf(window);
 
-        await makeSpace(window);
+                await makeSpace(window);
 
-        // The run stops before the arm drops the block.
-        await frame.waitFor();
-        await page.locator('.tab.active[data-resource-name="arm.ascxml"]').waitFor();
-        await window.editor
-            .locator(".view-line", { hasText: /holding\s=\strue/ })
-            .first()
-            .waitFor();
-        await choices.getByText("is not decided yet").waitFor();
-        await choices.locator(".monaco-list-row", { hasText: "way := 2, Arm enters" }).first().waitFor();
-        await window.screenshot("debugging");
+                // The run stops before the arm drops the block.
+                await frame.waitFor();
+                await page.locator('.tab.active[data-resource-name="arm.ascxml"]').waitFor();
+                await window.editor
+                    .locator(".view-line", { hasText: /holding\s=\strue/ })
+                    .first()
+                    .waitFor();
+                await choices.getByText("is not decided yet").waitFor();
+                await choices.locator(".monaco-list-row", { hasText: "way := 2, Arm enters" }).first().waitFor();
+                await window.screenshot(`debugging-${look}`);
 
-        // After a turn it is dropped. Backwards, the run stops where chance decides.
-        await button(window, "Step Over").click();
-        await frame.waitFor({ state: "detached" });
-        await button(window, "Reverse").click();
-        await frame.waitFor();
+                // After a turn it is dropped. Backwards, the run stops where chance decides.
+                await button(window, "Step Over").click();
+                await frame.waitFor({ state: "detached" });
+                await button(window, "Reverse").click();
+                await frame.waitFor();
 
-        // The arm keeps the block, and the property holds to the end.
-        await choices.getByText("way := 2, Arm enters").first().click();
-        await choices.getByText("chosen by the user").first().waitFor();
-        await page.keyboard.press("F5");
-        await choices.getByText(`The property ${PROPERTY} holds in this run.`).waitFor();
-        await page.locator(".debug-call-stack").getByText("Paused on exception").first().waitFor();
-        await choices.locator(".monaco-list-row").first().waitFor({ state: "detached" });
-        await window.screenshot("debugging-choice");
-        await stop(window);
-    });
+                // The arm keeps the block, and the property holds to the end.
+                await choices.getByText("way := 2, Arm enters").first().click();
+                await choices.getByText("chosen by the user").first().waitFor();
+                await page.keyboard.press("F5");
+                await choices.getByText(`The property ${PROPERTY} holds in this run.`).waitFor();
+                await page.locator(".debug-call-stack").getByText("Paused on exception").first().waitFor();
+                await choices.locator(".monaco-list-row").first().waitFor({ state: "detached" });
+                await window.screenshot("debugging-choice");
+                await stop(window);
+            },
+        );
+    }
 
     stage.test("F5 on a tree without a system runs it with the mocks beside it", loneTree, async (window) => {
         const { page } = window;
@@ -127,51 +136,54 @@ export function debugging(stage: Stage): void {
         await stop(window);
     });
 
-    stage.test("the timeline shows the run, and a click moves the debugger", fromStart, async (window) => {
-        const { page } = window;
-        await start(window, "main_with_bug.xml");
-        await page.keyboard.press("F5");
-        await choicesOf(window).getByText("The property block_placed holds in this run.").waitFor();
-        await page.locator(".panel .composite-bar .action-label", { hasText: "Timeline of the Run" }).click();
-        const timeline = await window.picture(".drawing > svg");
-        for (const lane of ["Arm", "PickUp", "MoveToGoal", "Place"])
-            await timeline.locator(".names text", { hasText: lane }).first().waitFor();
-        const end = await stepOf(timeline);
-        await choicesOf(window).getByText(`step ${end},`).waitFor();
-        await timeline.locator(".event[data-step]").first().waitFor();
-        await window.screenshot("timeline");
+    for (const [look, theme] of themes("light", "light", "dark")) {
+        const themed = () => robot({ seed: 3 }, theme);
+        stage.test(`the timeline shows the run, and a click moves the debugger, ${look}`, themed, async (window) => {
+            const { page } = window;
+            await start(window, "main_with_bug.xml");
+            await page.keyboard.press("F5");
+            await choicesOf(window).getByText("The property block_placed holds in this run.").waitFor();
+            await page.locator(".panel .composite-bar .action-label", { hasText: "Timeline of the Run" }).click();
+            const timeline = await window.picture(".drawing > svg");
+            for (const lane of ["Arm", "PickUp", "MoveToGoal", "Place"])
+                await timeline.locator(".names text", { hasText: lane }).first().waitFor();
+            const end = await stepOf(timeline);
+            await choicesOf(window).getByText(`step ${end},`).waitFor();
+            await timeline.locator(".event[data-step]").first().waitFor();
+            await window.screenshot(`timeline-${look}`);
 
-        // A click beside all events goes to the time there.
-        const rows = timeline.locator(".rows");
-        const { width } = await boxOf(rows);
-        await rows.click({ position: { x: width / 2, y: 3 } });
-        const step = await window.until(async () => [await stepOf(timeline)].find((step) => step !== end));
-        assert.ok(step > 0 && step < end, `step ${step} of ${end}`);
-        await choicesOf(window).getByText(`step ${step},`).waitFor();
-        await rows.press("ArrowLeft");
-        await choicesOf(window)
-            .getByText(`step ${step - 1},`)
-            .waitFor();
+            // A click beside all events goes to the time there.
+            const rows = timeline.locator(".rows");
+            const { width } = await boxOf(rows);
+            await rows.click({ position: { x: width / 2, y: 3 } });
+            const step = await window.until(async () => [await stepOf(timeline)].find((step) => step !== end));
+            assert.ok(step > 0 && step < end, `step ${step} of ${end}`);
+            await choicesOf(window).getByText(`step ${step},`).waitFor();
+            await rows.press("ArrowLeft");
+            await choicesOf(window)
+                .getByText(`step ${step - 1},`)
+                .waitFor();
 
-        // A selected stretch is exported.
-        const { x, y } = await boxOf(rows);
-        await page.keyboard.down("Shift");
-        await page.mouse.move(x + width / 4, y + 3);
-        await page.mouse.down();
-        await page.mouse.move(x + width / 2, y + 3, { steps: 4 });
-        await page.mouse.up();
-        await page.keyboard.up("Shift");
-        await timeline.locator(".selected-stretch").waitFor();
-        await timeline.getByRole("button", { name: "Export the selection, or everything, as CSV" }).click();
-        const file = path.join(window.folder, "main_with_bug.run.csv");
-        const input = page.locator(".quick-input-widget:visible input[type=text]").first();
-        await window.until(async () => (await input.inputValue()) === file);
-        await window.press("Enter");
-        const text = await window.until(() => (fs.existsSync(file) ? fs.readFileSync(file, "utf8") : ""));
-        const lines = text.split("\n");
-        assert.ok(lines.length > 10 && lines.length < end, `${lines.length} lines`);
-        await stop(window);
-    });
+            // A selected stretch is exported.
+            const { x, y } = await boxOf(rows);
+            await page.keyboard.down("Shift");
+            await page.mouse.move(x + width / 4, y + 3);
+            await page.mouse.down();
+            await page.mouse.move(x + width / 2, y + 3, { steps: 4 });
+            await page.mouse.up();
+            await page.keyboard.up("Shift");
+            await timeline.locator(".selected-stretch").waitFor();
+            await timeline.getByRole("button", { name: "Export the selection, or everything, as CSV" }).click();
+            const file = path.join(window.folder, "main_with_bug.run.csv");
+            const input = page.locator(".quick-input-widget:visible input[type=text]").first();
+            await window.until(async () => (await input.inputValue()) === file);
+            await window.press("Enter");
+            const text = await window.until(() => (fs.existsSync(file) ? fs.readFileSync(file, "utf8") : ""));
+            const lines = text.split("\n");
+            assert.ok(lines.length > 10 && lines.length < end, `${lines.length} lines`);
+            await stop(window);
+        });
+    }
 
     stage.test("pictures of the whole system follow the run", fromStart, async (window) => {
         await start(window, "main_with_bug.xml");

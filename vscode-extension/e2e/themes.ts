@@ -6,23 +6,13 @@
 
 import * as path from "node:path";
 import { MEND, sample, type Stage } from "./support/stage";
+import { themes } from "./support/themes";
 import { write } from "./support/workbench";
 
-const HIGH_CONTRAST = { "hc-dark": "Default High Contrast" };
-const THEMES =
-    process.env["AS2FM_PICTURES"] === undefined
-        ? HIGH_CONTRAST
-        : {
-              light: "Default Light Modern",
-              dark: "Default Dark Modern",
-              "hc-light": "Default High Contrast Light",
-              ...HIGH_CONTRAST,
-          };
-
-export function themes(stage: Stage): void {
+export function walkthroughPictures(stage: Stage): void {
     stage.use();
 
-    for (const [theme, name] of Object.entries(THEMES)) {
+    for (const [theme, name] of themes("hc-dark", "light", "dark", "hc-light", "hc-dark")) {
         const settings = JSON.stringify({
             "workbench.colorTheme": name,
             "workbench.secondarySideBar.defaultVisibility": "hidden",

@@ -3,30 +3,24 @@ import * as fs from "node:fs";
 import * as path from "node:path";
 import { ROOT } from "./support/paths";
 import type { Stage } from "./support/stage";
+import { themes } from "./support/themes";
 import type { Window } from "./support/window";
 import { temporaryFolder, write } from "./support/workbench";
 
 const EXAMPLE = path.join(ROOT, "examples/fetch_tree");
-/** The trees of Nav2, which may be in a folder beside the project. */
-const NAV2 = path.resolve(ROOT, "../../shared/conformance/trees/nav2");
-
-const HIGH_CONTRAST = { "hc-dark": "Default High Contrast" };
-/** All themes are looked at when pictures are taken. */
-const THEMES =
-    process.env["AS2FM_PICTURES"] === undefined
-        ? HIGH_CONTRAST
-        : { light: "Default Light Modern", dark: "Default Dark Modern", ...HIGH_CONTRAST };
+/** Trees of Nav2, which may be in a folder beside the project: a small one, and one with all kinds of its nodes. The
+ * tests in Python verify and debug all of them. */
+const NAV2 = ["follow_point.xml", "navigate_to_pose_w_replanning_and_recovery.xml"];
+const NAV2_FOLDERS = ["../../shared", "../shared"].map((shared) =>
+    path.resolve(ROOT, shared, "conformance/trees/nav2"),
+);
 
 /** Trees without mocks: those of Nav2 if they are at hand, and that of an example. */
 function trees(): string {
     const folder = temporaryFolder("trees");
-    const sources = [path.join(EXAMPLE, "fetch.xml")];
-    for (const nav2 of [NAV2, path.resolve(ROOT, "../shared/conformance/trees/nav2")])
-        if (fs.existsSync(nav2)) sources.push(...fs.readdirSync(nav2).map((name) => path.join(nav2, name)));
-    for (const source of sources) {
-        const text = fs.readFileSync(source, "utf8");
-        if (text.includes("<BehaviorTree")) fs.writeFileSync(path.join(folder, path.basename(source)), text);
-    }
+    const nav2 = NAV2_FOLDERS.flatMap((source) => NAV2.map((name) => path.join(source, name)));
+    for (const source of [path.join(EXAMPLE, "fetch.xml"), ...nav2.filter((file) => fs.existsSync(file))])
+        fs.copyFileSync(source, path.join(folder, path.basename(source)));
     return folder;
 }
 
@@ -37,9 +31,10 @@ function mocksOf(window: Window, tree: string): string {
 export function loneTrees(stage: Stage): void {
     stage.use();
 
-    stage.test("every tree alone is verified with one click and debugged with F5", trees, async (window) => {
+    stage.test("a tree alone is verified with one click and debugged with F5", trees, async (window) => {
         const { page } = window;
         for (const tree of fs.readdirSync(window.folder).filter((name) => name.endsWith(".xml"))) {
+            await window.closeAll(); // the lenses of the tree before, which are visible until those of this one come
             await window.openFile(tree);
             await window.running();
             const lens = (text: string | RegExp) => page.locator(".codelens-decoration a", { hasText: text }).first();
@@ -61,7 +56,7 @@ export function loneTrees(stage: Stage): void {
         write(path.join(folder, ".vscode/settings.json"), JSON.stringify({ "workbench.colorTheme": theme }));
         return folder;
     };
-    for (const [look, theme] of Object.entries(THEMES)) {
+    for (const [look, theme] of themes("hc-dark", "light", "dark", "hc-dark")) {
         const themed = () => example(theme);
         stage.test(`mocks are edited beside the picture, and verified again, ${look}`, themed, async (window) => {
             const { page } = window;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs the end-to-end tests with the packaged extension. An argument is a pattern for the names of tests.
 // `--measure` measures the start instead, `--measure timeline` the timeline of a long run; `--pictures` also renews the
-// pictures of the README and of the walkthrough.
+// pictures of the READMEs, of the documents and of the walkthrough.
 import { execFileSync, spawnSync } from "node:child_process";
 import * as fs from "node:fs";
 import * as path from "node:path";
@@ -15,7 +15,9 @@ if (!fs.existsSync(packaged)) throw new Error("as2fm.vsix is missing: npm run pa
 const newer = changedSince(fs.statSync(packaged).mtimeMs);
 if (newer) throw new Error(`as2fm.vsix is older than ${newer}: npm run package`);
 const out = path.join(here, "out", "e2e");
+const output = path.join(here, "out", "e2e-output");
 fs.rmSync(out, { recursive: true, force: true });
+fs.rmSync(output, { recursive: true, force: true }); // pictures of an earlier run are not those of this one
 const [first, ...others] = process.argv.slice(2);
 const measures = first === "--measure";
 const measure = others[0] === "timeline" ? "measureTimeline" : "measure";
@@ -38,9 +40,9 @@ const patterns = names.map((name) => `--test-name-pattern=${name}`);
 const env = first === "--pictures" ? { ...process.env, AS2FM_PICTURES: "yes" } : process.env;
 const done = spawnSync(process.execPath, [...options, ...patterns, file], { stdio: "inherit", env });
 if (done.status === 0 && first === "--pictures") {
-    for (const folder of ["screenshots", "walkthrough"]) {
+    for (const folder of ["screenshots", "walkthrough", "../docs/pictures"]) {
         for (const name of fs.readdirSync(path.join(here, folder))) {
-            const renewed = path.join(here, "out", "e2e-output", name);
+            const renewed = path.join(output, name);
             // With a pattern, only some pictures are taken.
             if (fs.existsSync(renewed)) fs.copyFileSync(renewed, path.join(here, folder, name));
         }
