@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Collection, Mapping
+
 from roaml.libraries import library_node
 from roaml.libraries.programs.assembly import NodeProgram, programs
 from roaml.libraries.programs.effects import (
@@ -10,16 +13,19 @@ from roaml.libraries.programs.effects import (
     ANY_ANSWER,
     Answers,
     ChildEffects,
+    Effects,
     Situation,
     constant,
     effects,
     effects_on,
 )
-from roaml.libraries.programs.statuses import FAILURE, RUNNING, SUCCESS
+from roaml.libraries.programs.statuses import FAILURE, RUNNING, SKIPPED, SUCCESS
 from roaml.model.expand import PortConstant
 from roaml.model.system import System, SystemAutomaton
+from roaml.record import replace
 
 _MACHINE = frozenset((SUCCESS, FAILURE, RUNNING))
+_NO_SUCCESS = frozenset((FAILURE, RUNNING))
 
 
 class TreeEffects:
@@ -39,6 +45,52 @@ class TreeEffects:
         if program is None:
             return ALL_EFFECTS
         return effects_on(program, self._situation(parent), parent.instance.children.index(child.instance.number))
+
+    def waits(self, node: SystemAutomaton) -> bool:
+        """Whether a node of a library never returns SUCCESS at its first tick, whatever its children return."""
+        program = _program(node)
+        if program is None:
+            return False
+        situation = self._situation(node)
+        anything = (ANY_ANSWER,) * len(situation.answers)
+        return SUCCESS not in effects(program, replace(situation, answers=anything, first=anything)).first
+
+    def time_to_success(self, system: System, node: SystemAutomaton, waits: Mapping[int, int]) -> int:
+        """The least time that passes until a node returns SUCCESS.
+
+        Args:
+            waits: number of a node -> the time for which it waits itself.
+        """
+        assert node.instance is not None
+        program, numbers = _program(node), node.instance.children
+        if program is None or SUCCESS not in self._without(node, program, ()).answers:
+            return 0
+        inside = [self._time_of_child(system, number, waits) for number in numbers]
+        own = waits.get(node.instance.number, 0)
+        children = range(len(numbers))
+        needed = [index for index in children if SUCCESS not in self._without(node, program, {index}).answers]
+        if needed:
+            in_turn = all(
+                later not in self._without(node, program, {earlier}).ticked
+                for earlier, later in itertools.pairwise(needed)
+            )
+            return own + (sum if in_turn else max)(inside[index] for index in needed)
+        is_one_needed = SUCCESS not in self._without(node, program, children).answers
+        return own + (min(inside, default=0) if is_one_needed else 0)
+
+    def _time_of_child(self, system: System, number: int, waits: Mapping[int, int]) -> int:
+        child = system.by_instance.get(number)
+        is_certain = child is not None and SKIPPED not in self._answers[number]
+        return self.time_to_success(system, child, waits) if child is not None and is_certain else 0
+
+    def _without(self, node: SystemAutomaton, program: NodeProgram, failing: Collection[int]) -> Effects:
+        """The effects of a node some of whose children never return SUCCESS."""
+        situation = self._situation(node)
+        given = (
+            _NO_SUCCESS if index in failing else answers | {SUCCESS} for index, answers in enumerate(situation.answers)
+        )
+        answers = tuple(given)
+        return effects(program, replace(situation, answers=answers, first=answers))
 
     def _of(self, system: System, automaton: SystemAutomaton) -> Answers:
         assert automaton.instance is not None

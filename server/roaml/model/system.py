@@ -18,7 +18,7 @@ from roaml.diagnostics import Symbol
 from roaml.exhaustive import assert_never
 from roaml.expr.types import BASE_TYPES, Struct, StructKind, Type
 from roaml.language import BEHAVIOR_TREE, ElementType
-from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Node, Port, library
+from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Node, Port, library, library_node
 from roaml.model.expand import Instance, NodeSource, PortConstant, PortValue, Reference, TreeUse
 from roaml.model.gaps import Act, Gap, GapAct, InterfaceAct, answers, is_interface_name
 from roaml.model.outline import (
@@ -212,7 +212,9 @@ class System(Record, frozen=True, eq=False, dict=True, weakref=True):
         return not automaton.path and self.is_library_tree and not self._deviates(automaton.outline.name)
 
     def _deviates(self, name: str) -> bool:
-        return self.is_as2fm and name in builtin_plugins() and name not in _WITHOUT_CHILDREN
+        """Whether a node has the meaning of AS2FM. Nodes without children have one meaning."""
+        node = library_node(name) if self.is_as2fm and name in builtin_plugins() else None
+        return node is not None and node.children[1] > 0
 
     def _needs_library(self, plugin: str) -> bool:
         element = BEHAVIOR_TREE.elements.get(plugin)
@@ -567,10 +569,6 @@ def may_give_variable(act: Act, name: str | None, variable: str) -> bool:
 
 
 # ---------------------------------------------------- nodes of BehaviorTree.CPP
-
-
-_WITHOUT_CHILDREN = ("AlwaysSuccess", "AlwaysFailure", "SetBlackboard")
-"""The nodes of AS2FM that do not deviate from those of BehaviorTree.CPP."""
 
 
 @functools.cache

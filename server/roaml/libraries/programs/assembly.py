@@ -207,6 +207,14 @@ class NodeProgram(Record, frozen=True, eq=False, dict=True):
         return frozenset(part.port for part in walk(self) if isinstance(part, Write))
 
     @functools.cached_property
+    def timed_ports(self) -> frozenset[str]:
+        """The ports that contain times in ms, which the program converts to ticks."""
+        values = (value for part in self.tick for value in part if isinstance(value, ast.expr))
+        calls = (call for value in values for call in ast.walk(value) if isinstance(call, ast.Call))
+        ports = (call.args[0] for call in calls if isinstance(call.func, ast.Name) and call.func.id == "ticks")
+        return frozenset(port.id for port in ports if isinstance(port, ast.Name))
+
+    @functools.cached_property
     def conditions(self) -> frozenset[str]:
         """The ports that contain scripts whose values are used as conditions."""
         scripts = (part for part in walk(self) if isinstance(part, Evaluate))

@@ -9,6 +9,7 @@ from fractions import Fraction
 
 from roaml.durations import NANOSECONDS, duration_text
 from roaml.exact_number import exact_number
+from roaml.libraries.programs.assembly import programs
 from roaml.model.machine import Declaration
 from roaml.model.syntax import Name
 from roaml.model.timing import NANOSECONDS_PER_SECOND, TimerRate, period
@@ -17,9 +18,6 @@ from roaml.record import Record
 from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, TreeContext
 from roaml.rules.support.settings import constant_settings, integer_of
-
-DURATIONS = {("Delay", "delay_msec"), ("Timeout", "msec"), ("Sleep", "msec")}
-"""The nodes of BehaviorTree.CPP that wait, each with the port that contains the time in ms."""
 
 
 def timers(context: MachineContext) -> Iterator[tuple[Declaration, Name, Fraction]]:
@@ -33,11 +31,13 @@ def timers(context: MachineContext) -> Iterator[tuple[Declaration, Name, Fractio
 
 
 def durations(context: TreeContext) -> Iterator[tuple[TreeNode, str, int]]:
-    """The waiting nodes of the trees of a system, each with its port and the time in ns. 0 is left out."""
+    """The nodes of the trees of a system whose programs measure time, each with its port and the time in ns. 0 is left
+    out."""
     seen: set[tuple[TreeNode, str]] = set()
     for node, port, text in constant_settings(context):
         name = node.plugin.value if node.plugin is not None else ""
-        if (name, port) in DURATIONS and (node, port) not in seen:
+        program = programs().get(name)
+        if program is not None and port in program.timed_ports and (node, port) not in seen:
             seen.add((node, port))
             milliseconds = integer_of(text)
             if milliseconds is not None and milliseconds > 0:

@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Severity
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.instances import instances
 
-_CONTINUING = ("Repeat", "RetryUntilSuccessful", "RetryUntilSuccesful", "SequenceWithMemory", "SequenceStar")
+CONTINUING = ("Repeat", "RetryUntilSuccessful", "RetryUntilSuccesful", "SequenceWithMemory", "SequenceStar")
 """The nodes that return RUNNING in BehaviorTree.CPP before they continue after a child that has ended at once."""
 _CHOICE = 'state `tree-semantics="behaviortree-cpp"` or `"as2fm"` in the system file or in `as2fm.toml`'
 
@@ -30,7 +30,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 def _reason(name: str, *, acts: bool) -> str:
     """How AS2FM differs; "" if it does not."""
-    if name in _CONTINUING:
+    if name in CONTINUING:
         return (
             f"after a child of `{name}` that ends at once, BehaviorTree.CPP continues at the next tick, and AS2FM in "
             "the same tick"
