@@ -64,20 +64,13 @@ def check(options: argparse.Namespace, name: str = "--check") -> int:
     """Run a check with parsed options; return the exit status. `name` is the name of the command, for error
     messages."""
     logging.basicConfig(level=logging.WARNING, format="as2fm-lsp: %(message)s")
+    misuse = _misuse(options, name)
+    if misuse:
+        return _usage(*misuse)
     stdin = options.stdin_filename
-    if not options.paths and stdin is None:
-        return _usage(f"{name} needs at least one PATH")
-    reads_input = stdin is not None or STANDARD_INPUT_PATH in options.paths
-    if stdin is not None and os.path.isdir(stdin):
-        return _usage(f"{stdin}: --stdin-filename needs the name of a file")
-    if options.fix and reads_input:
-        return _usage("--fix changes files; it cannot be used with standard input")
-    unknown = sorted({*options.select, *options.ignore} - BY_CODE.keys())
-    if unknown:
-        return _usage(*map(unknown_rule, unknown))
     paths = [path for path in options.paths if path != STANDARD_INPUT_PATH]
     texts: Mapping[str, bytes] | None = None
-    if reads_input:
+    if _reads_input(options):
         stdin, texts = named_input(STANDARD_INPUT_PATH, options)
         paths.append(stdin)
     settings, problems = find_settings(os.path.abspath(stdin or paths[0]))
@@ -106,6 +99,27 @@ def check(options: argparse.Namespace, name: str = "--check") -> int:
     except OSError as error:
         return _usage(f"{shown_path(str(error.filename))}: {error.strerror or error}")
     _write_details(result, settings, time.monotonic() - began)
+    return _reported(options, result, outputs, strict=options.warnings_as_errors or settings.warnings_as_errors)
+
+
+def _reads_input(options: argparse.Namespace) -> bool:
+    """Whether one of the files is standard input."""
+    return options.stdin_filename is not None or STANDARD_INPUT_PATH in options.paths
+
+
+def _misuse(options: argparse.Namespace, name: str) -> list[str]:
+    """The errors in the options, as messages."""
+    if not options.paths and options.stdin_filename is None:
+        return [f"{name} needs at least one PATH"]
+    if options.stdin_filename is not None and os.path.isdir(options.stdin_filename):
+        return [f"{options.stdin_filename}: --stdin-filename needs the name of a file"]
+    if options.fix and _reads_input(options):
+        return ["--fix changes files; it cannot be used with standard input"]
+    return [unknown_rule(code) for code in sorted({*options.select, *options.ignore} - BY_CODE.keys())]
+
+
+def _reported(options: argparse.Namespace, result: api.CheckResult, outputs: OutputFiles, *, strict: bool) -> int:
+    """Write the report, and return the exit status."""
     lowest = SEVERITIES[options.severity]
     failed = any(d.code == _CRASH for d in result.diagnostics)
     shown = [d for d in result.diagnostics if d.severity >= lowest or d.code == _CRASH]
@@ -117,7 +131,6 @@ def check(options: argparse.Namespace, name: str = "--check") -> int:
             entries = baseline.apply(options.baseline, entries)
         except baseline.BaselineError as error:
             return _usage(str(error))
-    strict = options.warnings_as_errors or settings.warnings_as_errors
     color = options.output is None and takes_color(sys.stdout)
     limit = Severity.WARNING if strict else Severity.ERROR
     report = CheckReport(entries, len(result.files), limit, color, not is_quiet(), len(result.ignored))
