@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
@@ -17,7 +16,6 @@ from roaml.mocks.mock import Mock, MockError, read_mock, read_mocks, unused
 from roaml.model.kinds import FileKind, kind_of
 from roaml.project.settings import Settings
 from roaml.record import Record, field, replace
-from roaml.suggest import close_names, did_you_mean
 from roaml.text import decode
 
 if TYPE_CHECKING:
@@ -65,9 +63,11 @@ class MockDeclarations(Record, frozen=True):
         """
         texts, in_file = self.texts, None if self.file is None else _text_of(self.file)
         if parameters is not None and any("$(var" in text for text in (*texts, in_file or "")):
+            from roaml.api.parametric_mocks import with_values  # noqa: PLC0415 - most mocks use no parameters
+
             known = parameters()
-            texts = tuple(_with_parameters(text, known) for text in texts)
-            in_file = None if in_file is None else _with_parameters(in_file, known)
+            texts = tuple(with_values(text, known) for text in texts)
+            in_file = None if in_file is None else with_values(in_file, known)
         mocks = tuple(read_mock(text) for text in texts)
         return mocks if in_file is None else mocks + read_mocks(in_file)
 
@@ -275,20 +275,6 @@ def _text_of(path: str) -> str:
         return required(path).decode("utf-8")
     except UnicodeDecodeError:
         raise MockError(f"{path}: not valid UTF-8; fix the encoding") from None
-
-
-def _with_parameters(text: str, parameters: Mapping[str, str]) -> str:
-    """A mock, or the text of a file with mocks, in which `$(var NAME)` is replaced."""
-    from roaml.expansion.uses import VARIABLE  # noqa: PLC0415 - a JANI model needs no languages
-
-    def value(match: re.Match[str]) -> str:
-        if match[1] not in parameters:
-            close = close_names(match[1], parameters)
-            known = did_you_mean(close) if close else "; declare it in the system file with `<parameter>`"
-            raise MockError(f"there is no parameter `{match[1]}`{known}")
-        return parameters[match[1]]
-
-    return VARIABLE.sub(value, text)
 
 
 def _missing_mocks(path: str, types: Iterable[str], messages: MockMessages) -> MockError:

@@ -55,7 +55,7 @@ NOTHING = {
     "experiment": "main --set --find --meets --assume-monotone --property --scheduler "
     "--exhaustive --slopes --max-states --max-transitions "
     "--confidence --epsilon --method --max-traces --max-steps --seed --jobs --dask --format --theme --unit "
-    "--max-time --reaction-time --ros-path --tree-semantics",
+    "--max-time --reaction-time --ros-path --tree-semantics --params-file --mock --mocks --entry --tick-rate",
     "draw": "file --machine --tree --graph --machines --theme --direction --mock --mocks --stdin-filename",
     "explain": "code",
     "format": "--check --diff",

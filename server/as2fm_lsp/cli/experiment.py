@@ -15,6 +15,7 @@ from as2fm_lsp.cli.experiment_arguments import (
     TableFormat,
     computed_options,
     expectation_in,
+    mocks_in,
     parsed,
     parser,
     units_in,
@@ -25,6 +26,7 @@ from as2fm_lsp.cli.interrupts import Interrupts
 from as2fm_lsp.cli.kernel_note import kernel_warning
 from as2fm_lsp.cli.model_arguments import UsageError, error_report, settings_of
 from as2fm_lsp.cli.output import complain, print_text
+from as2fm_lsp.cli.parameters import ParameterFileError, with_parameter_files
 from as2fm_lsp.cli.plot_files import write_plots
 from as2fm_lsp.cli.status_line import StatusLine
 from as2fm_lsp.cli.tree_semantics import semantics_of
@@ -40,7 +42,9 @@ from roaml.experiments.results import ExperimentResult
 from roaml.experiments.sweeps import SweepError
 from roaml.figures.plot import LinePlot
 from roaml.jani.property_text import PropertyTextError
+from roaml.mocks.mock import MockError
 from roaml.model.parameters import Overrides
+from roaml.project.settings import Settings
 from roaml.record import replace
 from roaml.verification.expectations import Expectation
 
@@ -54,7 +58,7 @@ def run(arguments: Sequence[str]) -> int:
             return _run(parsed(arguments), interrupts)
         except (UsageError, SweepError, KeptPointsError, PropertyTextError, api.ConstantError) as error:
             complain(str(error))
-        except (api.PathError, api.PropertyError, api.ParameterError) as error:
+        except (api.PathError, api.PropertyError, api.ParameterError, MockError) as error:
             complain(str(error))
         except (api.ModelError, api.JaniError) as error:
             print_text(render(error_report(error), Format.TEXT), stream=sys.stderr)
@@ -82,8 +86,9 @@ def _run(options: argparse.Namespace, interrupts: Interrupts) -> int:
             [expectation.name] if expectation is not None else options.property or None,
             computed,
             ros_paths=options.ros_path,
-            settings=settings_of(options.main),
+            settings=_settings(options),
             overrides=overrides,
+            mocks=mocks_in(options),
         )
         outputs = outputs_of(options, grid.files)
         if expectation is not None:
@@ -111,6 +116,13 @@ def _run(options: argparse.Namespace, interrupts: Interrupts) -> int:
         complain(f"interrupted: {len(known):,} of {len(keys):,} points are known")
         return interrupts.status
     return CLEAN if all(point.has_value for point in known) else FOUND
+
+
+def _settings(options: argparse.Namespace) -> Settings:
+    try:
+        return with_parameter_files(settings_of(options.main), options.params_file)
+    except ParameterFileError as error:
+        raise UsageError(str(error)) from None
 
 
 def _find(

@@ -12,16 +12,19 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from as2fm_lsp.cli.arguments import ArgumentParser, WordAction
+from as2fm_lsp.cli.mock_options import add_mock_options, declarations_in
 from as2fm_lsp.cli.model_arguments import UsageError
 from as2fm_lsp.cli.numbers import positive
 from as2fm_lsp.cli.times import add_reaction_time, time_of
 from as2fm_lsp.cli.tree_semantics import add_semantics
 from as2fm_lsp.cli.verify_arguments import add_sampling, expectations_in, limits_in, plot_file
 from as2fm_lsp.outputs import InputPath, OutputPath
+from roaml.api.parametric_mocks import MockTexts
 from roaml.disk import MEGABYTE, required
 from roaml.exhaustive import Vocabulary
 from roaml.experiments.grid import ExperimentOptions
 from roaml.figures.themes import AUTOMATIC, THEMES
+from roaml.model.kinds import mocks_path
 from roaml.suggest import close_names, did_you_mean
 from roaml.toml import TomlError, loads
 from roaml.verification.expectations import Expectation
@@ -34,6 +37,7 @@ examples:
   as2fm-lsp experiment model.jani --constant p=0.1:0.1:0.9 --format csv -o p.csv
   as2fm-lsp experiment main.xml --set loss=0:1/2:1/20 --exhaustive --plot loss.html
   as2fm-lsp experiment main.xml --set capacity=20:200:20 --find capacity --meets "delivered >= 0.99"
+  as2fm-lsp experiment tree.xml --set p=0.5:1:0.1 --mock 'FollowPath: $(var p) in 8 s' --mock '*: 0.9'
   as2fm-lsp experiment battery.experiment.toml
 
 A parameter has a list of values (0,0.01,1/20) or a range: 20:200:20 and 20:20:200 are the numbers from 20 to 200 in
@@ -43,7 +47,7 @@ states which.
 exit status: 0 success; 1 a point has no value, or the model has errors; 2 usage error; 3 internal error; 130
 interrupted (143 by SIGTERM)
 """
-_LISTS = ("set", "property", "plot", "unit", "ros-path")
+_LISTS = ("set", "property", "plot", "unit", "ros-path", "params-file", "mock", "entry")
 """The options that may be repeated, and are lists or tables in a file."""
 
 
@@ -66,8 +70,9 @@ def parser() -> ArgumentParser:
     add(
         "main",
         type=InputPath,
-        metavar=f"MAIN.xml|MODEL.jani|FILE{SUFFIX}",
-        help="a system, a JANI model, whose constants are its parameters, or a file with all arguments",
+        metavar=f"MAIN.xml|TREE.xml|MODEL.jani|FILE{SUFFIX}",
+        help="a system; a tree, whose mocks use the parameters; a JANI model, whose constants are its parameters; or a "
+        "file with all arguments",
     )
     add(
         "--set",
@@ -81,6 +86,9 @@ def parser() -> ArgumentParser:
     add_reaction_time(result)
     add("--ros-path", action="append", default=[], metavar="DIR", help="a folder with ROS interface packages")
     add_semantics(result)
+    add("--params-file", action="append", default=[], type=InputPath, metavar="FILE", help="sets parameters from a "
+        "parameter file of ROS 2 (YAML); may be repeated")  # fmt: skip
+    add_mock_options(result)
     add("--property", action="append", default=[], metavar="NAME", help="compute only this property; may be repeated")
     add("--find", metavar="NAME", help="find the values of this parameter for which --meets is met")
     add("--meets", metavar="'NAME >= P'", help="with --find: the expectation, with >=, <=, >, < or ==")
@@ -219,6 +227,28 @@ def expectation_in(options: argparse.Namespace) -> Expectation | None:
         )
     (expectation,) = expectations_in([options.meets])
     return expectation
+
+
+def mocks_in(options: argparse.Namespace) -> MockTexts:
+    """The mocks that the options declare; without them, those in the file beside the model, if there is one.
+
+    Raises:
+        MockError: an entry is not written as `NAME=VALUE`.
+        UsageError: mocks are declared for a JANI model, or their file is not valid UTF-8.
+        OSError: the file with mocks cannot be read.
+    """
+    declared = declarations_in(options)
+    if options.main.endswith(".jani"):
+        if not declared.is_empty:
+            raise UsageError("mocks, entries and a tick rate are for behavior trees; a JANI model has none")
+        return MockTexts()
+    beside = mocks_path(options.main)
+    file = declared.file or (beside if not declared.has_mocks and os.path.isfile(beside) else None)
+    try:
+        text = "" if file is None else required(file).decode("utf-8")
+    except UnicodeDecodeError:
+        raise UsageError(f"{file}: not valid UTF-8; fix the encoding") from None
+    return MockTexts(declared.texts, text, declared.entries, declared.rate)
 
 
 def units_in(options: argparse.Namespace) -> dict[str, str]:

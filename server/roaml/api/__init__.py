@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from roaml.api.experimenting import experiment, find_enough, grid_of
     from roaml.api.jani_files import JaniError, PathError, read_jani
     from roaml.api.migrating import SharedFileError, migrate
+    from roaml.api.parametric_mocks import MockTexts
     from roaml.api.simulating import session
     from roaml.api.systems import (
         LoadedSystem,
@@ -136,6 +137,7 @@ else:
         "roaml.api.experimenting": ("experiment", "find_enough", "grid_of"),
         "roaml.api.jani_files": ("JaniError", "PathError", "read_jani"),
         "roaml.api.migrating": ("SharedFileError", "migrate"),
+        "roaml.api.parametric_mocks": ("MockTexts",),
         "roaml.api.simulating": ("session",),
         "roaml.api.systems": (
             "LoadedSystem",
@@ -284,6 +286,7 @@ __all__ = [
     "Migration",
     "Mock",
     "MockError",
+    "MockTexts",
     "MockableLeaf",
     "Model",
     "ModelChecker",

@@ -9,8 +9,11 @@ from typing import TYPE_CHECKING
 
 from roaml.api.expanded_chances import expanded_chances
 from roaml.api.jani_files import read_jani
-from roaml.api.systems import LoadedSystem, load
+from roaml.api.mocked_systems import mock_system
+from roaml.api.parametric_mocks import MockTexts, ParametricTree
+from roaml.api.systems import LoadedSystem, load, values_of_parameters
 from roaml.api.verifying import ConstantError, as_target
+from roaml.disk import read
 from roaml.experiments.enough import Enough, enough_of, together
 from roaml.experiments.grid import ExperimentOptions, Grid, ParametricModel
 from roaml.experiments.parametric import Chances, constant_chances
@@ -20,9 +23,12 @@ from roaml.experiments.sweeps import Setting, Sweep, SweepError, settings_of, sw
 from roaml.jani.constants import with_constants
 from roaml.jani.model import Model
 from roaml.jani.selection import select
+from roaml.mocks.mock import MockError
+from roaml.model.kinds import FileKind, kind_of
 from roaml.model.parameters import NO_OVERRIDES, Overrides
 from roaml.project.settings import Settings
 from roaml.record import Record, replace
+from roaml.text import decode
 from roaml.verification.expectations import Expectation
 from roaml.verification.target import VerificationTarget, asking, target_of
 
@@ -47,24 +53,37 @@ class ParametricJani(Record, frozen=True):
         return constant_chances(self.target(fixed).model, ranges)
 
 
+NO_MOCKS = MockTexts()
+
+
 class ParametricSystem(Record, frozen=True):
-    """A system. `overrides` are those of all points."""
+    """A system. `overrides` are those of all points, and `mocks` those of leaves without a plugin."""
 
     path: str
     ros_paths: tuple[str, ...] = ()
     settings: Settings | None = None
     overrides: Overrides = NO_OVERRIDES
+    mocks: MockTexts = NO_MOCKS
 
     def target(self, setting: Setting) -> VerificationTarget:
         return as_target(self._loaded(setting))
 
     def chances(self, ranges: Mapping[str, tuple[float, float]], fixed: Setting) -> Chances | None:
+        if self.mocks.uses():
+            return None
         loaded = self._loaded(fixed)
         return expanded_chances(loaded.analysis, loaded.path, ranges)
 
     def _loaded(self, setting: Setting) -> LoadedSystem:
         overrides = replace(self.overrides, values=(*self.overrides.values, *setting))
-        return load(self.path, self.ros_paths, self.settings, overrides=overrides)
+        if not self.mocks.has_mocks:
+            return load(self.path, self.ros_paths, self.settings, overrides=overrides)
+        settings = replace(self.settings or Settings(), overrides=overrides)
+        values = values_of_parameters(self.path, self.ros_paths, settings, {}) if self.mocks.uses() else {}
+        mocked = mock_system(self.path, self.mocks.mocks(values), self.ros_paths, settings)
+        if mocked.missing:
+            raise MockError(f"{self.path}: these leaves need mocks: {', '.join(dict.fromkeys(mocked.missing))}")
+        return load(self.path, self.ros_paths, self.settings, mocked.texts, overrides)
 
 
 def experiment(
@@ -76,6 +95,7 @@ def experiment(
     ros_paths: Iterable[str] = (),
     settings: Settings | None = None,
     overrides: Overrides = NO_OVERRIDES,
+    mocks: MockTexts = NO_MOCKS,
     known: Iterable[ExperimentPoint] = (),
     jobs: int = 1,
     executor: Executor | None = None,
@@ -89,6 +109,7 @@ def experiment(
         properties: the names of the properties; all if not given.
         options: how the values are computed.
         ros_paths, settings, overrides: as for `target`.
+        mocks: the mocks of a tree without a system, which use the parameters, or of leaves of a system.
         known: points of an earlier run, which are not computed again.
         jobs: the number of processes.
         executor: computes the points instead of processes of this computer.
@@ -100,7 +121,9 @@ def experiment(
         PropertyError: a property does not exist.
         PathError, ModelError, JaniError: the model cannot be read, or has errors.
     """
-    grid = grid_of(path, sweeps, properties, options, ros_paths=ros_paths, settings=settings, overrides=overrides)
+    grid = grid_of(
+        path, sweeps, properties, options, ros_paths=ros_paths, settings=settings, overrides=overrides, mocks=mocks
+    )
     points = {(point.setting, point.name): point for point in known}
     keys = grid.keys
     points = {key: points[key] for key in keys if key in points}
@@ -120,6 +143,7 @@ def grid_of(
     ros_paths: Iterable[str] = (),
     settings: Settings | None = None,
     overrides: Overrides = NO_OVERRIDES,
+    mocks: MockTexts = NO_MOCKS,
 ) -> Grid:
     """The grid of an experiment, before its points are computed. Arguments and errors are those of `experiment`."""
     if isinstance(sweeps, Mapping):
@@ -128,17 +152,24 @@ def grid_of(
         given = sweeps_of(sweeps)
     if any(not sweep.values for sweep in given):
         raise SweepError("a parameter without values has no points")
-    model = parametric_model(path, ros_paths, settings, overrides)
+    model = parametric_model(path, ros_paths, settings, overrides, mocks)
     first = asking(model.target(tuple((sweep.name, sweep.values[0]) for sweep in given)), properties or ())
     known = first.properties
     names = tuple(p.name for p in (known if properties is None else select(known, properties, "model")))
     computed = options or ExperimentOptions()
-    return Grid(model, given, names, computed, first.files, _digest(first.files, computed, overrides))
+    return Grid(model, given, names, computed, first.files, _digest(first.files, computed, overrides, mocks, settings))
 
 
-def _digest(files: Sequence[str], options: ExperimentOptions, overrides: Overrides) -> str:
-    """The digest of the contents of files and of options."""
-    digest = hashlib.sha256(repr((options, overrides)).encode())
+def _digest(
+    files: Sequence[str],
+    options: ExperimentOptions,
+    overrides: Overrides,
+    mocks: MockTexts,
+    settings: Settings | None,
+) -> str:
+    """The digest of the contents of files, of options, and of values from outside of the files."""
+    given = () if settings is None else settings.parameters
+    digest = hashlib.sha256(repr((options, overrides, mocks, given)).encode())
     for file in files:
         with open(file, "rb") as content:
             digest.update(hashlib.sha256(content.read()).digest())
@@ -150,11 +181,19 @@ def parametric_model(
     ros_paths: Iterable[str] = (),
     settings: Settings | None = None,
     overrides: Overrides = NO_OVERRIDES,
+    mocks: MockTexts = NO_MOCKS,
 ) -> ParametricModel:
     """A model with parameters. Arguments and errors are those of `target`."""
+    if not path.endswith(".jani") and _is_tree(path):
+        return ParametricTree(path, mocks, settings or Settings(), overrides.max_time)
     if not path.endswith(".jani"):
-        return ParametricSystem(path, tuple(ros_paths), settings, overrides)
+        return ParametricSystem(path, tuple(ros_paths), settings, overrides, mocks)
     return ParametricJani(read_jani(path)[0], path)
+
+
+def _is_tree(path: str) -> bool:
+    data = read(path)
+    return isinstance(data, bytes) and kind_of(path, decode(path, data).text) is FileKind.TREE
 
 
 def find_enough(
