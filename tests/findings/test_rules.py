@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 import roaml.rules
+from checked import check_text
 from roaml.rules import RULES, document
 from roaml.rules.rule import Rule
 
@@ -39,3 +40,24 @@ def test_cases_are_collected_without_the_library() -> None:
     output = subprocess.run(command, capture_output=True, text=True, check=True, cwd=folder.parents[1]).stdout
     assert "test_cases.py: " in output
     assert "imported: []\n" in output
+
+
+def test_a_quotient_whose_divisor_is_zero_is_not_rounded(tmp_path: Path) -> None:
+    diagnostics, _ = check_text(
+        tmp_path,
+        """\
+<ascxml name="M" version="1.0" initial="s">
+    <datamodel>
+        <data id="counts" type="int32[7]" expr="[1, 2, 3, 4, 5, 6, 7]" />
+    </datamodel>
+    <state id="s">
+        <transition target="s">
+            <assign location="counts[0]" expr="counts[6] / 0" />
+            <assign location="counts[1]" expr="counts[6] / 2" />
+        </transition>
+    </state>
+</ascxml>
+""",
+    )
+    of_types = [d for d in diagnostics if d.code == "type-mismatch"]
+    assert [[fix.title for fix in d.fixes][:1] for d in of_types] == [[], ["Change to `Math.floor(counts[6] / 2)`"]]

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
-from roaml.expr.infer import infer
+from roaml.expr.infer import DivisionByZero, infer
 from roaml.expr.tree import ArrayLiteral, Expr, Name, Number, ObjectLiteral, String, walk
 from roaml.expr.types import Array, Scalar, ScalarKind, Struct, Type, Unknown, fits, is_kind, is_number, leaves, unwrap
 from roaml.model.initial import WrongType
@@ -15,6 +15,7 @@ from roaml.model.syntax import Expression, PortRead
 from roaml.model.value_types import TypedValue, ValueUse
 from roaml.model.vocabulary import DEFAULT_TYPES
 from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.divisors import possible_zeros
 from roaml.rules.support.retype import as_type
 from roaml.rules.support.types import phrase
 from roaml.text import Span, TextEdit
@@ -117,13 +118,18 @@ def _what(value: TypedValue) -> str:
 
 def _fixes(context: MachineContext, value: TypedValue, given: Type, required: Type, span: Span) -> Iterator[Fix]:
     """Fixes that rewrite the value, or change the type of the variable to the type of the value."""
-    if not isinstance(value.value, Expression):
+    if not isinstance(value.value, Expression) or _divides_by_zero(context, value):
         return
     is_whole_value = span == value.value.span
     if is_whole_value:
         yield from _other_value(value.value, value.use, given, required)
     if is_whole_value and is_number(given) and is_number(required) and isinstance(given, Scalar):
         yield from as_type(context, value, given.name or DEFAULT_TYPES[given.kind])
+
+
+def _divides_by_zero(context: MachineContext, value: TypedValue) -> bool:
+    """Whether a divisor is or can be 0: then another type or a rounded value does not help."""
+    return any(isinstance(p, DivisionByZero) for p in value.problems) or any(possible_zeros(context, value))
 
 
 def _other_value(value: Expression, use: ValueUse, given: Type, required: Type) -> Iterator[Fix]:
