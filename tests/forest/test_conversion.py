@@ -18,6 +18,7 @@ VERSION_3 = """<root main_tree_to_execute="Main">
             <SubTreePlus ID="Inner" target="{place}" speed="2" __autoremap="1"/>
             <SubTree ID="Inner" target="place" speed="4" __shared_blackboard="false"/>
             <Parallel success_threshold="1" failure_threshold="2"><AlwaysSuccess/><AlwaysSuccess/></Parallel>
+            <Parallel threshold="1"><AlwaysSuccess/><AlwaysSuccess/></Parallel>
         </SequenceStar>
     </BehaviorTree>
     <BehaviorTree ID="Inner"><Go target="{target}" speed="{speed}"/></BehaviorTree>
@@ -32,6 +33,7 @@ VERSION_4 = """<root BTCPP_format="4" main_tree_to_execute="Main">
             <SubTree ID="Inner" target="{place}" speed="2" _autoremap="1"/>
             <SubTree ID="Inner" target="{place}" speed="4"/>
             <Parallel success_count="1" failure_count="2"><AlwaysSuccess/><AlwaysSuccess/></Parallel>
+            <Parallel success_count="1"><AlwaysSuccess/><AlwaysSuccess/></Parallel>
         </SequenceWithMemory>
     </BehaviorTree>
     <BehaviorTree ID="Inner"><Go target="{target}" speed="{speed}"/></BehaviorTree>
