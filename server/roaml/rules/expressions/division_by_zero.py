@@ -23,4 +23,6 @@ def check(context: MachineContext) -> Iterator[Finding]:
             yield RULE.at(divisor.span, message)
 
 
-RULE = Rule("division-by-zero", Severity.WARNING, "The divisor of a division is or can be zero.", machine=check)
+RULE = Rule(
+    "division-by-zero", Severity.WARNING, "The divisor of a division is or can be zero.", machine=check, whole=True
+)
