@@ -14,7 +14,7 @@ BEGIN = "  <!-- Nodes: written by docs/build.py from server/roaml/libraries/beha
 END = "  <!-- End of the nodes -->\n"
 
 _TYPES = {"int": "int32", "unsigned": "uint32", "double": "float64", "script": "string", "NodeStatus": "string"}
-"""The type of a port in HL-SCXML, where it is no base type of that name."""
+"""The type of a port in HL-SCXML, if it differs from the type of BehaviorTree.CPP."""
 
 _REGISTERED_BY_PROGRAMS = ("PopFromQueue", "QueueSize", "EntryUpdatedAction")
 """Names that a plugin of a system may have."""

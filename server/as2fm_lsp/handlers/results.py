@@ -159,7 +159,7 @@ def verified_row(result: Result) -> Json:
 def lenses(context: Context, on: RequestedDocument, broken: Collection[str]) -> Iterator[types.CodeLens]:
     """Lenses for each property of a system that is not in `broken`, and for the system file. Results are shown in the
     hints after the names, and in the lenses only if no hints are shown."""
-    tells = not _shows_hints(context)
+    shows_words = not _shows_hints(context)
     systems = system_names(on.analysis.memberships.get(on.path, ()))
     for system, name in systems.items():
         if system in broken or not is_on_disk(system):
@@ -180,7 +180,7 @@ def lenses(context: Context, on: RequestedDocument, broken: Collection[str]) -> 
             if property_.path != on.path:
                 continue
             known = current.get(property_.name)
-            words = [result_words(current, known)] if tells and known is not None else []
+            words = [result_words(current, known)] if shows_words and known is not None else []
             title = " · ".join([f"{TITLE}{where}", *words])
             commands = [types.Command(title, VERIFY, arguments=[uri, [property_.name]])]
             commands += [] if known is None else result_commands(context, uri, property_.name, known.result)

@@ -36,7 +36,7 @@ def run(steps: T) -> T: ...
 
 
 def run(steps: Any) -> Any:
-    """The result of the computation `steps`; the value itself if it is no generator."""
+    """The result of the computation `steps`; `steps` itself if it is not a generator."""
     if not isinstance(steps, GeneratorType):
         return steps
     stack: list[Steps[Any]] = [steps]

@@ -179,8 +179,8 @@ class _Encoder:
         return _all_of(conditions)
 
     def joined(self, parts: Iterable[tuple[int, str, Sequence[Edge]]], start: int) -> Sync:
-        """A copy of a synchronisation in which further elements take part with edges, which are added. The name of an
-        action stands for equal edges."""
+        """A copy of a synchronisation in which further elements take part with edges, which are added. Equal
+        edges have the same action."""
         sync = self.model.system.syncs[start]
         participants = dict(sync.participants)
         for element, stem, loops in parts:

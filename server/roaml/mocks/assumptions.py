@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Assumed behaviour of the leaves of Nav2, for proposed mocks (docs/spec/mocks.md#proposed). The values are no
-measurements: each has a reason, and users replace it by what they know of their robot."""
+"""Assumed behaviour of the leaves of Nav2, for proposed mocks (docs/spec/mocks.md#proposed). The values were not
+measured. Each has a reason, and users replace it with what they know about their robot."""
 
 from __future__ import annotations
 

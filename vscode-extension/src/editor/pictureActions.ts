@@ -66,7 +66,7 @@ async function chooseOne(parts: readonly MenuPart[]): Promise<MenuPart | undefin
     return (await vscode.window.showQuickPick(items, { title: vscode.l10n.t("Which part?") }))?.part;
 }
 
-/** Put a question to the user. `problem` returns why a text is no answer, or an empty text. */
+/** Ask the user a question. `problem` returns why a text is not a valid answer, or an empty text. */
 async function put(
     { text, options, proposal }: PictureQuestion,
     problem: (text: string) => Promise<string | undefined>,
