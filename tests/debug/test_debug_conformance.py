@@ -38,9 +38,12 @@ def test_every_tree_of_nav2_runs_with_its_proposals(path: Path, tmp_path: Path) 
     tree.with_suffix(".mocks").write_text(api.proposed_text(path.name, api.propose_mocks(str(tree))), encoding="utf-8")
     with Client() as client:
         assert client.begin(tree)["reason"] == "entry"
-        assert client.step() == 0
+        entered = client.step()
+        assert [choice["text"] for choice in client.ask("choices")["choices"] if choice["isNext"]] == [
+            "the tree begins its next tick"
+        ]
         client.move("next")
-        assert client.step() > 0
+        assert client.step() > entered
 
 
 @pytest.mark.parametrize("folder", ["array_of_strings", "array_of_data_structs", "ros_add_int_srv_example"])

@@ -12,7 +12,7 @@ STOPPING = ("goToStep", "choose", "restartFrame", "publish", "setVariable", "set
 OTHERS = (
     *("initialize", "launch", "configurationDone", "threads", "stackTrace", "scopes", "variables", "evaluate", "pause"),
     *("setBreakpoints", "setFunctionBreakpoints", "setExceptionBreakpoints", "setDataBreakpoints", "choices", "cancel"),
-    *("timeline", "exportTimeline", "pictures"),
+    *("timeline", "exportTimeline", "pictures", "moments", "properties"),
     *("dataBreakpointInfo", "breakpointLocations", "loadedSources", "exceptionInfo", "saveSession", "restart"),
     *("source", "attach", "nothing", "modules", "events", "completions"),
 )

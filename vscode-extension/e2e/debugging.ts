@@ -10,6 +10,8 @@ import { ROOT } from "./support/paths";
 import { temporaryFolder, write } from "./support/workbench";
 
 const PROPERTY = "never_placed_empty";
+/** The position of a run, above its choices. */
+const POSITION = /step (\d+), /;
 
 /** A copy of the robot that drops the block. The configuration leaves the system to the active file. */
 function robot(attributes: object, theme?: string): string {
@@ -115,7 +117,7 @@ export function debugging(stage: Stage): void {
         await page.keyboard.press("F9");
         await page.locator(".codicon-debug-breakpoint, .codicon-debug-breakpoint-unverified").first().waitFor();
         await startRun(window);
-        await choicesOf(window).getByText("step 0, 0.000 s").first().waitFor();
+        await choicesOf(window).getByText(POSITION).first().waitFor();
         await makeSpace(window);
         await page.keyboard.press("F5");
         const stack = page.locator(".debug-call-stack .monaco-list-row");
@@ -125,14 +127,12 @@ export function debugging(stage: Stage): void {
         await stop(window);
     });
 
-    stage.test("the whole system of a tree without a system is its tree", loneTree, async (window) => {
+    stage.test("the stage of a tree without a system has its picture and the timeline", loneTree, async (window) => {
         await start(window, "fetch.xml");
-        await window.run("AS2FM: Show Whole System");
-        const tree = await window.picture('.node[data-label="FollowPath"]');
-        await tree.locator('.node[data-label="FollowPath"][data-look="idle"]').waitFor();
-        await window.screenshot("whole-tree");
-        await window.becomes(() => window.page.locator(".editor-group-container").count(), 2);
-        await window.becomes(() => window.page.locator(".tab").count(), 2);
+        await window.run("AS2FM: Open Stage");
+        const page = await window.picture('.pane-tree .node[data-label="FollowPath"][data-look="idle"]');
+        await window.screenshot("stage-tree");
+        await window.becomes(() => page.locator(".pane:visible").count(), 3);
         await stop(window);
     });
 
@@ -185,51 +185,76 @@ export function debugging(stage: Stage): void {
         });
     }
 
-    stage.test("pictures of the whole system follow the run", fromStart, async (window) => {
-        await start(window, "main_with_bug.xml");
-        await window.run("AS2FM: Show Whole System");
-        const machines = await window.picture('.node[data-label="moving"]');
-        const tree = await window.picture('.node[data-label="RetryUntilSuccessful"]');
-        const graph = await window.picture('.node[data-label="/arm/command"]');
-        assert.equal(new Set([machines, tree, graph]).size, 3);
-        // The arm is drawn first; states of other machines may have the same names.
-        const lookOf = (state: string) =>
-            machines.locator(`.node[data-label="${state}"]`).first().getAttribute("data-look");
-        await window.until(async () => (await lookOf("still")) === "active");
+    stage.test(
+        "the stage follows the run, plays it, and moves it",
+        () => robot({ property: PROPERTY, against: 1 }),
+        async (window) => {
+            await window.openFile("main_with_bug.xml");
+            await window.running();
+            await startRun(window);
+            const end = await stepAfter(window, "does not hold in this run");
+            await window.run("AS2FM: Open Stage");
+            const page = await window.picture(".pane-ros .node");
+            const lookOf = (pane: string, label: string) =>
+                page.locator(`.pane-${pane} .node[data-label="${label}"]`).first().getAttribute("data-look");
+            // The violation is marked in the timeline, and the property is said.
+            await page.locator(".pane-timeline .mark").first().waitFor({ state: "attached" });
+            await page.locator(".pane-properties .verdict-failed").first().waitFor();
+            await page.getByText("Curves").click();
+            await page.getByLabel("Arm.way").check();
+            await page.getByLabel("/arm/command.data").check();
+            await page.locator(".pane-timeline .curve").first().waitFor({ state: "attached" });
+            await page.getByText("Curves").click();
+            await window.screenshot("stage-violated");
 
-        // PickUp has sent its command to the arm.
-        await goToStep(window, 40);
-        await tree.locator('.node[data-label="PickUp"]:is([data-look="running"], [data-look="next"])').waitFor();
-        await graph.locator("[data-edges].active").first().waitFor({ state: "attached" });
-        await window.screenshot("whole-system");
+            // A click on a message goes to where it is received: it is lit in the graph, and its line in the text.
+            await page.getByRole("button", { name: "Steps", exact: true }).click();
+            const messages = page.locator(
+                '.pane-timeline .event[data-step]:has(title:text("/arm/command: MoveToGoal"))',
+            );
+            await messages.first().locator(".pulse").click({ force: true });
+            await page.locator('.pane-ros .node[data-label="/arm/command"][data-look="message"]').waitFor();
+            await page.locator(".pane-ros [data-edges].active").first().waitFor({ state: "attached" });
+            await window.becomes(() => lookOf("system", "still"), "next");
+            await window.page.locator('.tab.active[data-resource-name="arm.ascxml"]').waitFor();
+            await window.screenshot("stage-message");
 
-        // The arm moves, after it has received the second command.
-        await goToStep(window, 200);
-        await window.until(async () => (await lookOf("moving")) !== null);
-        await goToStep(window, 0);
-        await window.until(async () => (await lookOf("still")) === "active");
-        await window.becomes(() => lookOf("moving"), null);
-        await stop(window);
-        await window.until(async () => (await lookOf("still")) === null);
-        await window.becomes(() => tree.locator("[data-look]").count(), 0);
-    });
+            // Played from there, it stops where the property fails.
+            await page.getByRole("button", { name: "Play" }).click();
+            await page.getByRole("button", { name: "Pause" }).waitFor();
+            await page.getByLabel("Speed").selectOption({ label: "64 steps/s" });
+            await page.getByRole("button", { name: "Play" }).click();
+            await window.until(async () => (await stepOf(page)) === end);
+            await choicesOf(window).getByText(`step ${end},`).first().waitFor();
+            await stop(window);
+            await page.getByText("No run is being debugged.").first().waitFor();
+            await window.becomes(() => page.locator(".node[data-look]").count(), 0);
+        },
+    );
 
     stage.test("a message that is published by hand is received", fromStart, async (window) => {
         await start(window, "main_with_bug.xml");
         const choices = choicesOf(window);
+        const first = await stepAfter(window, "is not decided yet");
         await publish(window, "/arm/command", "{data: 2}");
         await choices.getByText("changed by the user").first().waitFor();
         await choices.getByText("The property block_placed is not decided yet.").waitFor();
         await choices.locator(".monaco-list-row", { hasText: "Arm receives a message" }).first().click();
-        await choices.getByText("step 2, 0.000 s").first().waitFor();
+        await choices
+            .getByText(`step ${first + 2},`)
+            .first()
+            .waitFor();
         await choices.locator(".monaco-list-row", { hasText: "Arm receives a message" }).waitFor({ state: "detached" });
         await window.screenshot("by-hand");
 
         // Before the change, the run is one of the model again.
         await button(window, "Step Back").click();
-        await choices.getByText("step 1, 0.000 s").first().waitFor();
+        await choices
+            .getByText(`step ${first + 1},`)
+            .first()
+            .waitFor();
         await button(window, "Step Back").click();
-        await choices.getByText("step 0, 0.000 s").first().waitFor();
+        await choices.getByText(`step ${first},`).first().waitFor();
         await choices.getByText("changed by the user").first().waitFor({ state: "detached" });
         await stop(window);
     });
@@ -241,6 +266,7 @@ export function debugging(stage: Stage): void {
             const { page } = window;
             await start(window, "main.xml");
             const choices = choicesOf(window);
+            const first = await stepAfter(window, "is not decided yet");
             await publish(window, "/hand_over");
             await choices.getByText("changed by the user").first().waitFor();
             await choices.locator(".monaco-list-row", { hasText: "Building" }).first().waitFor();
@@ -260,7 +286,10 @@ export function debugging(stage: Stage): void {
                 await input.fill("7", { timeout: 2_000 }).catch(() => undefined);
                 if (await input.isVisible()) await window.press("Enter");
             }, entry.getByText("7"));
-            await choices.getByText("step 2, 0.000 s").first().waitFor();
+            await choices
+                .getByText(`step ${first + 2},`)
+                .first()
+                .waitFor();
             await window.screenshot("blackboard");
             await stop(window);
         },
@@ -277,8 +306,15 @@ async function start(window: Window, file: string): Promise<void> {
     await window.openFile(file);
     await window.running();
     await startRun(window);
-    await choicesOf(window).getByText("step 0, 0.000 s").first().waitFor();
+    await choicesOf(window).getByText(POSITION).first().waitFor();
     await makeSpace(window);
+}
+
+/** The number of the step at which the run has stopped, after the view of choices shows a text. */
+async function stepAfter(window: Window, text: string): Promise<number> {
+    const choices = choicesOf(window);
+    await choices.getByText(text).first().waitFor();
+    return Number(POSITION.exec(await choices.getByText(POSITION).first().innerText())?.[1]);
 }
 
 /** A low window has no space for all views. */
@@ -294,12 +330,6 @@ async function stop(window: Window): Promise<void> {
 
 function choicesOf({ page }: Window): Locator {
     return page.locator(".pane").filter({ has: page.locator('.pane-header[aria-label^="Choices"]') });
-}
-
-async function goToStep(window: Window, step: number): Promise<void> {
-    await window.runUntilAsked("AS2FM: Go to Step", "number of steps");
-    await window.answer("number of steps", String(step));
-    await choicesOf(window).getByText(`step ${step},`).first().waitFor();
 }
 
 /** Sends an event by hand. `fields` are missing if the event has none. */

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /**
- * Frames while the timeline of a long run scrolls and zooms: the time between them, the time in which the view handles
+ * Frames while the timeline of a long run scrolls and zooms, and while the stage plays the run: the time between them, the time in which the view handles
  * the input and lays out the page, and the CPU time of its process. Only the CPU time does not depend on what else the
  * machine does.
  */
@@ -31,18 +31,32 @@ if (await offer.isVisible()) await offer.click();
 await window.running();
 await page.keyboard.press("F5");
 await page.locator(".panel .composite-bar .action-label", { hasText: "Timeline of the Run" }).click();
-const timeline = await window.picture(".drawing > svg");
+let timeline = await window.picture(".drawing > svg");
 await window.run("AS2FM: Go to Step");
 await page.locator(".quick-input-widget", { hasText: "number of steps" }).waitFor();
 await window.type(String(STEPS));
 await window.press("Enter");
 await timeline.locator(`body[data-step="${STEPS}"]`).waitFor();
 
-// The whole run becomes visible, then a hundredth of it.
-await timeline.getByRole("button", { name: "Fit", exact: true }).click();
-console.log(`zooming: ${await withCpu(() => frames(timeline, { deltaX: 0, deltaY: -4, ctrlKey: true }))}`);
-console.log(`scrolling: ${await withCpu(() => frames(timeline, { deltaX: -40, deltaY: 0, ctrlKey: false }))}`);
+await measure("timeline");
+
+await window.run("AS2FM: Open Stage");
+timeline = await window.picture(".pane-timeline .drawing > svg");
+await measure("stage");
+await timeline.getByLabel("Speed").selectOption({ label: "64 steps/s" });
+await timeline.locator(".play").click();
+await timeline.locator(`body:not([data-step="${STEPS}"])`).waitFor();
+console.log(`stage, playing: ${await withCpu(() => frames(timeline))}`);
 await workbench.stop();
+
+/** The whole run becomes visible, then a hundredth of it. */
+async function measure(name: string): Promise<void> {
+    await timeline.getByRole("button", { name: "Fit", exact: true }).last().click();
+    const zoom = { deltaX: 0, deltaY: -4, ctrlKey: true };
+    console.log(`${name}, zooming: ${await withCpu(() => frames(timeline, zoom))}`);
+    const scroll = { deltaX: -40, deltaY: 0, ctrlKey: false };
+    console.log(`${name}, scrolling: ${await withCpu(() => frames(timeline, scroll))}`);
+}
 
 /** The text of a measurement with the CPU time of the process and of the main thread of the view, in ms for each frame. */
 async function withCpu(measured: () => Promise<string>): Promise<string> {
@@ -64,8 +78,8 @@ async function withCpu(measured: () => Promise<string>): Promise<string> {
     return `${text}; CPU for each frame ${each(before.process, after.process)} ms, main thread ${each(before.thread, after.thread)} ms`;
 }
 
-/** Sends one event of the wheel in each frame; the median and the 95th percentile of the times in ms. */
-async function frames(view: Frame, wheel: { deltaX: number; deltaY: number; ctrlKey: boolean }): Promise<string> {
+/** Sends one event of the wheel, if any, in each frame; the median and the 95th percentile of the times in ms. */
+async function frames(view: Frame, wheel?: { deltaX: number; deltaY: number; ctrlKey: boolean }): Promise<string> {
     const measured = await view.evaluate(
         ({ wheel, count }) =>
             new Promise<{ between: number[]; inside: number[] }>((resolve) => {
@@ -78,9 +92,8 @@ async function frames(view: Frame, wheel: { deltaX: number; deltaY: number; ctrl
                     between.push(begin - previous);
                     previous = begin;
                     const place = { clientX: left + width / 2, clientY: top + 5 };
-                    rows?.dispatchEvent(
-                        new WheelEvent("wheel", { bubbles: true, cancelable: true, ...place, ...wheel }),
-                    );
+                    const event = { bubbles: true, cancelable: true, ...place, ...wheel };
+                    if (wheel) rows?.dispatchEvent(new WheelEvent("wheel", event));
                     document.body.getBoundingClientRect(); // computes the layout
                     inside.push(performance.now() - begin);
                     if (between.length < count) requestAnimationFrame(frame);

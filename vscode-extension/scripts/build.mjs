@@ -26,21 +26,15 @@ await esbuild.build({
 });
 await esbuild.build({
     ...common,
-    entryPoints: ["src/pictures/view/view.ts"],
-    outfile: "dist/view.js",
-    platform: "browser",
-    format: "iife",
-    target: "es2022",
-});
-await esbuild.build({
-    ...common,
-    entryPoints: ["src/timeline/view/timeline.ts"],
-    outfile: "dist/timeline.js",
+    entryPoints: ["src/pictures/view/view.ts", "src/timeline/view/timeline.ts", "src/stage/view/stage.ts"],
+    outdir: "dist",
+    entryNames: "[name]",
     platform: "browser",
     format: "iife",
     target: "es2022",
 });
 fs.copyFileSync(path.join(here, "src/timeline/view/timeline.css"), path.join(dist, "timeline.css"));
+fs.copyFileSync(path.join(here, "src/stage/view/stage.css"), path.join(dist, "stage.css"));
 // Pictures have the same style in the editor and in the files that the command line writes.
 const styles = [
     path.join(root, "server/roaml/figures/figure.css"),

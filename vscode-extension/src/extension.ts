@@ -14,6 +14,7 @@ import { PlainScxmlPreview } from "./editor/plainScxml";
 import { onInterpreterChange } from "./editor/pythonExtensions";
 import { ResultsView } from "./editor/results";
 import { LanguageServer } from "./editor/server";
+import { Stage } from "./editor/stage";
 import { StatusItem } from "./editor/statusItem";
 import { done, watchErrors } from "./editor/steps";
 import { Tasks } from "./editor/tasks";
@@ -45,7 +46,7 @@ export function activate(context: vscode.ExtensionContext): void {
     const tests = new PropertyTests(server, debugging, log);
     const sessions = new DebugSessions();
     const activation = new Activation();
-    const counterexamples = new Counterexamples(server, pictures);
+    const counterexamples = new Counterexamples(server, pictures, debugging);
     context.subscriptions.push(
         log,
         server,
@@ -62,7 +63,8 @@ export function activate(context: vscode.ExtensionContext): void {
         new ChoicesView(sessions, log),
         new TimelineView(context, sessions),
         new PictureActions(server, pictures),
-        new PictureActivity(sessions, pictures, server),
+        new PictureActivity(sessions, pictures),
+        new Stage(context, sessions, pictures, server, log),
         ...debugging.register(),
         watchErrors(),
     );

@@ -258,6 +258,7 @@ export interface Counterexample {
     readonly property: string;
     readonly heading: string;
     readonly verdict: string;
+    readonly seed: number;
     readonly trace: number;
     readonly expected: string;
     readonly stale: boolean;

@@ -31,7 +31,7 @@ from roaml.debugging.evaluate import WatchError
 if TYPE_CHECKING:
     from as2fm_lsp.debug.timeline import TimelineRequests
 
-BESIDE_REQUESTS = ("timeline", "exportTimeline", "pictures")
+BESIDE_REQUESTS = ("timeline", "exportTimeline", "pictures", "moments")
 """The requests of `as2fm_lsp.debug.timeline`, which is imported on their first use."""
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Requests for the possible next steps, and for a step that the user chooses."""
+"""Requests for the possible next steps, for a step that the user chooses, and for the properties of the run."""
 
 from __future__ import annotations
 
@@ -22,6 +22,7 @@ class ChoiceRequests:
             "choices": self._choices,
             "choose": self._choose,
             "saveSession": self._save_session,
+            "properties": self._properties,
         }
 
     def _choices(self, arguments: Arguments) -> Body:
@@ -46,13 +47,29 @@ class ChoiceRequests:
             ],
         }
 
+    def _properties(self, arguments: Arguments) -> Body:
+        debugger = self._session.stopped
+        sources = debugger.sources
+        return {
+            "properties": [
+                {
+                    "name": name,
+                    "text": sources.comments.get(name, ""),
+                    "verdict": verdict.value,
+                    **self._session.where(sources.property_origins.get(name)),
+                }
+                for name, verdict in debugger.verdicts.items()
+            ]
+        }
+
     def _choice(self, choice: Choice) -> dict[str, Any]:
         outcomes = [
             {"number": number, "text": outcome.text, "probability": outcome.probability}
             for number, outcome in enumerate(choice.outcomes, 1)
         ]
         text = {"number": choice.number, "text": choice.text, "probability": choice.probability}
-        return {**text, "outcomes": outcomes, **self._session.where(choice.origin)}
+        origin = {"isOfTranslation": choice.is_of_translation, **self._session.where(choice.origin)}
+        return {**text, "outcomes": outcomes, **origin}
 
     def _choose(self, arguments: Arguments) -> Body:
         debugger = self._session.stopped

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Requests for the timeline of the run and for the active parts of pictures, which a client shows beside the source."""
+"""Requests for what a client shows beside the source: the timeline of the run, the active parts of pictures, and the
+moments that are played."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from as2fm_lsp.debug.arguments import Arguments, RequestError
+from as2fm_lsp.debug.moments import MAX_MOMENTS, moments
 from as2fm_lsp.debug.session import Body, DebugSession, Handler
 from roaml.debugging.activity import active_edges, active_nodes
 from roaml.debugging.debugger import Debugger
@@ -17,8 +19,10 @@ from roaml.figures.svg import svg_scene
 from roaml.figures.themes import THEMES
 from roaml.jani.node import Origin
 from roaml.simulation.session import Session
+from roaml.smc.record import TraceVerdict
 from roaml.timeline import (
     Axis,
+    Mark,
     Timeline,
     View,
     draw_names,
@@ -60,6 +64,7 @@ class TimelineRequests:
             "timeline": self._show,
             "exportTimeline": self._export,
             "pictures": self._pictures,
+            "moments": self._moments,
         }
 
     def _followed(self, debugger: Debugger) -> Timeline:
@@ -72,15 +77,20 @@ class TimelineRequests:
     def _show(self, arguments: Arguments) -> Body:
         debugger = self._session.stopped
         timeline = self._followed(debugger)
-        view = _view(arguments, timeline)
-        names = {"names": svg_scene(draw_names(timeline, NAMES_WIDTH))} if arguments.flag("names", False) else {}
+        view = _view(arguments, timeline, debugger)
+        names: dict[str, Any] = {}
+        if arguments.flag("names", False):
+            names = {
+                "names": svg_scene(draw_names(timeline, NAMES_WIDTH, view.curves)),
+                "plots": [plot.name for plot in timeline.plots],
+            }
         return {
             "scene": svg_scene(draw_timeline(timeline, view)),
             **names,
             "from": view.start,
             "to": view.end,
             "width": view.width,
-            "height": height_of(timeline),
+            "height": height_of(timeline, view.curves),
             "extent": extent(timeline, view.axis),
             "hasTime": bool(timeline.times),
             "step": debugger.session.position,
@@ -92,7 +102,7 @@ class TimelineRequests:
     def _export(self, arguments: Arguments) -> Body:
         debugger = self._session.stopped
         timeline = self._followed(debugger)
-        view = _view(arguments, timeline)
+        view = _view(arguments, timeline, debugger)
         first, last = (step_at(timeline, view.axis, position) for position in (view.start, view.end))
         word = arguments.text("format", None)
         format_ = _FORMATS.get(word)
@@ -116,7 +126,9 @@ class TimelineRequests:
         raise RequestError(f"`format` is `{word}`; it must be `svg`, `csv` or `mermaid`")
 
     def _pictures(self, arguments: Arguments) -> Body:
-        debugger = self._session.stopped
+        return self._activity(self._session.stopped)
+
+    def _activity(self, debugger: Debugger) -> dict[str, Any]:
         return {
             "nodes": [
                 {
@@ -128,11 +140,37 @@ class TimelineRequests:
                 for node in active_nodes(debugger)
             ],
             "edges": [{"from": edge.source, "to": edge.target} for edge in active_edges(debugger)],
+            "verdicts": {name: verdict.value for name, verdict in debugger.verdicts.items()},
         }
 
+    def _moments(self, arguments: Arguments) -> Body:
+        debugger = self._session.stopped
+        timeline = self._followed(debugger)
+        axis = _axis(arguments, timeline)
+        start, by = arguments.decimal("from", 0.0), arguments.decimal("by", 1.0)
+        count = arguments.natural("count", 1)
+        if start < 0 or by <= 0 or not 1 <= count <= MAX_MOMENTS:
+            raise RequestError(f"`from` must be at least 0, `by` greater than 0, and `count` from 1 to {MAX_MOMENTS}")
+        with debugger.elsewhere() as session:
+            shown = [
+                {
+                    "step": step,
+                    "position": position,
+                    "time": session.time,
+                    "isEnd": session.end is not None,
+                    **self._activity(debugger),
+                }
+                for step, position in moments(debugger, timeline, axis, start, by, count)
+            ]
+        return {"moments": shown}
 
-def _view(arguments: Arguments, timeline: Timeline) -> View:
-    axis = Axis.STEPS if arguments.text("axis") == "steps" or not timeline.times else Axis.TIME
+
+def _axis(arguments: Arguments, timeline: Timeline) -> Axis:
+    return Axis.STEPS if arguments.text("axis") == "steps" or not timeline.times else Axis.TIME
+
+
+def _view(arguments: Arguments, timeline: Timeline, debugger: Debugger) -> View:
+    axis = _axis(arguments, timeline)
     start = max(0.0, arguments.decimal("from", 0.0))
     end = arguments.decimal("to", extent(timeline, axis))
     width = arguments.decimal("width", 1000.0)
@@ -141,15 +179,17 @@ def _view(arguments: Arguments, timeline: Timeline) -> View:
     if end < start:
         raise RequestError("`to` must not be smaller than `from`")
     top, bottom = arguments.decimal("top", 0.0), arguments.decimal("bottom", math.inf)
-    return View(axis, start, end, width, top, bottom)
+    curves = tuple(arguments.texts("curves"))
+    violated = tuple(
+        Mark(decided.position, f"violated: {decided.name}")
+        for decided in debugger.decided
+        if decided.verdict is TraceVerdict.FAILED
+    )
+    return View(axis, start, end, width, top, bottom, curves=curves, marks=violated)
 
 
 def _at(debugger: Debugger, step: int, read: Callable[[Session], T]) -> T:
     """The result of `read` at a step of the run. Afterwards, the run is at its previous position again."""
-    session = debugger.session
-    position = session.position
-    session.jump(step)
-    try:
+    with debugger.elsewhere() as session:
+        session.jump(step)
         return read(session)
-    finally:
-        session.jump(position)

@@ -93,6 +93,7 @@ def register(context: Context) -> None:
             "property": result.name,
             "heading": " ".join(filter(None, (markdown.plain(result.comment), why.heading))),
             "verdict": why.verdict.value,
+            "seed": known.result.traces.options.seed,
             "trace": why.trace,
             "expected": missed(result),
             "stale": current.is_stale(known),

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import enum
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from functools import cached_property
 
 from roaml.debugging.breakpoints import Breakpoint, BreakpointPlaces, Breakpoints, ExceptionFilter, Matcher, logged
@@ -31,6 +32,8 @@ from roaml.smc.record import TraceStep, TraceVerdict
 
 MAX_STEPS = 200_000
 """The maximum number of steps of one movement. After that, the run stops and can be continued."""
+MAX_FIRST_STEPS = 2_000
+"""The maximum number of steps of the translation that are taken before the first stop."""
 PORTION_S = 0.02
 """The time in s after which a movement returns to its caller, which then handles the requests of the client."""
 
@@ -460,8 +463,45 @@ class Debugger:
         return Stop(reason, self._thread, text, breakpoints, filter_)
 
     def entry(self) -> Stop:
-        """The stop at the start of the run."""
+        """The stop at the start of the run: before the first step that somebody has written. A saved run stays at its
+        position."""
+        if self.session.position == 0:
+            self._skip_translation()
         return self._stop(StopReason.ENTRY)
+
+    def _skip_translation(self) -> None:
+        """Take the steps of the translation before the first other one; none if there is no other one, or if a property
+        is decided before."""
+        session = self.session
+        for _ in range(MAX_FIRST_STEPS):
+            upcoming = self.upcoming()
+            if upcoming is None or not session.is_of_translation(upcoming):
+                break
+            session.step()
+            if self._follow():
+                break
+        if self.upcoming() is None:
+            session.jump(0)
+
+    @contextmanager
+    def elsewhere(self) -> Iterator[Session]:
+        """Look at other positions of the run: within the context, the session may move. Then it returns to its
+        position."""
+        position = self.session.position
+        try:
+            yield self.session
+        finally:
+            self.session.jump(position)
+
+    def follow(self) -> None:
+        """Decide the properties up to the position of the session, within `elsewhere`."""
+        self._follow()
+
+    @property
+    def decided(self) -> list[Decided]:
+        """The properties that are decided in the part of the run that has been followed, in the order of their
+        positions."""
+        return self._verdicts.decided
 
     def _thread_at(self, instance: int) -> int:
         """The thread of an instance; if there is none, the thread of the first instance that takes part in the next

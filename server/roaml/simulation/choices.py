@@ -71,6 +71,7 @@ class Choice(Record, frozen=True):
         outcomes: at least one; outcomes with probability 0 are omitted.
         origin: the place in the source of the edge of the first automaton.
         is_internal: whether one automaton only executes its next statement, which no other automaton observes.
+        is_of_translation: whether only automata that the translation has added do something (`is_of_translation`).
     """
 
     number: int
@@ -80,6 +81,7 @@ class Choice(Record, frozen=True):
     outcomes: tuple[Outcome, ...]
     origin: Origin | None
     is_internal: bool
+    is_of_translation: bool = False
 
 
 Phrases: TypeAlias = Callable[[str], Mapping[str, str]]
@@ -97,7 +99,21 @@ class _Part(Record, frozen=True):
     probabilities: tuple[float, ...]
 
 
-def choices(run: Run, events: EventReader, phrases: Phrases, clock: Sequence[str]) -> Iterator[Choice]:
+def is_of_translation(action: str, actors: Collection[str], *, has_machine: bool) -> bool:
+    """Whether a step is one of the translation, which nobody has written: the clock acts, or a node of the tree or a
+    handler executes its next statement.
+
+    Args:
+        actors: the names of the automata that take part, without those that only buffer an event.
+        has_machine: whether one of them is a state machine or plugin.
+    """
+    is_internal = not sent_by(action) and not received_by(action) and action != CLOCK_ACTION
+    return not has_machine and (is_internal or all(automaton_role(name) is Role.CLOCK for name in actors))
+
+
+def choices(
+    run: Run, events: EventReader, phrases: Phrases, clock: Sequence[str], is_machine: Callable[[int], bool]
+) -> Iterator[Choice]:
     """The choices of a state, at most `MAX_CHOICES`.
 
     Args:
@@ -129,6 +145,11 @@ def choices(run: Run, events: EventReader, phrases: Phrases, clock: Sequence[str
                 outcomes,
                 (actors or parts)[0].edge.origin if parts else None,
                 len(actors) <= 1 and not sent_by(action) and not received_by(action) and action != CLOCK_ACTION,
+                is_of_translation(
+                    action,
+                    [part.automaton.name for part in actors],
+                    has_machine=any(is_machine(part.instance) for part in actors),
+                ),
             )
 
 

@@ -10,8 +10,8 @@ from typing import Any
 
 from roaml.jani.model import Automaton
 from roaml.record import Record, replace
-from roaml.scxml.names import TREE_ROOT_PREFIX, received_by, sent_by
-from roaml.simulation.choices import Choice, Outcome, choices
+from roaml.scxml.names import TREE_ROOT_PREFIX, is_observer, received_by, sent_by
+from roaml.simulation.choices import Choice, Outcome, choices, is_of_translation
 from roaml.simulation.follow import Follower
 from roaml.simulation.intervention import Intervention, WrongNumberError, whole_number
 from roaml.simulation.run import SNAPSHOT_INTERVAL, ByHand, Decision, Run
@@ -285,7 +285,7 @@ class Session:
 
     def choices(self) -> tuple[Choice, ...]:
         """The possible next steps, at most `MAX_CHOICES`."""
-        return tuple(choices(self._run, self._follower.events, self.phrases, self.clock))
+        return tuple(choices(self._run, self._follower.events, self.phrases, self.clock, self.is_machine))
 
     def state(self) -> SystemState:
         """The state of the system."""
@@ -419,6 +419,12 @@ class Session:
         """Whether an instance is a state machine or a plugin, not an automaton added by the translation or an
         observer."""
         return self._follower.is_machine(instance)
+
+    def is_of_translation(self, step: TraceStep) -> bool:
+        """Whether only automata that the translation has added do something in a step."""
+        actors = [part for part in self.actors(step) if not is_observer(part.automaton)]
+        has_machine = any(self.is_machine(part.instance) for part in actors)
+        return is_of_translation(step.action or "", [part.automaton for part in actors], has_machine=has_machine)
 
     @property
     def automata(self) -> Sequence[str]:

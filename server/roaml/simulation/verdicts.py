@@ -47,10 +47,16 @@ class Verdicts:
             follower.follow(decisions, position, has_ended)
         return self.at(position)
 
+    @property
+    def decided(self) -> list[Decided]:
+        """The properties that are decided in the part of the run that has been followed, in the order of their
+        positions."""
+        decided = (follower.decided for follower in self._followers)
+        return sorted((one for one in decided if one is not None), key=lambda one: one.position)
+
     def at(self, position: int) -> list[Decided]:
         """The properties that are decided exactly at a position. The run must have been followed up to it."""
-        decided = [follower.decided for follower in self._followers]
-        return [property_ for property_ in decided if property_ is not None and property_.position == position]
+        return [property_ for property_ in self.decided if property_.position == position]
 
     def discard(self, position: int) -> None:
         """Discard the run after `position`, because other steps follow."""

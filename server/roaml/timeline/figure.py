@@ -10,7 +10,7 @@ from __future__ import annotations
 import enum
 import math
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from roaml.figures.drawing import Drawing, Group, Item, Outline, Polyline, Shape, TextItem, Tone
 from roaml.figures.geometry import Box, Extent, Point
@@ -20,6 +20,8 @@ from roaml.timeline.record import Lane, LaneKind, Plot, SentMessage, Timeline
 
 LANE, PLOT, AXIS, MESSAGES = 26.0, 54.0, 24.0, 22.0
 """The heights of a lane, a plot, the axis, and the row with the names of messages, in pixels."""
+CURVES, CURVE_NAME = 120.0, 16.0
+"""The minimum height of a row with several curves, and the height of the name of each, in pixels."""
 _SPAN, _MARGIN = 20.0, 8.0
 _LEAST = 5.0
 """The minimum width of a state, in pixels. Adjacent states that are narrower are drawn as one, and so are messages
@@ -29,6 +31,7 @@ _SAMPLE = 50
 _ARROW_DISTANCE = 10.0
 """The minimum average distance of messages that are drawn with arrows, in pixels."""
 _MACHINE_TONES = (Tone.ROS, Tone.TREE, Tone.BLACKBOARD, Tone.ACTION, Tone.CHANCE)
+_CURVE_TONES = (Tone.ROS, Tone.CHANCE, Tone.ACTION, Tone.TREE, Tone.FAILURE, Tone.BLACKBOARD)
 _STATUS_TONES: Mapping[str, Tone] = {
     "RUNNING": Tone.RUNNING,
     "SUCCESS": Tone.SUCCESS,
@@ -43,6 +46,13 @@ class Axis(enum.Enum):
     STEPS = "steps"
 
 
+class Mark(Record, frozen=True):
+    """Something that has happened at a step of the run, such as the violation of a property."""
+
+    step: int
+    text: str
+
+
 class View(Record, frozen=True):
     """The part of a timeline that is drawn.
 
@@ -51,6 +61,8 @@ class View(Record, frozen=True):
         width: the width of the drawing, in pixels.
         top, bottom: the vertical range whose rows are drawn, in pixels from the top of the timeline.
         cursor: the position of the run as a number of steps; -1 to draw none.
+        curves: the names of the plots that are drawn over each other, in one row with a common range.
+        marks: what is marked with a line across all rows.
     """
 
     axis: Axis
@@ -60,6 +72,16 @@ class View(Record, frozen=True):
     top: float = 0.0
     bottom: float = math.inf
     cursor: int = -1
+    curves: tuple[str, ...] = ()
+    marks: tuple[Mark, ...] = ()
+
+
+class _PlotRow(Record, frozen=True):
+    """A row with the curve of one plot, or with several curves over each other; `top` and `height` are in pixels."""
+
+    plots: tuple[Plot, ...]
+    top: float
+    height: float
 
 
 def extent(timeline: Timeline, axis: Axis) -> float:
@@ -80,26 +102,27 @@ def step_at(timeline: Timeline, axis: Axis, position: float) -> int:
     return max(0, min(timeline.count, math.floor(position)))
 
 
-def height_of(timeline: Timeline) -> float:
-    return AXIS + MESSAGES + LANE * len(timeline.lanes) + PLOT * len(timeline.plots)
+def height_of(timeline: Timeline, curves: Collection[str] = ()) -> float:
+    rows = _plot_rows(timeline, curves)
+    return rows[-1].top + rows[-1].height if rows else _lane_top(len(timeline.lanes))
 
 
-def draw_names(timeline: Timeline, width: float) -> Drawing:
+def draw_names(timeline: Timeline, width: float, curves: Collection[str] = ()) -> Drawing:
     """The column with the names of the rows."""
     groups = [Group("name", Tone.PLAIN, (_text("messages", 4.0, AXIS + MESSAGES / 2, width - 8.0, "muted"),))]
     for index, lane in enumerate(timeline.lanes):
         bold = lane.kind is LaneKind.MACHINE
         text = _text(lane.name, 4.0, _middle(index), width - 8.0, "text", bold=bold)
         groups.append(Group("name", Tone.PLAIN, (text,), hint=lane.name))
-    for index, plot in enumerate(timeline.plots):
-        groups.append(_plot_name(plot, _plot_top(timeline, index), width))
-    return Drawing(Extent(width, height_of(timeline)), tuple(groups), {})
+    for row in _plot_rows(timeline, curves):
+        groups += _plot_names(row, width)
+    return Drawing(Extent(width, height_of(timeline, curves)), tuple(groups), {})
 
 
 def draw_timeline(timeline: Timeline, view: View) -> Drawing:
     """The axis with the rows below it, without the names of the rows."""
     painter = _Painter(timeline, view)
-    return Drawing(Extent(view.width, height_of(timeline)), tuple(painter.groups()), {})
+    return Drawing(Extent(view.width, painter.height), tuple(painter.groups()), {})
 
 
 class _Painter:
@@ -108,6 +131,7 @@ class _Painter:
         self._view = view
         self._scale = view.width / max(view.end - view.start, 1e-9)
         self._end = self._x(timeline.count)
+        self.height = height_of(timeline, view.curves)
 
     def _x(self, step: int) -> float:
         return (position_of(self._timeline, self._view.axis, step) - self._view.start) * self._scale
@@ -126,16 +150,18 @@ class _Painter:
         for index, lane in enumerate(timeline.lanes):
             if self._is_visible(_lane_top(index), LANE):
                 yield from self._lane(index, lane)
-        for index, plot in enumerate(timeline.plots):
-            if self._is_visible(_plot_top(timeline, index), PLOT):
-                yield self._plot(_plot_top(timeline, index), plot)
+        for row in _plot_rows(timeline, self._view.curves):
+            if self._is_visible(row.top, row.height):
+                yield from (self._plot(row, number) for number in range(len(row.plots)))
         yield from self._messages()
+        yield from self._mark_lines()
         if self._view.cursor >= 0:
             x = self._x(self._view.cursor)
             if 0 <= x <= self._view.width:
-                line = Polyline((Point(x, 0), Point(x, height_of(timeline))), role="cursor")
+                line = Polyline((Point(x, 0), Point(x, self.height)), role="cursor")
                 yield Group("cursor", Tone.FAILURE, (line,))
         yield names  # above the rows that are scrolled beneath it
+        yield from self._mark_names()
 
     def _is_visible(self, top: float, height: float) -> bool:
         return top + height >= self._view.top and top <= self._view.bottom
@@ -156,14 +182,46 @@ class _Painter:
         free_from = 0.0
         for number in range(math.ceil(view.start / distance - 1e-9), math.floor(last / distance + 1e-9) + 1):
             x = (number * distance - view.start) * self._scale
-            rules.append(Polyline((Point(x, AXIS), Point(x, height_of(self._timeline))), role="rule"))
-            text = f"{number * distance:,.{digits}f}{unit}"
+            rules.append(Polyline((Point(x, AXIS), Point(x, self.height)), role="rule"))
+            text = f"{number * distance:,.{digits}f}{unit}" + self._time_beside(round(number * distance))
             width = text_width(text, SMALL)
             left = min(max(x - width / 2, 0.0), view.width - width)
             if left >= free_from:
                 names.append(TextItem(text, left, AXIS - 8.0, SMALL, "muted"))
                 free_from = left + width + 6.0
         return Group("axis", Tone.PLAIN, tuple(rules)), Group("axis-names", Tone.PLAIN, tuple(names))
+
+    def _time_beside(self, step: int) -> str:
+        """The time that is written beside the number of a step on an axis of steps."""
+        times = self._timeline.times
+        return f" · {times[step]:.6g} s" if self._view.axis is Axis.STEPS and step < len(times) else ""
+
+    # ------------------------------------------------------------ marks
+
+    def _visible_marks(self) -> Iterator[tuple[float, Mark]]:
+        for mark in self._view.marks:
+            if 0.0 <= (x := self._x(mark.step)) <= self._view.width:
+                yield x, mark
+
+    def _mark_lines(self) -> Iterator[Group]:
+        for x, mark in self._visible_marks():
+            line = Polyline((Point(x, AXIS), Point(x, self.height)), role="mark")
+            yield Group("event", Tone.FAILURE, (line,), hint=mark.text, step=mark.step)
+
+    def _mark_names(self) -> Iterator[Group]:
+        """The texts of the marks, in the row of the axis. Those that would cover an earlier one are left out. They end
+        at their lines, because most are at the end of a run."""
+        free_from = 0.0
+        for x, mark in self._visible_marks():
+            text = _fitting(mark.text, self._view.width - 12.0)
+            width = text_width(text, SMALL) + 8.0
+            left = max(x - width, 0.0)
+            if left < free_from or not text:
+                continue
+            free_from = left + width + 4.0
+            card = Shape(Box(left, 1.0, width, AXIS - 4.0), Outline.ROUNDED, "mark-card")
+            name = TextItem(text, left + 4.0, AXIS - 8.0, SMALL, "text")
+            yield Group("axis-names", Tone.FAILURE, (card, name), hint=mark.text, step=mark.step)
 
     # ------------------------------------------------------------ lanes
 
@@ -248,7 +306,8 @@ class _Painter:
             free_from = max(free_from, left + text_width(text, SMALL) + 6.0 if text else 0.0, end + 6.0)
             if has_arrows:
                 items += self._arrows(marked[0])
-            step = marked[0].received if len(marked) == 1 else None
+            # There, the message is in the ROS graph, and the next step is at the line that receives it.
+            step = marked[0].received - 1 if len(marked) == 1 else None
             yield Group("event", Tone.PLAIN, tuple(items), hint=self._message_hint(name, marked), step=step)
 
     def _behind_mark(self, number: int, last: int) -> int:
@@ -281,15 +340,28 @@ class _Painter:
 
     # ------------------------------------------------------------ plots
 
-    def _plot(self, top: float, plot: Plot) -> Group:
+    def _plot(self, row: _PlotRow, number: int) -> Group:
+        """One of the curves of a row."""
+        plot = row.plots[number]
+        points = self._points_of(plot, row)
+        items: list[Item] = []
+        if number == 0:
+            bottom = row.top + row.height
+            items.append(Polyline((Point(0.0, bottom), Point(self._view.width, bottom)), role="rule"))
+        if len(points) > 1:
+            items.append(Polyline(tuple(points), role="plot", is_round=False))
+        return Group("variable", _curve_tone(row, number), tuple(items), hint=plot.name)
+
+    def _points_of(self, plot: Plot, row: _PlotRow) -> list[Point]:
+        """The corners of a curve. In one pixel, only the first, the last, the least and the greatest value are used."""
         first = max(0, bisect_right(plot.steps, self._first_step(0.0)) - 1)
         last = bisect_right(plot.steps, self._first_step(self._view.width))
-        low, high = _range(plot)
-        space = PLOT - 2 * _MARGIN
+        low, high = _range(row.plots)
+        space = row.height - 2 * _MARGIN
 
         def y(value: float) -> float:
             clipped = min(max(value, low), high) if not math.isnan(value) else low
-            return top + PLOT - _MARGIN - (clipped - low) / ((high - low) or 1.0) * space
+            return row.top + row.height - _MARGIN - (clipped - low) / ((high - low) or 1.0) * space
 
         points: list[Point] = []
         number = first
@@ -309,30 +381,47 @@ class _Painter:
             number = following
         if points:
             points.append(Point(max(points[-1].x, min(self._view.width, self._end)), points[-1].y))
-        items: list[Item] = [
-            Polyline((Point(0.0, top + PLOT), Point(self._view.width, top + PLOT)), role="rule"),
-        ]
-        if len(points) > 1:
-            items.append(Polyline(tuple(points), role="plot", is_round=False))
-        return Group("variable", Tone.ROS, tuple(items), hint=plot.name)
+        return points
 
 
-def _plot_name(plot: Plot, top: float, width: float) -> Group:
-    """The name of a plot, and right of it the ends of its range at their heights, where no line crosses them."""
-    low, high = _range(plot)
-    numbers = [] if plot.is_flag else [(_number(high), top + _MARGIN)]
-    if low != high and not plot.is_flag:
-        numbers.append((_number(low), top + PLOT - _MARGIN))
+def _plot_rows(timeline: Timeline, curves: Collection[str]) -> list[_PlotRow]:
+    """The rows below the lanes: first that of the curves over each other, if there are any."""
+    together = tuple(plot for plot in timeline.plots if plot.name in curves)
+    rows = []
+    top = _lane_top(len(timeline.lanes))
+    if together:
+        rows.append(_PlotRow(together, top, max(CURVES, CURVE_NAME * (len(together) + 1))))
+        top += rows[0].height
+    alone = (plot for plot in timeline.plots if plot.name not in curves)
+    rows += (_PlotRow((plot,), top + PLOT * index, PLOT) for index, plot in enumerate(alone))
+    return rows
+
+
+def _curve_tone(row: _PlotRow, number: int) -> Tone:
+    return _CURVE_TONES[number % len(_CURVE_TONES)] if len(row.plots) > 1 else Tone.ROS
+
+
+def _plot_names(row: _PlotRow, width: float) -> Iterator[Group]:
+    """The names of the curves of a row, and right of them the ends of their range at their heights, where no line
+    crosses them."""
+    low, high = _range(row.plots)
+    is_flag = all(plot.is_flag for plot in row.plots)
+    numbers = [] if is_flag else [(_number(high), row.top + _MARGIN)]
+    if low != high and not is_flag:
+        numbers.append((_number(low), row.top + row.height - _MARGIN))
     free = width - 8.0 - max((text_width(number, SMALL) + 6.0 for number, _ in numbers), default=0.0)
-    name = _text(plot.name, 4.0, top + PLOT / 2, free, "muted")
     ends = [_text(number, width - 4.0 - text_width(number, SMALL), y, width, "muted") for number, y in numbers]
-    return Group("name", Tone.PLAIN, (name, *ends), hint=plot.name)
+    first = row.top + row.height / 2 - CURVE_NAME * (len(row.plots) - 1) / 2
+    for number, plot in enumerate(row.plots):
+        y, role = first + CURVE_NAME * number, "curve" if len(row.plots) > 1 else "muted"
+        items = (_text(plot.name, 4.0, y, free, role), *(ends if number == 0 else ()))
+        yield Group("name", _curve_tone(row, number), items, hint=plot.name)
 
 
-def _range(plot: Plot) -> tuple[float, float]:
-    """The lowest and the highest finite value of a plot; 0 and 1 for a flag."""
-    finite = [value for value in plot.values if math.isfinite(value)] or [0.0]
-    return (0.0, 1.0) if plot.is_flag else (min(finite), max(finite))
+def _range(plots: Sequence[Plot]) -> tuple[float, float]:
+    """The lowest and the highest finite value of plots; 0 and 1 for flags."""
+    finite = [value for plot in plots for value in plot.values if math.isfinite(value)] or [0.0]
+    return (0.0, 1.0) if all(plot.is_flag for plot in plots) else (min(finite), max(finite))
 
 
 def _beside(name: str, x: float, end: float, free_from: float, beside: float) -> tuple[float, str]:
@@ -354,10 +443,6 @@ def _lane_top(index: int) -> float:
 
 def _middle(index: int) -> float:
     return _lane_top(index) + LANE / 2
-
-
-def _plot_top(timeline: Timeline, index: int) -> float:
-    return _lane_top(len(timeline.lanes)) + PLOT * index
 
 
 def _tone(lane: Lane, state: str) -> Tone:

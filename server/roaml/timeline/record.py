@@ -8,20 +8,26 @@ position are replaced, because the user has chosen another step there, the timel
 from __future__ import annotations
 
 import enum
+from collections.abc import Iterator
 
 from roaml.record import Record, field
+from roaml.scxml.events import EventRole
 from roaml.scxml.names import (
     ACTION_HANDLER_PREFIX,
     BLACKBOARD,
+    BLACKBOARD_ANSWER,
     CLOCK,
     NODE_AUTOMATON,
     SERVICE_HANDLER_PREFIX,
     STATUS_NAMES,
+    InterfaceEventKind,
     TreeEventKind,
     is_length,
     is_timer,
+    read_interface_event,
     read_tree_event,
     received_by,
+    role_of,
     sent_by,
 )
 from roaml.simulation.session import Session
@@ -77,8 +83,9 @@ class SentMessage(Record, frozen=True):
 
 
 class Plot(Record):
-    """The values of a variable that is a number or a Boolean, each with the number of the step that assigned it; the
-    first is the value before the run, with step 0. `is_flag` states whether the variable is a Boolean."""
+    """The values of a number or a Boolean, each with the number of the step that assigned it; the first is the value
+    before the run, with step 0. It is a variable, or a field of the last message of a topic, service or action.
+    `is_flag` states whether it is a Boolean."""
 
     name: str
     is_flag: bool
@@ -138,6 +145,19 @@ class Timeline:
             if name == BLACKBOARD or instance in machines
         }
         self._phrases = {instance: session.phrases(self._automata[instance]) for instance in self._plotted}
+        self._fields = dict(self._field_names())
+
+    def _field_names(self) -> Iterator[tuple[str, str]]:
+        """The variables with the fields of messages, and their names for users, such as `/arm/command.data`."""
+        for event, variable, field_name in self._events.fields():
+            path = field_name.replace("__", ".")
+            interface = read_interface_event(event, self._automata)
+            if interface is None:
+                if role_of(event) is EventRole.PLAIN and event != BLACKBOARD_ANSWER and read_tree_event(event) is None:
+                    yield variable, f"{self._events.name(event)}.{path}"
+            elif interface.kind not in (InterfaceEventKind.THREAD_START, InterfaceEventKind.THREAD_FREE):
+                part = "" if interface.kind is InterfaceEventKind.MESSAGE else f" {interface.kind.value}"
+                yield variable, f"{interface_name(event, self._automata)}{part}.{path}"
 
     def _add(self, instance: int, lane: Lane) -> None:
         self._lane_of[instance] = len(self.lanes)
@@ -145,7 +165,8 @@ class Timeline:
 
     @property
     def plots(self) -> list[Plot]:
-        """The plots of the variables that change in the run, ordered by automaton and name."""
+        """The plots of what changes in the run: the variables, ordered by automaton and name, then the fields of
+        messages."""
         return [self._plots[key] for key in sorted(self._plots)]
 
     def follow(self, session: Session) -> None:
@@ -166,8 +187,13 @@ class Timeline:
             if instance < 0:
                 if name in self._clock_values and isinstance(change.after, (int, float)):
                     self._clock_values[name] = change.after
+                elif name in self._fields:
+                    # The clients of a service have variables of their own for the same field.
+                    shown = self._fields[name]
+                    self._plot(number, (len(self._automata), shown), shown, change.before, change.after)
             elif instance in self._plotted:
-                self._plot(number, instance, name, change.before, change.after)
+                shown = self._plotted[instance] + self._phrases[instance].get(name, name)
+                self._plot(number, change.variable, shown, change.before, change.after)
         if self._clock:
             self.times.append(self._clock_values[self._clock[0]] + self._clock_values[self._clock[1]] / 1e9)
         for part in step.parts:
@@ -181,14 +207,14 @@ class Timeline:
         elif event := received_by(action):
             self._receive(number, event, step)
 
-    def _plot(self, number: int, instance: int, name: str, before: object, after: object) -> None:
-        if not isinstance(before, (bool, int, float)) or not isinstance(after, (bool, int, float)) or is_length(name):
+    def _plot(self, number: int, key: tuple[int, str], shown: str, before: object, after: object) -> None:
+        if not isinstance(before, (bool, int, float)) or not isinstance(after, (bool, int, float)):
             return
-        plot = self._plots.get((instance, name))
+        if is_length(key[1]):
+            return
+        plot = self._plots.get(key)
         if plot is None:
-            shown = self._phrases[instance].get(name, name)
-            plot = Plot(self._plotted[instance] + shown, isinstance(after, bool), [0], [float(before)])
-            self._plots[instance, name] = plot
+            plot = self._plots[key] = Plot(shown, isinstance(after, bool), [0], [float(before)])
         plot.steps.append(number)
         plot.values.append(float(after))
 

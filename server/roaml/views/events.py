@@ -5,7 +5,7 @@ sent."""
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from roaml.jani.model import Automaton
 from roaml.scxml.names import (
@@ -76,6 +76,12 @@ class EventReader:
             )
             for variable in self._parameters.get(event, ())
         }
+
+    def fields(self) -> Iterator[tuple[str, str, str]]:
+        """Each parameter of an event: the event, the variable that contains it, and its name in the interface."""
+        for event in sorted(self._parameters):
+            for variable in self._parameters[event]:
+                yield event, variable, variable.removeprefix(f"{event}__").removeprefix(FIELD_PREFIX)
 
     def variables(self, event: str) -> Sequence[str]:
         """The variables of the model that contain the parameters of an event and their lengths."""

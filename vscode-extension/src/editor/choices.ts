@@ -18,6 +18,8 @@ interface Choice {
     readonly text: string;
     readonly probability: number;
     readonly isNext: boolean;
+    /** Whether nobody has written the step: only automata that the translation has added do something. */
+    readonly isOfTranslation: boolean;
     readonly outcomes: readonly Outcome[];
     readonly source?: { readonly path: string };
     readonly line?: number;
@@ -44,10 +46,17 @@ interface Choices {
     readonly choices: readonly Choice[];
 }
 
-interface Entry {
+interface ChoiceEntry {
     readonly choice: Choice;
     readonly outcome?: Outcome;
 }
+
+/** The steps of the translation, which are no decisions of a person. */
+interface Hidden {
+    readonly hidden: readonly ChoiceEntry[];
+}
+
+type Entry = ChoiceEntry | Hidden;
 
 export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<Entry> {
     private readonly changed = new vscode.EventEmitter<undefined>();
@@ -67,7 +76,7 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
         this.subscriptions = [
             this.changed,
             this.view,
-            vscode.commands.registerCommand(CHOOSE, (entry: Entry) => this.choose(entry)),
+            vscode.commands.registerCommand(CHOOSE, (entry: ChoiceEntry) => this.choose(entry)),
             vscode.commands.registerCommand("as2fm.goToStep", () => this.goToStep()),
             vscode.commands.registerCommand("as2fm.publish", () => this.publish()),
             sessions.onStopped((session) => void this.update(session)),
@@ -77,8 +86,15 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
         ];
     }
 
-    getTreeItem({ choice, outcome }: Entry): vscode.TreeItem {
-        const { Expanded, None } = vscode.TreeItemCollapsibleState;
+    getTreeItem(entry: Entry): vscode.TreeItem {
+        const { Collapsed, Expanded, None } = vscode.TreeItemCollapsibleState;
+        if ("hidden" in entry) {
+            const text = vscode.l10n.t("Steps of the translation ({0})", entry.hidden.length);
+            const item = new vscode.TreeItem(text, Collapsed);
+            item.tooltip = vscode.l10n.t("Steps that nobody has written: of the clock, and within nodes of the tree.");
+            return item;
+        }
+        const { choice, outcome } = entry;
         const hasOutcomes = outcome === undefined && choice.outcomes.length > 1;
         const { text, probability } = outcome ?? choice;
         // The probability comes first, because a narrow view cuts the end of the text.
@@ -93,12 +109,14 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
     }
 
     /** `TreeView.reveal` requires this method. */
-    getParent({ choice, outcome }: Entry): Entry | undefined {
-        return outcome && this.entries.find((entry) => entry.choice === choice);
+    getParent(entry: Entry): Entry | undefined {
+        if ("hidden" in entry || !entry.outcome) return undefined;
+        return this.entries.find((other) => "choice" in other && other.choice === entry.choice);
     }
 
     getChildren(entry?: Entry): Entry[] {
         if (entry === undefined) return [...this.entries];
+        if ("hidden" in entry) return [...entry.hidden];
         if (entry.outcome || entry.choice.outcomes.length < 2) return [];
         return entry.choice.outcomes.map((outcome) => ({ choice: entry.choice, outcome }));
     }
@@ -116,7 +134,7 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
                 : vscode.l10n.t("chosen by the user");
             const suffix = choices.isByHand ? `, ${origin}` : "";
             const description = `${vscode.l10n.t("step {0}", choices.step)}${time}${suffix}`;
-            const entries = choices.choices.map((choice) => ({ choice }));
+            const entries = entriesOf(choices.choices);
             const end = choices.end === null ? "" : vscode.l10n.t("The run has ended: {0}.", choices.end);
             const messages = [choices.fault ?? "", end, verdict(choices)];
             this.show(session, entries, description, messages.filter((text) => text !== "").join(" "));
@@ -147,7 +165,7 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
         if (!this.view.visible) await this.view.reveal(first, { select: false, focus: false });
     }
 
-    private async choose({ choice, outcome }: Entry): Promise<void> {
+    private async choose({ choice, outcome }: ChoiceEntry): Promise<void> {
         const drawn = outcome === undefined ? {} : { outcome: outcome.number };
         await this.sessions.request("choose", { choice: choice.number, ...drawn });
     }
@@ -182,6 +200,14 @@ export class ChoicesView implements vscode.Disposable, vscode.TreeDataProvider<E
         const written = fields === "{}" ? fields : await vscode.window.showInputBox({ prompt, value: fields });
         if (written !== undefined) await this.sessions.request("publish", { event, fields: written });
     }
+}
+
+/** The choices of a person and the next step; below them, the steps of the translation. */
+function entriesOf(choices: readonly Choice[]): readonly Entry[] {
+    const entries = choices.map((choice) => ({ choice }));
+    const hidden = entries.filter(({ choice }) => choice.isOfTranslation && !choice.isNext);
+    const shown = entries.filter((entry) => !hidden.includes(entry));
+    return hidden.length === 0 ? shown : [...shown, { hidden }];
 }
 
 /** The verdict on the property of the run, in its current state. */

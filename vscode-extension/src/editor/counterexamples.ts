@@ -6,7 +6,9 @@
 
 import * as vscode from "vscode";
 import { counterexample, traceState, type Counterexample, type Step } from "../protocol";
-import { jump, type PicturePanels } from "./picturePanels";
+import { ON_STAGE, type Debugging } from "./debugging";
+import type { PicturePanels } from "./picturePanels";
+import { jump } from "./pictureSource";
 import type { LanguageServer } from "./server";
 import { TraceStateView } from "./traceState";
 
@@ -35,6 +37,7 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
     constructor(
         private readonly server: LanguageServer,
         private readonly pictures: PicturePanels,
+        private readonly debugging: Debugging,
     ) {
         this.view = vscode.window.createTreeView<Entry>(VIEW, { treeDataProvider: this, showCollapseAll: true });
         this.subscriptions = [
@@ -44,6 +47,7 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
             vscode.commands.registerCommand(SHOW_STEP, (step: Step) => this.showStep(step)),
             vscode.commands.registerCommand("as2fm.nextStep", () => this.move(1)),
             vscode.commands.registerCommand("as2fm.previousStep", () => this.move(-1)),
+            vscode.commands.registerCommand("as2fm.showTraceOnStage", () => this.showOnStage()),
         ];
     }
 
@@ -70,6 +74,14 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
         if (!last) return;
         await this.view.reveal(last, { focus: true, select: true });
         await this.showStep(last);
+    }
+
+    /** Debug the trace on the stage, from its start. */
+    private async showOnStage(): Promise<void> {
+        const system = this.server.client?.protocol2CodeConverter.asUri(this.system);
+        if (!this.shown || !system) return;
+        const { property, seed, trace } = this.shown;
+        await this.debugging.start(system, { property, seed, trace, stopOnEntry: true, [ON_STAGE]: true });
     }
 
     /** Select the step `by` steps after the selected step; before it if `by` is negative. */

@@ -9,6 +9,9 @@ import { isTrusted } from "./trust";
 
 export const DEBUG_TYPE = "as2fm";
 
+/** The attribute of a run that opens the stage. */
+export const ON_STAGE = "onStage";
+
 /** A trace of `verify`. */
 export interface Trace {
     readonly seed: number;

@@ -38,7 +38,12 @@ async function choose(
     suggestions: readonly string[],
     current: readonly string[],
 ): Promise<string | undefined> {
-    const other = { label: vscode.l10n.t("Another value…") };
+    const other = {
+        label: vscode.l10n.t("Another value…"),
+        detail: vscode.l10n.t(
+            "Values are offered that the known result meets. With others, the expectation would fail or stay undecided.",
+        ),
+    };
     const met = vscode.l10n.t("met by the result");
     const items = [...suggestions.map((label) => ({ label, description: met })), other];
     const placeHolder = current.length > 0 ? vscode.l10n.t("currently {0}", current.join(", ")) : undefined;
@@ -47,6 +52,11 @@ async function choose(
     if (picked !== other) return picked?.label;
     return vscode.window.showInputBox({
         title,
+        ...(suggestions.length === 0 && {
+            prompt: vscode.l10n.t(
+                "No value is offered, because the property has not been verified, or its result meets no comparison.",
+            ),
+        }),
         value: current[0] ?? ">= 0.95",
         validateInput: (value) =>
             COMPARISON.test(value) ? undefined : vscode.l10n.t("A comparison with a number, such as >= 0.95"),

@@ -4,7 +4,9 @@
 import * as vscode from "vscode";
 import { PICTURE_ACTIONS, type MenuContext, type MenuPart, type PictureAction } from "../pictures/contract";
 import { pictureEdit, type PictureEdit, type PictureEditParams, type PictureQuestion } from "../protocol";
-import { jump, type PicturePanels } from "./picturePanels";
+import { toggle } from "./breakpoints";
+import type { PicturePanels } from "./picturePanels";
+import { jump } from "./pictureSource";
 import type { LanguageServer } from "./server";
 
 export class PictureActions implements vscode.Disposable {
@@ -18,6 +20,10 @@ export class PictureActions implements vscode.Disposable {
             vscode.commands.registerCommand("as2fm.picture.goTo", async ({ as2fmParts }: MenuContext) => {
                 const part = await chooseOne(as2fmParts);
                 if (part) await jump(part.place, false);
+            }),
+            vscode.commands.registerCommand("as2fm.picture.breakpoint", async ({ as2fmBreakpoints }: MenuContext) => {
+                const breakpoint = await chooseOne(as2fmBreakpoints);
+                if (breakpoint) toggle(breakpoint);
             }),
             ...PICTURE_ACTIONS.map((action) =>
                 vscode.commands.registerCommand(`as2fm.picture.${action}`, ({ as2fmParts }: MenuContext) =>
@@ -60,7 +66,7 @@ export class PictureActions implements vscode.Disposable {
     }
 }
 
-async function chooseOne(parts: readonly MenuPart[]): Promise<MenuPart | undefined> {
+async function chooseOne<Part extends { readonly label: string }>(parts: readonly Part[]): Promise<Part | undefined> {
     if (parts.length < 2) return parts[0];
     const items = parts.map((part) => ({ label: part.label, part }));
     return (await vscode.window.showQuickPick(items, { title: vscode.l10n.t("Which part?") }))?.part;

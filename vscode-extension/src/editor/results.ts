@@ -7,7 +7,7 @@
 import * as vscode from "vscode";
 import { VERIFY, type Property, type ResultView, type VerifiableSystem } from "../protocol";
 import { SHOW_COUNTEREXAMPLE, SHOW_WITNESS } from "./client";
-import { jump } from "./picturePanels";
+import { jump } from "./pictureSource";
 import type { Asked, PropertyTests } from "./tests";
 import { isTrusted } from "./trust";
 

@@ -9,45 +9,29 @@ import { webviewPage } from "./webviewPage";
 
 const VIEW = "as2fm.timeline";
 
-export class TimelineView implements vscode.Disposable, vscode.WebviewViewProvider {
+/** What a timeline shows, and what happens when the user acts in it; independent of the page that draws it. */
+export class TimelineSource implements vscode.Disposable {
     private readonly subscriptions: vscode.Disposable[];
-    private view: vscode.WebviewView | undefined;
 
     constructor(
-        private readonly context: vscode.ExtensionContext,
         private readonly sessions: DebugSessions,
+        private readonly post: (message: ToTimeline) => void,
     ) {
         this.subscriptions = [
-            vscode.window.registerWebviewViewProvider(VIEW, this, {
-                webviewOptions: { retainContextWhenHidden: true },
-            }),
             sessions.onStopped(() => {
-                this.post({ type: "stopped" });
+                post({ type: "stopped" });
             }),
             sessions.onEnded(() => {
-                this.post({ type: "ended" });
+                post({ type: "ended" });
             }),
         ];
-    }
-
-    resolveWebviewView(view: vscode.WebviewView): void {
-        this.view = view;
-        const dist = vscode.Uri.joinPath(this.context.extensionUri, "dist");
-        view.webview.options = { enableScripts: true, enableForms: false, localResourceRoots: [dist] };
-        view.webview.html = webviewPage(view.webview, dist, "timeline.js", ["view.css", "timeline.css"]);
-        view.webview.onDidReceiveMessage((message: FromTimeline) => void this.receive(message));
-        view.onDidDispose(() => (this.view = undefined));
     }
 
     dispose(): void {
         for (const part of this.subscriptions) part.dispose();
     }
 
-    private post(message: ToTimeline): void {
-        void this.view?.webview.postMessage(message);
-    }
-
-    private async receive(message: FromTimeline): Promise<void> {
+    async receive(message: FromTimeline): Promise<void> {
         switch (message.type) {
             case "ready":
                 this.post({ type: "words", words: words() });
@@ -61,7 +45,8 @@ export class TimelineView implements vscode.Disposable, vscode.WebviewViewProvid
                 break;
             case "goTo": {
                 const { axis, position } = message;
-                const part = { axis, from: position, to: position, width: 1, top: 0, bottom: 0, names: false };
+                const line = { from: position, to: position, width: 1, top: 0, bottom: 0 };
+                const part = { axis, ...line, names: false, curves: [] };
                 const tile = await this.tile(part);
                 if (tile) await this.sessions.request("goToStep", { step: tile.first });
                 break;
@@ -82,8 +67,8 @@ export class TimelineView implements vscode.Disposable, vscode.WebviewViewProvid
     }
 
     private async export(message: Extract<FromTimeline, { type: "export" }>): Promise<void> {
-        const { format, axis, from, to, theme } = message;
-        const options = { format, axis, from, to, theme, width: 1400 };
+        const { format, axis, from, to, curves, theme } = message;
+        const options = { format, axis, from, to, curves, theme, width: 1400 };
         const file = (await this.sessions.request("exportTimeline", options)) as { text: string } | undefined;
         const program: unknown = this.sessions.current?.configuration["program"];
         if (!file || typeof program !== "string") return;
@@ -94,6 +79,37 @@ export class TimelineView implements vscode.Disposable, vscode.WebviewViewProvid
             filters: { [format === "mermaid" ? "Mermaid" : format.toUpperCase()]: [extension] },
         });
         if (target) await vscode.workspace.fs.writeFile(target, Buffer.from(file.text, "utf8"));
+    }
+}
+
+/** The view of the timeline in the panel. */
+export class TimelineView implements vscode.Disposable, vscode.WebviewViewProvider {
+    private readonly registration: vscode.Disposable;
+    private readonly source: TimelineSource;
+    private view: vscode.WebviewView | undefined;
+
+    constructor(
+        private readonly context: vscode.ExtensionContext,
+        sessions: DebugSessions,
+    ) {
+        this.source = new TimelineSource(sessions, (message) => void this.view?.webview.postMessage(message));
+        this.registration = vscode.window.registerWebviewViewProvider(VIEW, this, {
+            webviewOptions: { retainContextWhenHidden: true },
+        });
+    }
+
+    resolveWebviewView(view: vscode.WebviewView): void {
+        this.view = view;
+        const dist = vscode.Uri.joinPath(this.context.extensionUri, "dist");
+        view.webview.options = { enableScripts: true, enableForms: false, localResourceRoots: [dist] };
+        view.webview.html = webviewPage(view.webview, dist, "timeline.js", ["view.css", "timeline.css"]);
+        view.webview.onDidReceiveMessage((message: FromTimeline) => void this.source.receive(message));
+        view.onDidDispose(() => (this.view = undefined));
+    }
+
+    dispose(): void {
+        this.registration.dispose();
+        this.source.dispose();
     }
 }
 
@@ -110,6 +126,8 @@ function words(): TimelineWords {
             mermaid: vscode.l10n.t("Export the selection, or everything, as Mermaid"),
             csv: vscode.l10n.t("Export the selection, or everything, as CSV"),
         },
+        curves: vscode.l10n.t("Curves"),
+        noCurves: vscode.l10n.t("No number has changed in this run."),
         help: vscode.l10n.t(
             "A click goes to a step, left and right arrow keys move by one step, + and - zoom, 0 shows the whole run, dragging with Shift selects a part.",
         ),

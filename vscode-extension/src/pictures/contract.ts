@@ -144,6 +144,17 @@ export type Theme = (typeof THEMES)[number];
 /** A node or an edge by its index in the picture. */
 export type Part = { readonly node: number } | { readonly edge: number };
 
+/** Where a run stops: before a line, from 0, or when a topic, service or action sends or receives. */
+export type Breakpoint =
+    | { readonly label: string; readonly uri: string; readonly line: number }
+    | { readonly label: string; readonly event: string };
+
+/** Some parts of a picture, by their indexes. */
+export interface MarkedParts {
+    readonly nodes: readonly number[];
+    readonly edges: readonly number[];
+}
+
 /** A part as the commands of the context menu receive it. Transitions that share a line are several parts. */
 export interface MenuPart {
     readonly label: string;
@@ -155,7 +166,9 @@ export interface MenuPart {
 export type MenuContext = {
     readonly preventDefaultContextMenuItems: true;
     readonly as2fmParts: readonly MenuPart[];
+    readonly as2fmBreakpoints: readonly Breakpoint[];
     readonly as2fmGoTo: boolean;
+    readonly as2fmStops: boolean;
 } & Readonly<Record<`as2fm_${PictureAction}`, boolean>>;
 
 /** The texts of the view, in the language of the user. */
@@ -214,6 +227,8 @@ export type ToView =
     | { readonly type: "highlight"; readonly node: string }
     /** Show what a run does, instead of what was shown before. */
     | { readonly type: "activity"; readonly activity: Activity }
+    /** Mark the parts that have a breakpoint, and no others. */
+    | { readonly type: "breakpoints"; readonly parts: MarkedParts }
     /** Convert the text of an SVG file to PNG. */
     | { readonly type: "rasterize"; readonly svg: string }
     /** The mocks of the shown tree; null if it belongs to a system. `opens` shows the fields. */
@@ -233,6 +248,8 @@ export type FromView =
           readonly milliseconds: number | null;
       }
     | { readonly type: "verify" }
+    /** Set a breakpoint on a part, or remove it. */
+    | { readonly type: "breakpoint"; readonly breakpoint: Breakpoint }
     /** The answer to `rasterize`: the PNG file in base64. */
     | { readonly type: "png"; readonly data: string }
     /** Sent after the picture has been drawn. */

@@ -18,12 +18,16 @@ export interface TileRequest {
     readonly top: number;
     readonly bottom: number;
     readonly names: boolean;
+    /** The names of the curves that are drawn over each other. */
+    readonly curves: readonly string[];
 }
 
 /** The answer to the request `timeline` (docs/debugging.md). */
 export interface Tile {
     readonly scene: string;
     readonly names?: string;
+    /** The names of the curves, with `names`. */
+    readonly plots?: readonly string[];
     readonly from: number;
     readonly to: number;
     readonly width: number;
@@ -45,6 +49,9 @@ export interface TimelineWords {
     readonly time: string;
     readonly steps: string;
     readonly exports: Readonly<Record<ExportFormat, string>>;
+    /** The menu of the curves that are drawn over each other. */
+    readonly curves: string;
+    readonly noCurves: string;
     readonly help: string;
     readonly nothing: string;
 }
@@ -68,5 +75,6 @@ export type FromTimeline =
           readonly axis: Axis;
           readonly from: number;
           readonly to: number;
+          readonly curves: readonly string[];
           readonly theme: Theme;
       };

@@ -69,9 +69,9 @@ export function fit(drawing: Area, width: number, height: number): Sight {
     return at(drawing, width, height, Math.max(0.05, scaleOf(drawing, width, height)));
 }
 
-/** The view that shows as much of a drawing as is legible, beginning at its start. */
-export function fitLegibly(drawing: Area, width: number, height: number): Sight {
-    return at(drawing, width, height, Math.max(LEGIBLE, scaleOf(drawing, width, height)));
+/** The view that shows as much of a drawing as is legible, or at least has a scale, beginning at its start. */
+export function fitLegibly(drawing: Area, width: number, height: number, least = LEGIBLE): Sight {
+    return at(drawing, width, height, Math.max(least, scaleOf(drawing, width, height)));
 }
 
 /** The view at a scale. A drawing that is smaller than the window is centred; others are shown from their start. */

@@ -1,18 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 /** The data of the context menus of parts, which VS Code shows. */
 
-import { PICTURE_ACTIONS, type MenuContext, type MenuPart, type Picture, type PictureAction } from "../contract";
+import {
+    PICTURE_ACTIONS,
+    type Breakpoint,
+    type MenuContext,
+    type MenuPart,
+    type Picture,
+    type PictureAction,
+} from "../contract";
 import { edgeHint } from "./words";
 
 /** The text for the attribute `data-vscode-context` of an element that shows some nodes and edges. */
-export function menuOf(parts: readonly MenuPart[], more: readonly PictureAction[] = []): string {
+export function menuOf(
+    parts: readonly MenuPart[],
+    more: readonly PictureAction[] = [],
+    breakpoints: readonly Breakpoint[] = [],
+): string {
     const isPossible = (action: PictureAction) =>
         more.includes(action) || parts.some(({ actions }) => actions.includes(action));
     const keys = PICTURE_ACTIONS.map((action) => [`as2fm_${action}`, isPossible(action)] as const);
     const context: MenuContext = {
         preventDefaultContextMenuItems: true,
         as2fmParts: parts,
+        as2fmBreakpoints: breakpoints,
         as2fmGoTo: parts.length > 0,
+        as2fmStops: breakpoints.length > 0,
         ...(Object.fromEntries(keys) as Record<`as2fm_${PictureAction}`, boolean>),
     };
     return JSON.stringify(context);

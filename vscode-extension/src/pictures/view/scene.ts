@@ -2,6 +2,7 @@
 /** The drawing of the server as elements of the document, with roles and names for screen readers. */
 
 import type { Drawing, Picture, Words } from "../contract";
+import { breakpointOf } from "../breakpoints";
 import { edgeParts, menuOf, nodeParts } from "./menu";
 import { edgeHint, edgeWords, nodeWords } from "./words";
 
@@ -29,7 +30,11 @@ export function sceneOf(picture: Picture, drawing: Drawing, words: Words): Scene
         group.setAttribute("tabindex", "-1");
         group.setAttribute("aria-label", nodeWords(node, words));
         group.dataset["label"] = node.label;
-        group.dataset["vscodeContext"] = menuOf(nodeParts(picture, index));
+        group.dataset["vscodeContext"] = menuOf(
+            nodeParts(picture, index),
+            [],
+            [breakpointOf(picture, { node: index })].flatMap((one) => one ?? []),
+        );
     }
     for (const group of root.querySelectorAll<SVGGElement>("[data-edges]")) {
         const indexes = (group.dataset["edges"] ?? "").split(" ").map(Number);
@@ -37,7 +42,11 @@ export function sceneOf(picture: Picture, drawing: Drawing, words: Words): Scene
         for (const index of indexes) edges.set(index, [...(edges.get(index) ?? []), group]);
         if (shown.some(({ place }) => place !== null)) group.setAttribute("role", "button");
         group.setAttribute("aria-label", shown.map((edge) => edgeWords(picture, edge, words)).join("; "));
-        group.dataset["vscodeContext"] = menuOf(edgeParts(picture, indexes));
+        group.dataset["vscodeContext"] = menuOf(
+            edgeParts(picture, indexes),
+            [],
+            indexes.flatMap((edge) => breakpointOf(picture, { edge }) ?? []),
+        );
         group.querySelector(":scope > title")?.remove();
         const title = element("title", {});
         title.textContent = shown.map((edge) => edgeHint(picture, edge)).join("\n\n");

@@ -1,0 +1,634 @@
+// SPDX-License-Identifier: Apache-2.0
+/** Draws the pictures that the extension sends, and sends the actions of the user to it. */
+
+import {
+    DIRECTIONS,
+    type DrawnNode,
+    type Drawing,
+    type FromView,
+    type Activity,
+    type MarkedParts,
+    type Part,
+    type Picture,
+    type PictureEdge,
+    type PictureFormat,
+    type PictureNode,
+    type ToView,
+    type Words,
+} from "../contract";
+import {
+    around,
+    besideCorner,
+    bestDrawing,
+    fit,
+    fitLegibly,
+    follow,
+    isArrow,
+    neighbour,
+    pan,
+    reveal,
+    search,
+    shifts,
+    zoom,
+    type PlacedNodes,
+    type Sight,
+} from "./find";
+import { breakpointOf } from "../breakpoints";
+import { Minimap } from "./minimap";
+import { MockPane } from "./mocks";
+import { menuOf } from "./menu";
+import { element, pngData, sceneOf, type Scene } from "./scene";
+import { legendOf, type LegendEntry } from "./words";
+import { theme } from "./theme";
+
+const ZOOM = 1.25;
+/** The distance of the context menu from the corner of its node, in pixels. */
+const MENU_OFFSET = 8;
+/** How long a node whose look has changed is emphasised, in ms. */
+const EMPHASIS_MS = 500;
+/** How nodes move after a change of the text; the duration is in ms. */
+const GLIDE = { duration: 180, easing: "ease-out" };
+/** The maximum number of nodes of an animated drawing. */
+const MAX_ANIMATED = 300;
+
+export class PictureView {
+    private readonly svg = element("svg", { class: "picture", tabindex: 0, role: "application" });
+    private readonly bar = document.createElement("div");
+    private readonly input = document.createElement("input");
+    private readonly legend = document.createElement("div");
+    private readonly notice = document.createElement("div");
+    private readonly minimap = new Minimap((sight) => {
+        this.moved = true;
+        this.look(sight);
+    });
+    private readonly mocks = new MockPane((message) => {
+        this.post(message);
+    });
+    private readonly mocksButton = document.createElement("button");
+    private words: Words | undefined;
+    private picture: Picture | undefined;
+    /** The index of the drawing that is shown. */
+    private shown = 0;
+    /** Whether the user has changed the visible part, by scrolling or zooming. */
+    private moved = false;
+    private scene: Scene | undefined;
+    private sight: Sight = { x: 0, y: 0, scale: 1 };
+    private selected = -1;
+    private here: Part | null = null;
+    private highlighted = "";
+    private activity: Activity = { nodes: {}, edges: [] };
+    private breakpoints: MarkedParts = { nodes: [], edges: [] };
+
+    /**
+     * `root` is the element that the view fills; keys are handled while the focus is in it. `least` is the smallest scale
+     * in which a picture is shown first, if not the one in which it is legible.
+     */
+    constructor(
+        private readonly root: HTMLElement,
+        private readonly post: (message: FromView) => void,
+        private readonly least?: number,
+    ) {
+        this.bar.className = "bar";
+        this.legend.className = "legend";
+        this.notice.className = "notice";
+        this.notice.setAttribute("role", "status");
+        const stage = document.createElement("div");
+        stage.className = "stage";
+        stage.append(this.svg, this.notice, this.minimap.svg);
+        const middle = document.createElement("div");
+        middle.className = "middle";
+        middle.append(stage, this.mocks.pane);
+        root.append(this.bar, middle, this.legend);
+        this.mocks.onFocus = (nodes) => {
+            this.emphasiseNodes(nodes);
+        };
+        this.listen();
+        new ResizeObserver(() => {
+            this.refit();
+        }).observe(this.svg);
+    }
+
+    private get drawing(): Drawing | undefined {
+        return this.picture?.drawings[this.shown];
+    }
+
+    receive(message: ToView): void {
+        switch (message.type) {
+            case "words":
+                this.words = message.words;
+                this.fillBar(message.words);
+                break;
+            case "show":
+                this.show(message.picture, message.here, message.highlighted);
+                break;
+            case "here":
+                this.mark(message.here);
+                break;
+            case "highlight":
+                this.highlight(message.node);
+                break;
+            case "activity":
+                this.showActivity(message.activity);
+                break;
+            case "breakpoints":
+                this.breakpoints = message.parts;
+                this.showBreakpoints();
+                break;
+            case "rasterize":
+                void pngData(message.svg).then((data) => {
+                    this.post({ type: "png", data });
+                });
+                break;
+            case "mocks":
+                this.mocks.show(message.mocks, message.busy, message.opens);
+                this.mocksButton.hidden = message.mocks === null;
+                this.showMocksState();
+                break;
+            case "none":
+                this.clear();
+                this.notice.textContent = message.reason;
+                break;
+        }
+    }
+
+    private show(picture: Picture, here: Part | null, highlighted: string): void {
+        const isNew = this.picture?.title !== picture.title || this.picture.kind !== picture.kind;
+        const label = this.picture?.nodes[this.selected]?.label;
+        const before = isNew ? undefined : this.placed;
+        this.clear();
+        this.picture = picture;
+        // Beside all parts, the machine itself is meant.
+        this.svg.dataset["vscodeContext"] = menuOf([], picture.kind === "machine" ? ["addState"] : []);
+        this.here = here;
+        this.highlighted = highlighted;
+        if (isNew) {
+            this.moved = false;
+            this.shown = this.best();
+        }
+        this.draw();
+        if (before) this.animateFrom(before);
+        if (isNew) this.fitLegibly();
+        this.mark(here);
+        this.highlight(highlighted);
+        if (!isNew && label !== undefined) this.select(picture.nodes.findIndex((node) => node.label === label));
+        this.post({ type: "drawn", nodes: picture.nodes.length, edges: picture.edges.length });
+    }
+
+    private get placed(): PlacedNodes | undefined {
+        const { picture, drawing } = this;
+        return picture && drawing && { nodes: drawing.nodes, ids: picture.nodes.map(({ id }) => id) };
+    }
+
+    /** Let the nodes glide from where they were before a change of the text. The lines appear where they are. */
+    private animateFrom(before: PlacedNodes): void {
+        const { placed, scene } = this;
+        if (!placed || !scene || placed.nodes.length > MAX_ANIMATED || isMotionReduced()) return;
+        const moved = shifts(before, placed);
+        for (const { index, x, y } of moved)
+            scene.nodes.get(index)?.animate([{ transform: `translate(${x}px, ${y}px)` }, {}], GLIDE);
+        if (moved.length === 0) return;
+        for (const part of scene.root.querySelectorAll(":scope > :is(.link, .edge, .label, .start)"))
+            part.animate([{ opacity: 0 }, {}], GLIDE);
+    }
+
+    /** Draw the picture in the current direction. */
+    private draw(): void {
+        const { picture, drawing, words } = this;
+        if (!picture || !drawing || !words) return;
+        this.scene?.root.remove();
+        this.scene = sceneOf(picture, drawing, words);
+        this.svg.append(this.scene.root);
+        this.minimap.show(picture, drawing);
+        this.svg.setAttribute("aria-label", `${picture.title}. ${words.help}`);
+        this.legend.replaceChildren(...legendOf(picture, words).map(entry));
+        this.look(this.sight);
+        this.showActivity(this.activity);
+        this.showBreakpoints();
+        if (this.input.value !== "") this.search();
+    }
+
+    private best(): number {
+        const { width, height } = this.svg.getBoundingClientRect();
+        return bestDrawing(this.picture?.drawings ?? [], width, height);
+    }
+
+    /** Adapt the drawing to a new size of the window, unless the user has changed the visible part. */
+    private refit(): void {
+        if (this.moved || !this.picture) return;
+        const best = this.best();
+        if (best !== this.shown) {
+            this.shown = best;
+            this.draw();
+            for (const group of this.parts(this.here)) group.classList.add("here");
+            this.highlight(this.highlighted);
+            this.scene?.nodes.get(this.selected)?.classList.add("selected");
+        }
+        this.fitLegibly();
+    }
+
+    private clear(): void {
+        this.scene?.root.remove();
+        this.scene = undefined;
+        this.picture = undefined;
+        this.selected = -1;
+        this.notice.textContent = "";
+        this.legend.replaceChildren();
+        this.minimap.clear();
+    }
+
+    // ------------------------------------------------------------------- looking
+
+    private look(sight: Sight): void {
+        this.sight = sight;
+        const { x, y, scale } = sight;
+        this.scene?.root.setAttribute("transform", `scale(${scale}) translate(${-x} ${-y})`);
+        const { width, height } = this.svg.getBoundingClientRect();
+        this.minimap.look(sight, width, height);
+    }
+
+    fit(): void {
+        const { width, height } = this.svg.getBoundingClientRect();
+        this.moved = true;
+        if (this.drawing) this.look(fit(this.drawing, width, height));
+    }
+
+    private fitLegibly(): void {
+        const { width, height } = this.svg.getBoundingClientRect();
+        if (!this.drawing) return;
+        const sight = fitLegibly(this.drawing, width, height, this.least);
+        const first = this.box(this.first);
+        this.look(first ? around(sight, this.drawing, first, width, height) : sight);
+    }
+
+    /** The node that is shown first: that of the caret, otherwise the initial state, otherwise the first node. */
+    private get first(): number {
+        const { here, picture } = this;
+        if (here !== null) return this.nodeOf(here);
+        const initial = picture?.nodes.findIndex((node) => node.initial && node.kind === "state") ?? -1;
+        return initial >= 0 ? initial : (this.drawing?.nodes[0]?.index ?? -1);
+    }
+
+    /** The node of a part; that of a transition is its source. */
+    private nodeOf(part: Part): number {
+        if ("node" in part) return part.node;
+        const source = this.picture?.edges[part.edge]?.source;
+        return this.picture?.nodes.findIndex((node) => node.id === source) ?? -1;
+    }
+
+    private box(node: number): DrawnNode | undefined {
+        return this.drawing?.nodes.find(({ index }) => index === node);
+    }
+
+    /** Keep a node and the targets of its outgoing edges visible. */
+    private keepInView(node: number): void {
+        const { picture, drawing } = this;
+        const box = this.box(node);
+        if (!picture || !drawing || !box) return;
+        const id = picture.nodes[node]?.id;
+        const targets = new Set(picture.edges.filter(({ source }) => source === id).map(({ target }) => target));
+        const others = drawing.nodes.filter(({ index }) => targets.has(picture.nodes[index]?.id ?? ""));
+        const { width, height } = this.svg.getBoundingClientRect();
+        this.look(follow(this.sight, drawing, box, others, width, height));
+        this.reveal(node);
+    }
+
+    private zoom(factor: number, about?: { x: number; y: number }): void {
+        this.moved = true;
+        const { width, height } = this.svg.getBoundingClientRect();
+        this.look(zoom(this.sight, factor, about ?? { x: width / 2, y: height / 2 }));
+    }
+
+    /** Move the drawing so that a node is visible, and not below the map. */
+    private reveal(node: number): void {
+        const box = this.drawing?.nodes.find((candidate) => candidate.index === node);
+        const { width, height } = this.svg.getBoundingClientRect();
+        if (!box) return;
+        this.look(reveal(this.sight, box, width, height));
+        const map = this.minimap.size;
+        if (map) this.look(besideCorner(this.sight, box, width, height, map));
+    }
+
+    // ------------------------------------------------------------------ choosing
+
+    private select(node: number): void {
+        this.scene?.nodes.get(this.selected)?.classList.remove("selected");
+        this.selected = node;
+        const chosen = this.scene?.nodes.get(node);
+        chosen?.classList.add("selected");
+        if (!chosen) return;
+        this.reveal(node);
+        this.notice.textContent = "";
+        this.svg.setAttribute("aria-label", chosen.getAttribute("aria-label") ?? "");
+    }
+
+    /** Select the part that contains the caret. */
+    private mark(here: Part | null): void {
+        for (const group of this.parts(this.here)) group.classList.remove("here");
+        this.here = here;
+        for (const group of this.parts(here)) group.classList.add("here");
+        if (here === null || !this.picture) return;
+        this.keepInView(this.nodeOf(here));
+    }
+
+    /** Highlight the node of the current step of a trace. */
+    private highlight(id: string): void {
+        this.highlighted = id;
+        const highlighted = id === "" ? -1 : (this.picture?.nodes.findIndex((node) => node.id === id) ?? -1);
+        for (const [index, node] of this.scene?.nodes ?? [])
+            node.classList.toggle("highlighted", index === highlighted);
+        if (highlighted >= 0) this.reveal(highlighted);
+    }
+
+    /** Mark the leaves of a mock. */
+    private emphasiseNodes(ids: readonly string[]): void {
+        const { picture } = this;
+        for (const [index, node] of this.scene?.nodes ?? [])
+            node.classList.toggle("mocked", ids.includes(picture?.nodes[index]?.id ?? ""));
+        const first = picture?.nodes.findIndex(({ id }) => id === ids[0]) ?? -1;
+        if (first >= 0) this.reveal(first);
+    }
+
+    private showMocksState(): void {
+        this.mocksButton.setAttribute("aria-expanded", String(this.mocks.isOpen));
+    }
+
+    /** Show where a run is: active states, statuses of nodes, messages. */
+    private showActivity(activity: Activity): void {
+        const { picture, scene } = this;
+        const before = this.activity;
+        this.activity = activity;
+        if (!picture || !scene) return;
+        for (const [index, group] of scene.nodes) {
+            const id = picture.nodes[index]?.id ?? "";
+            const look = activity.nodes[id];
+            if (look === undefined) delete group.dataset["look"];
+            else group.dataset["look"] = look;
+            if (look !== undefined && look !== "idle" && look !== before.nodes[id]) emphasise(group);
+        }
+        for (const [index, groups] of scene.edges) {
+            const edge = picture.edges[index];
+            const isActive = activity.edges.some(({ from, to }) => from === edge?.source && to === edge.target);
+            for (const group of groups) group.classList.toggle("active", isActive);
+        }
+        this.revealActivity(picture, activity);
+    }
+
+    /** Show the node that is next; otherwise the innermost node that is running, or the ends of an active edge. */
+    private revealActivity(picture: Picture, activity: Activity): void {
+        const lookOf = ({ id }: PictureNode) => activity.nodes[id] ?? "";
+        const next = picture.nodes.findIndex((node) => ["next", "message"].includes(lookOf(node)));
+        // Children follow their parents.
+        const running = picture.nodes.findLastIndex((node) => ["running", "ticked"].includes(lookOf(node)));
+        if (next >= 0 || running >= 0) {
+            this.keepInView(next >= 0 ? next : running);
+            return;
+        }
+        for (const id of activity.edges.slice(0, 1).flatMap(({ from, to }) => [to, from]))
+            this.reveal(picture.nodes.findIndex((node) => node.id === id));
+    }
+
+    /** Put a dot on the parts that have a breakpoint. */
+    private showBreakpoints(): void {
+        const { scene, breakpoints } = this;
+        for (const dot of scene?.root.querySelectorAll(".breakpoint") ?? []) dot.remove();
+        for (const node of breakpoints.nodes) {
+            const box = this.box(node);
+            if (box) scene?.root.append(element("circle", { class: "breakpoint", cx: box.x, cy: box.y, r: 6 }));
+        }
+        for (const edge of breakpoints.edges) {
+            for (const group of scene?.edges.get(edge) ?? []) {
+                const line = group.querySelector<SVGPathElement>(".line");
+                if (!line) continue;
+                const { x, y } = line.getPointAtLength(line.getTotalLength() / 2);
+                scene?.root.append(element("circle", { class: "breakpoint", cx: x, cy: y, r: 5 }));
+            }
+        }
+    }
+
+    /** Set or remove the breakpoint of a part; return whether it can have one. */
+    private toggleBreakpoint(part: Part): boolean {
+        const breakpoint = this.picture && breakpointOf(this.picture, part);
+        if (breakpoint) this.post({ type: "breakpoint", breakpoint });
+        return breakpoint !== undefined;
+    }
+
+    private parts(part: Part | null): readonly SVGGElement[] {
+        if (part === null || !this.scene) return [];
+        if ("edge" in part) return this.scene.edges.get(part.edge) ?? [];
+        const node = this.scene.nodes.get(part.node);
+        return node ? [node] : [];
+    }
+
+    private jump(to: PictureNode | PictureEdge | undefined, beside: boolean): void {
+        if (to?.place) this.post({ type: "jump", place: to.place, beside });
+    }
+
+    /** Hide the nodes below a node of a tree, or show them again. */
+    private collapse(node: number): void {
+        const id = this.picture?.nodes[node]?.id;
+        if (this.picture?.kind === "tree" && id !== undefined) this.post({ type: "collapse", node: id });
+    }
+
+    /** Open the context menu of the selected node, or that of the picture. VS Code listens to this event. */
+    private openMenu(): void {
+        const group = this.scene?.nodes.get(this.selected) ?? this.svg;
+        const { left, top } = group.getBoundingClientRect();
+        const place = { clientX: left + MENU_OFFSET, clientY: top + MENU_OFFSET };
+        group.dispatchEvent(new MouseEvent("contextmenu", { bubbles: true, cancelable: true, ...place }));
+    }
+
+    /** Show the nodes that contain the words of a text. */
+    find(text: string): void {
+        this.input.value = text;
+        this.search();
+    }
+
+    private search(forward = false): void {
+        if (!this.picture || !this.scene) return;
+        const matches = search(this.picture, this.input.value);
+        this.minimap.mark(matches);
+        this.scene.root.classList.toggle("searched", this.input.value.trim() !== "");
+        for (const [index, node] of this.scene.nodes) node.classList.toggle("found", matches.includes(index));
+        this.notice.textContent =
+            this.input.value.trim() !== "" && matches.length === 0 ? (this.words?.nothing ?? "") : "";
+        const next = forward ? matches.find((index) => index > this.selected) : undefined;
+        const first = next ?? matches[0];
+        if (first !== undefined) this.select(first);
+    }
+
+    // ------------------------------------------------------------------- the user
+
+    private listen(): void {
+        this.svg.addEventListener("click", ({ target, ctrlKey, metaKey, altKey }) => {
+            if (!(target instanceof Element) || !this.scene || !this.picture) return;
+            const { node, edges } = target.closest<SVGGElement>("[data-node], [data-edges]")?.dataset ?? {};
+            if (altKey && (node ?? edges) !== undefined) {
+                this.toggleBreakpoint(node ? { node: Number(node) } : { edge: Number(edges?.split(" ")[0]) });
+                return;
+            }
+            if (node !== undefined) {
+                this.select(Number(node));
+                this.jump(this.picture.nodes[Number(node)], ctrlKey || metaKey);
+            } else if (edges !== undefined) {
+                this.jump(this.picture.edges[Number(edges.split(" ")[0])], ctrlKey || metaKey);
+            }
+        });
+        // The selected node is shown again after its action, even if the picture has grown.
+        this.svg.addEventListener("contextmenu", ({ target }) => {
+            const node = target instanceof Element && target.closest<SVGGElement>("[data-node]")?.dataset["node"];
+            if (node) this.select(Number(node));
+        });
+        this.svg.addEventListener("dblclick", ({ target }) => {
+            const node = target instanceof Element && target.closest<SVGGElement>("[data-node]")?.dataset["node"];
+            if (target === this.svg) this.fit();
+            else if (node) this.collapse(Number(node));
+        });
+        this.svg.addEventListener(
+            "wheel",
+            (event) => {
+                event.preventDefault();
+                if (!event.ctrlKey && !event.metaKey) {
+                    this.moved = true;
+                    const [dx, dy] = event.shiftKey ? [event.deltaY, event.deltaX] : [event.deltaX, event.deltaY];
+                    this.look(pan(this.sight, dx, dy));
+                    return;
+                }
+                const { left, top } = this.svg.getBoundingClientRect();
+                const about = { x: event.clientX - left, y: event.clientY - top };
+                this.zoom(Math.exp(-event.deltaY / 200), about);
+            },
+            { passive: false },
+        );
+        this.svg.addEventListener("pointerdown", (event) => {
+            if (
+                event.button !== 0 ||
+                (event.target instanceof Element && event.target.closest("[data-node], [data-edges]"))
+            )
+                return;
+            this.svg.setPointerCapture(event.pointerId);
+            this.svg.classList.add("moving");
+        });
+        this.svg.addEventListener("pointermove", (event) => {
+            if (!this.svg.hasPointerCapture(event.pointerId)) return;
+            this.moved = true;
+            this.look(pan(this.sight, -event.movementX, -event.movementY));
+        });
+        const release = () => {
+            this.svg.classList.remove("moving");
+        };
+        this.svg.addEventListener("pointerup", release);
+        this.svg.addEventListener("pointercancel", release);
+        this.root.addEventListener("keydown", (event) => {
+            if (this.key(event)) event.preventDefault();
+        });
+        this.input.addEventListener("input", () => {
+            this.search();
+        });
+    }
+
+    /** Handle a key; return whether the view uses it. */
+    private key({ key, ctrlKey, metaKey, shiftKey }: KeyboardEvent): boolean {
+        if (this.mocks.pane.contains(document.activeElement)) {
+            if (key !== "Escape") return false;
+            this.svg.focus();
+            return true;
+        }
+        const typing = document.activeElement === this.input;
+        if (typing) {
+            if (key === "Enter") this.search(true);
+            else if (key === "Escape") {
+                this.input.value = "";
+                this.search();
+                this.svg.focus();
+            } else return false;
+            return true;
+        }
+        if (key === "/" || (key === "f" && (ctrlKey || metaKey))) this.input.focus();
+        else if (ctrlKey || metaKey) return false;
+        else if (isArrow(key)) this.select(neighbour(this.drawing?.nodes ?? [], this.selected, key) ?? this.selected);
+        else if (key === "ContextMenu" || (key === "F10" && shiftKey)) this.openMenu();
+        else if (key === "Enter") this.jump(this.picture?.nodes[this.selected], false);
+        else if (key === "b") this.toggleBreakpoint({ node: this.selected });
+        else if (key === " ") this.collapse(this.selected);
+        else if (key === "+" || key === "=") this.zoom(ZOOM);
+        else if (key === "-") this.zoom(1 / ZOOM);
+        else if (key === "0") this.fit();
+        else return false;
+        return true;
+    }
+
+    private fillBar(words: Words): void {
+        this.input.type = "search";
+        this.input.placeholder = words.search;
+        this.input.setAttribute("aria-label", words.search);
+        const button = (text: string, title: string, run: () => unknown) => {
+            const made = document.createElement("button");
+            made.textContent = text;
+            made.title = title;
+            made.setAttribute("aria-label", title);
+            made.addEventListener("click", () => void run());
+            return made;
+        };
+        this.mocks.words = words;
+        const { mocksButton } = this;
+        mocksButton.textContent = words.mocks;
+        mocksButton.title = words.mocks;
+        mocksButton.hidden = true;
+        mocksButton.addEventListener("click", () => {
+            this.mocks.toggle();
+            this.showMocksState();
+        });
+        this.bar.replaceChildren(
+            this.input,
+            mocksButton,
+            button("+", words.zoomIn, () => {
+                this.zoom(ZOOM);
+            }),
+            button("−", words.zoomOut, () => {
+                this.zoom(1 / ZOOM);
+            }),
+            button(words.fit, words.fit, () => {
+                this.fit();
+            }),
+            button("SVG", words.saveSvg, () => {
+                this.save("svg");
+            }),
+            button("PNG", words.savePng, () => {
+                this.save("png");
+            }),
+            button("PDF", words.savePdf, () => {
+                this.save("pdf");
+            }),
+        );
+    }
+
+    private save(format: PictureFormat): void {
+        const direction = DIRECTIONS[this.shown];
+        if (this.picture && direction) this.post({ type: "save", format, direction, theme: theme() });
+    }
+}
+
+/** Draw the outline of a node thick for a moment, because its look has changed. */
+function emphasise(group: SVGGElement): void {
+    if (!isMotionReduced()) group.querySelector(":scope > .card")?.animate([{ strokeWidth: "12px" }, {}], EMPHASIS_MS);
+}
+
+function isMotionReduced(): boolean {
+    return (
+        document.body.classList.contains("vscode-reduce-motion") ||
+        window.matchMedia("(prefers-reduced-motion: reduce)").matches
+    );
+}
+
+function entry({ tone, text, isLine }: LegendEntry): HTMLElement {
+    const made = document.createElement("span");
+    const sample = element("svg", { width: isLine ? 24 : 10, height: 10, class: "scene", "aria-hidden": "true" });
+    const group = element("g", { class: `link tone-${tone}` });
+    const shape = isLine
+        ? element("path", { d: "M 1 5 H 23", class: "line" })
+        : element("rect", { x: 0, y: 0, width: 10, height: 10, rx: 2, class: "badge" });
+    group.append(shape);
+    sample.append(group);
+    made.append(sample, text);
+    return made;
+}
