@@ -61,7 +61,7 @@ def test_the_page_shows_what_is_printed(monkeypatch: pytest.MonkeyPatch, capsys:
     monkeypatch.chdir(ROOT)
     page = (ROOT / "docs/verification.md").read_text(encoding="utf-8")
     commands = re.findall(r"^\$ (.*)\n((?:(?!\$ |```).*\n)*)", page, re.MULTILINE)
-    assert len(commands) == 7
+    assert len(commands) == 9
     for command, shown in commands:
         program, *arguments = shlex.split(command)
         if program == "cd":
