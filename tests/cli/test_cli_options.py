@@ -168,16 +168,19 @@ def test_a_plain_kernel_is_named_once(command: Command, monkeypatch: pytest.Monk
 
 
 def test_compiled_modules_older_than_their_sources_are_named(tmp_path: Path) -> None:
-    package = tmp_path / "roaml"
+    package = tmp_path / "server/roaml"
     (package / "smc").mkdir(parents=True)
     source, compiled = package / "smc/kernel.py", package / f"smc/kernel{EXTENSION_SUFFIXES[0]}"
     source.touch()
     compiled.touch()
     os.utime(source, (100, 100))
     os.utime(compiled, (200, 200))
-    assert kernel_note.outdated_modules(package) == []
     os.utime(source, (300, 300))
+    assert kernel_note.outdated_modules(package) == []  # an installed wheel
+    (tmp_path / "setup.py").touch()
     assert kernel_note.outdated_modules(package) == ["roaml.smc.kernel"]
+    os.utime(source, (100, 100))
+    assert kernel_note.outdated_modules(package) == []
 
 
 def test_outdated_modules_are_a_warning(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -21,8 +21,10 @@ def is_compiled() -> bool:
 
 
 def outdated_modules(package: Path = Path(roaml.__file__).parent) -> list[str]:
-    """The compiled modules that are older than their sources, as in a checkout that was updated and not installed
-    again. They may fail or have wrong results."""
+    """The compiled modules that are older than their sources in a checkout that was updated and not installed again.
+    They may fail or have wrong results. In other installations, the times of files are those of the installation."""
+    if not (package.parents[1] / "setup.py").is_file():
+        return []
     suffix = EXTENSION_SUFFIXES[0]
     return [
         f"{package.name}.{path.parent.name}.{path.name.removesuffix(suffix)}"
