@@ -23,7 +23,7 @@ FILES = {"bash": "as2fm-lsp.bash", "tcsh": "as2fm-lsp.tcsh", "zsh": "_as2fm-lsp"
 def whole_parser() -> argparse.ArgumentParser:
     """The command line with all commands as one parser. Paths are completed."""
     whole = parser()
-    commands = whole.add_subparsers(metavar="COMMAND")
+    commands = whole.add_subparsers(metavar="COMMAND", parser_class=argparse.ArgumentParser)
     for name, summary in COMMANDS.items():
         command = importlib.import_module(f"as2fm_lsp.cli.{name}").parser()
         commands.add_parser(name, help=summary, parents=[command], add_help=False, conflict_handler="resolve")
