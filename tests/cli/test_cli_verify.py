@@ -625,7 +625,9 @@ def test_schedulers(command: Command, tmp_path: Path) -> None:
     result = rows(command("verify", name, *options, "--format", "json").out)["heads"]
     assert result["least"]["probability"] == pytest.approx(0.3, abs=0.05)
     assert result["greatest"]["probability"] == pytest.approx(0.8, abs=0.05)
-    assert "least probability found 0." in command("verify", name, *options).out
+    assert command("verify", name, *options).out.startswith("heads: least probability found 0.")
+    out = command("verify", name, *options[:-1], "Pmax=? [ F x=1 ]").out
+    assert re.match(r"Pmax.*: greatest probability found 0\.(.|\n)*\nPmax.*: least probability found 0\.", out)
 
 
 def test_expected_rewards(command: Command, tmp_path: Path) -> None:

@@ -49,6 +49,39 @@ def coin(**more: Any) -> Json:
 # ------------------------------------------------------------------ minimum and maximum
 
 
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [
+        ("Pmin=? [ F done ]", "minimum 0, maximum 1"),
+        ("Pmax=? [ F done ]", "maximum 1, minimum 0"),
+        ("P=? [ F done ]", "minimum 0, maximum 1"),
+        ("P>=0.5 [ F done ]", "minimum 0, maximum 1"),
+        ("P<=0.5 [ F done ]", "maximum 1, minimum 0"),
+    ],
+)
+def test_the_extreme_for_which_a_property_asks_is_first(
+    command: Command, tmp_path: Path, asked: str, words: str
+) -> None:
+    out = command("verify", write(tmp_path, starving()), "--property", asked).out
+    assert f": {words}, 1 under uniform choices, exact, " in out
+
+
+def test_each_of_two_properties_about_the_same_paths_has_its_extreme_first(command: Command, tmp_path: Path) -> None:
+    """They share one exploration."""
+    written = starving("Pmax")
+    written["properties"] += starving("Pmin")["properties"]
+    written["properties"][1]["name"] = "q"
+    lines = command("verify", write(tmp_path, written), "--exhaustive").out.splitlines()
+    assert any(line.startswith("p: maximum 1, minimum 0, ") for line in lines)
+    assert any(line.startswith("q: minimum 0, maximum 1, ") for line in lines)
+
+
+def test_a_diagnostic_has_the_asked_extreme_first(command: Command, tmp_path: Path) -> None:
+    name = write(tmp_path, starving("Pmax"))
+    done = command("verify", name, "--expect", "p <= 0.1", "--format", "github")
+    assert "`p`: maximum 1, minimum 0, exact, " in done.out
+
+
 def test_a_small_model_is_answered_exactly(command: Command, tmp_path: Path) -> None:
     name = write(tmp_path, starving())
     done = command("verify", name, "--expect", "p <= 0.1")

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from roaml.smc.goal import InitialFold
+from roaml.smc.goal import InitialFold, Question
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.statistics import Bounds
 from roaml.verification.number_text import exact_number
@@ -27,11 +27,18 @@ _OVER_INITIAL_STATES = {
 
 
 def lines(
-    name: str, exact: Exact, seconds: float, *, only_uniform: bool = False, uniform_estimate: str = ""
+    name: str,
+    exact: Exact,
+    seconds: float,
+    question: Question | None = None,
+    *,
+    only_uniform: bool = False,
+    uniform_estimate: str = "",
 ) -> list[str]:
     """The lines of the report for users: the values and the shortest traces.
 
     Args:
+        question: what the property asks for; `None` if that is unknown.
         only_uniform: whether only the value under uniform choices is of interest.
         uniform_estimate: the estimate of the value under uniform choices, if it is not known exactly.
     """
@@ -45,7 +52,7 @@ def lines(
     elif only_uniform and exact.uniform is not None:
         shown.append(f"{name}: = {_number(exact.uniform)} under uniform choices, {quality}, {end}")
     else:
-        both = f"minimum {_below_one(exact) or _number(exact.minimum)}, maximum {_number(exact.maximum)}"
+        both = _extremes(exact, question)
         if exact.uniform is not None:
             both += f", {_number(exact.uniform)} under uniform choices"
         shown.append(f"{name}: {both}, {quality}, {end}")
@@ -70,13 +77,25 @@ def lines(
     return shown
 
 
-def short(exact: Exact) -> str:
-    """The values, in one line for users."""
+def short(exact: Exact, question: Question) -> str:
+    """The values, in one line for users.
+
+    Args:
+        question: what the property asks for.
+    """
     states = "1 state" if exact.states == 1 else f"{exact.states:,} states"
     end = f"{states}{' after reductions' if exact.is_reduced else ''}"
     if is_same(exact.minimum, exact.maximum):
         return f"{_below_one(exact) or f'= {_number(exact.minimum)}'} for all schedulers, exact, {end}"
-    return f"minimum {_below_one(exact) or _number(exact.minimum)}, maximum {_number(exact.maximum)}, exact, {end}"
+    return f"{_extremes(exact, question)}, exact, {end}"
+
+
+def _extremes(exact: Exact, question: Question | None) -> str:
+    """The minimum and the maximum, with the one for which the property asks first; the minimum if that is unknown."""
+    minimum = f"minimum {_below_one(exact) or _number(exact.minimum)}"
+    maximum = f"maximum {_number(exact.maximum)}"
+    is_minimum_first = question is None or question.is_minimised
+    return f"{minimum}, {maximum}" if is_minimum_first else f"{maximum}, {minimum}"
 
 
 def row(exact: Exact) -> dict[str, Any]:

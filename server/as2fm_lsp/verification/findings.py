@@ -74,8 +74,8 @@ def value_text(result: Result) -> str:
             return "undecided"
         case CutShort():
             return "interrupted"
-        case Computed(exact=exact):
-            return exact_report.short(exact)
+        case Computed(question=question, exact=exact):
+            return exact_report.short(exact, question)
         case _:
             return headline(result).text
 

@@ -13,6 +13,7 @@ from as2fm_lsp.verification.doubts import CAN_GET_STUCK, can_get_stuck, doubts
 from as2fm_lsp.verification.stuck_report import PROBABILITY
 from roaml.exhaustive import assert_never
 from roaml.smc.choices import Choices
+from roaml.smc.lss import Side
 from roaml.smc.run import Answer, ratio_of
 from roaml.verification.expectations import NO_EXPECTATION
 from roaml.verification.growth import GrowingVariable, advice
@@ -27,6 +28,7 @@ from roaml.verification.results import (
     Result,
     RewardQuantile,
     Sampled,
+    SampledResult,
     Undecided,
     UnderAssumption,
 )
@@ -135,8 +137,8 @@ def _conditional_lines(result: Result) -> list[str]:
     lines = []
     for under in result.conditional:
         match under.outcome:
-            case Computed(exact=exact):
-                lines.append(f"  {under.assumption}: {exact_report.short(exact)}")
+            case Computed(question=question, exact=exact):
+                lines.append(f"  {under.assumption}: {exact_report.short(exact, question)}")
             case Estimated(answer=answer):
                 lines.append(f"  {under.assumption}: {_estimate(answer)}")
             case Undecided(reason=reason):
@@ -154,7 +156,12 @@ def _computed_lines(result: Result, computed: Computed) -> list[str]:
     has_estimate = sample is not None and computed.has_uniform_estimate
     estimate = _estimate(sample.answer) if sample is not None and has_estimate else ""
     lines = exact_report.lines(
-        name, computed.exact, result.seconds, only_uniform=computed.is_uniform, uniform_estimate=estimate
+        name,
+        computed.exact,
+        result.seconds,
+        computed.question,
+        only_uniform=computed.is_uniform,
+        uniform_estimate=estimate,
     )
     if sample is not None:
         lines += _remarks(sample.answer) if has_estimate else [f"  {line}" for line in _example_remarks(sample.answer)]
@@ -186,7 +193,7 @@ def _estimated_lines(
 
 def _sampled_lines(result: Result, sampled: Sampled, place_of: PlaceOf, level: StuckLevel, shown: str) -> list[str]:
     lines = []
-    for extreme in sampled.extremes:
+    for extreme in sorted(sampled.extremes, key=_is_other_side):
         lines.append(f"{result.name}: {extreme.side} probability found {_estimate(extreme.answer)}")
         lines.append(f"  by {extreme.words}")
         if extreme.stuck is not None and not extreme.answer.question.is_stuck:
@@ -198,6 +205,11 @@ def _sampled_lines(result: Result, sampled: Sampled, place_of: PlaceOf, level: S
         clause = "this is the result so far" if sampled.extremes else "there is no result so far"
         lines.append(f"  interrupted; {clause}" if lines else f"{result.name}: interrupted; {clause}")
     return lines
+
+
+def _is_other_side(extreme: SampledResult) -> bool:
+    """Whether the property does not ask for this extreme. Results are sorted by it, so that the asked one is first."""
+    return (extreme.side is Side.LEAST) is not extreme.answer.question.is_minimised
 
 
 def _refusal_text(refusal: Refusal) -> str:
