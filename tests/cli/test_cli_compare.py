@@ -144,10 +144,23 @@ def test_errors(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert "no property `none`" in error
     change(robot / "old/arm.ascxml", 'target="moving"', 'target="moved"')
     git(robot, "commit", "-a", "-q", "-m", "a mistake")
-    status, text, error = called(capsys, "HEAD:old/main.xml", "new/main.xml")
-    assert status == 1
-    assert "HEAD:old/arm.ascxml:" in error
-    assert "`HEAD:old/main.xml` has no values: it has errors" in text
+    assert called(capsys, "new/main.xml", "HEAD:old/main.xml", "--property=block_dropped")[0] == 1
+
+
+@pytest.mark.parametrize(
+    ("expected", "fail_on", "status"),
+    [(">= 0.2", "value", 0), (">= 0.4", "expectation", 1), (">= 0.2", "any", 1)],
+)
+def test_a_repair(robot: Path, capsys: pytest.CaptureFixture[str], expected: str, fail_on: str, status: int) -> None:
+    """A version that repairs errors fails only by what is asked of itself."""
+    change(robot / "old/arm.ascxml", 'target="moving"', 'target="moved"')
+    (robot / "new/as2fm.toml").write_text(f'[verify.expect]\nblock_dropped = "{expected}"\n', encoding="utf-8")
+    asked = ("--property=block_dropped", f"--fail-on={fail_on}")
+    found, text, error = called(capsys, "old/main.xml", "new/main.xml", *asked)
+    assert found == status
+    assert "old/arm.ascxml:" in error
+    assert "`old/main.xml` has no values: it has errors" in text
+    assert "block_dropped  unknown  0.3  –           no value before" in text
 
 
 def test_mocked_trees(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:

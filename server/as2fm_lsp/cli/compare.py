@@ -51,7 +51,7 @@ examples:
   as2fm-lsp compare main:tree.xml tree.xml --mock "*: 0.9 in 1 s"
   as2fm-lsp compare HEAD:main.xml --property delivered --method adaptive --epsilon 0.001
 
-exit status: 0 no difference of the kind that --fail-on names; 1 there is one, or a model has errors; 2 usage error; 3
+exit status: 0 no difference of the kind that --fail-on names; 1 there is one, or NEW has errors; 2 usage error; 3
 internal error; 130 interrupted (143 by SIGTERM)
 """
 
@@ -125,7 +125,7 @@ def _run(options: argparse.Namespace) -> int:
             targets = [_target(options, version) for version in versions]
         values: tuple[ValueChange, ...] = ()
         before, after = targets
-        if before is not None and after is not None:
+        if after is not None:
             status.stage("computing the values")
             values = compare_values(before, after, options.property or None, computed)
         files = [file for version in versions for file in (version.path,)]
@@ -138,7 +138,7 @@ def _run(options: argparse.Namespace) -> int:
         computed.sampling.confidence,
     )
     _write(options, outputs, report)
-    has_errors = not options.structure and any(_has_values(v) for v in versions) and not all(targets)
+    has_errors = not options.structure and _has_values(versions[1]) and after is None
     return FOUND if has_errors or _fails(options.fail_on, report) else CLEAN
 
 
@@ -206,12 +206,15 @@ def _write(options: argparse.Namespace, outputs: OutputFiles, report: Comparison
 
 
 def _fails(fail_on: FailOn, report: ComparisonReport) -> bool:
+    """Whether the new version fails. If the old one has errors, its missing values are no difference: the new version
+    repairs them."""
     is_missed = any(value.is_newly_missed for value in report.values)
+    differs = report.old.has_values is True and any(value.differs for value in report.values)
     match fail_on:
         case FailOn.EXPECTATION:
             return is_missed
         case FailOn.VALUE:
-            return is_missed or any(value.differs for value in report.values)
+            return is_missed or differs
         case FailOn.ANY:
-            return is_missed or any(value.differs for value in report.values) or not report.structure.is_empty
+            return is_missed or differs or not report.structure.is_empty
     return assert_never(fail_on)

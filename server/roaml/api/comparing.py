@@ -108,7 +108,7 @@ def compare_structure(old: ComparedVersion, new: ComparedVersion, ros_paths: Ite
 
 
 def compare_values(
-    old: VerificationTarget,
+    old: VerificationTarget | None,
     new: VerificationTarget,
     properties: Sequence[str] | None = None,
     options: ExperimentOptions | None = None,
@@ -117,6 +117,7 @@ def compare_values(
     `options`, and so are therefore all differences.
 
     Args:
+        old: the old version; `None` if it has errors: then each property of the new version has no value before.
         properties: the names of the properties; all if not given. Each must exist in one of the models.
 
     Raises:
@@ -125,24 +126,29 @@ def compare_values(
     from roaml.experiments.changes import value_changes  # noqa: PLC0415 - the structure needs no model checker
     from roaml.experiments.enough import together  # noqa: PLC0415
     from roaml.experiments.grid import ExperimentOptions, FixedModel, Grid  # noqa: PLC0415
+    from roaml.experiments.points import unknown_point  # noqa: PLC0415
     from roaml.jani.selection import select  # noqa: PLC0415
     from roaml.verification.target import asking  # noqa: PLC0415
 
-    before, after = asking(old, properties or ()), asking(new, properties or ())
-    known, known_now = ({property_.name for property_ in target.properties} for target in (before, after))
+    before, after = None if old is None else asking(old, properties or ()), asking(new, properties or ())
+    known, known_now = (set() if t is None else {p.name for p in t.properties} for t in (before, after))
     for name in properties or ():
         if name not in known:
             select(after.properties, [name], "model")
     asked, asked_now = (
-        tuple(p.name for p in target.properties if properties is None or p.name in properties)
-        for target in (before, after)
+        () if t is None else tuple(p.name for p in t.properties if properties is None or p.name in properties)
+        for t in (before, after)
     )
     count = len(asked) + len(asked_now)
     shared = together(options or ExperimentOptions(), count)
     shared = replace(shared, max_transitions=shared.limits(count).transitions)
+    now = tuple(Grid(FixedModel(after), (), asked_now, shared).points())
+    if before is None:
+        nothing = [unknown_point((), name, "") for name in asked_now]
+        return value_changes(nothing, now, frozenset(), (), _expectations(after, asked_now))
     return value_changes(
         tuple(Grid(FixedModel(before), (), asked, shared).points()),
-        tuple(Grid(FixedModel(after), (), asked_now, shared).points()),
+        now,
         frozenset(name for name in known & known_now if _definition(before, name) != _definition(after, name)),
         _expectations(before, asked),
         _expectations(after, asked_now),
