@@ -7,7 +7,7 @@ choices that change neither the minimum nor the maximum (docs/spec/reductions.md
 
 from __future__ import annotations
 
-import itertools
+from collections.abc import Iterator
 from typing import Any
 
 from roaml.explicit.independence import can_be_reduced
@@ -80,14 +80,10 @@ def attempt(
     cost, reason = setup_cost(checker), ""
     checker, property_ = alone(checker, property_)
     tables = search_tables(checker, property_, limits)
-    passes = (False, True) if leaves_out and can_be_reduced(checker.program, property_.goal) else (False,)
-    for upper, is_reduced in itertools.product(_steps_to(limits), passes):
+    reduces = leaves_out and can_be_reduced(checker.program, property_.goal)
+    for most, is_reduced in _searches(limits, reduces=reduces):
         search: Any = None
         space, exact = None, None
-        transitions = upper.transitions
-        if is_reduced and transitions is not None:
-            transitions //= REDUCED_SHARE
-        most = replace(upper, transitions=transitions)
         try:
             space = explore(checker, property_, most, watch, is_reduced=is_reduced, tables=tables)
             search = space.search
@@ -104,6 +100,23 @@ def attempt(
         if exact is not None:
             return Attempt(exact if exact.is_precise else None, cost, space=space)
     return Attempt(None, cost, reason)
+
+
+def _searches(limits: StateLimits, *, reduces: bool) -> Iterator[tuple[StateLimits, bool]]:
+    """The limits of the searches that follow each other, and whether each leaves out choices. The search that leaves
+    out choices comes before the one through all states within wide limits, which takes much longer and answers less
+    often."""
+    most = limits.transitions
+    least = LIMITS.transitions
+    is_wide = least is not None and (most is None or most > least)
+    if reduces and is_wide:
+        yield replace(limits, states=min(LIMITS.states, limits.states), transitions=least), False
+    else:
+        yield limits, False
+    if reduces:
+        yield replace(limits, transitions=None if most is None else most // REDUCED_SHARE), True
+        if is_wide:
+            yield limits, False
 
 
 def _conditional(
@@ -137,15 +150,6 @@ def _conditional(
 def setup_cost(checker: ModelChecker) -> int:
     """The duration of the preparation of a search, in transitions."""
     return SETUP_COST * len(checker.program.code)
-
-
-def _steps_to(limits: StateLimits) -> tuple[StateLimits, ...]:
-    """The limits of the searches that follow each other: if `limits` are much wider than `LIMITS`, these come first,
-    because the search without choices may be small where the one through all states is large."""
-    if limits.transitions is None or LIMITS.transitions is None or limits.transitions <= LIMITS.transitions:
-        return (limits,)
-    states = min(LIMITS.states, limits.states)
-    return replace(limits, states=states, transitions=LIMITS.transitions), limits
 
 
 def values_if_small(checker: ModelChecker, property_: CompiledProperty, *, leaves_out: bool = True) -> Exact | None:
