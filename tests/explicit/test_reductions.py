@@ -317,3 +317,60 @@ def test_the_last_line_names_properties_without_the_uniform_value(
     assert "q: = 1 for all schedulers" in text
     values = "minimum and maximum over all schedulers, value under uniform choices (not of `p`); reductions"
     assert f"\ncomputed from all reachable states: {values}" in text
+
+
+def test_two_of_three_vectors_suffice() -> None:
+    """`r` goes with `a` or with `b`. What `c` does with `d` matters only after that."""
+    written = document(
+        automaton("a", "l m", [edge("l", "m", action="first")]),
+        automaton("b", "l m", [edge("l", "m", action="second")]),
+        automaton(
+            "r",
+            "l m n o",
+            [edge("l", "m", action="first"), edge("l", "n", action="second"), edge("m", "o", action="y")],
+        ),
+        automaton("c", "l m", [edge("l", "m", action="x")]),
+        automaton("d", "l m n", [edge("l", "m", action="x"), edge("l", way("n", z=1), action="y")]),
+        variables=[variable("z")],
+        syncs=[
+            ["first", None, "first", None, None],
+            [None, "second", "second", None, None],
+            [None, None, None, "x", "x"],
+            [None, None, "y", None, "y"],
+        ],
+        properties={"p": probability(op("F", op("=", "z", 1)))},
+    )
+    spaces = both(*question_of(written))
+    assert spaces is not None
+    check(*spaces)
+    assert is_smaller(*spaces)
+
+
+@pytest.mark.parametrize("is_received", [True, False])
+def test_ticks_that_test_a_buffer_are_taken_early(is_received: bool) -> None:
+    """The tick of `t` waits until the buffer `e` is empty. If the message is received only after the tick, the tick may
+    not be possible any more, and the trace may end before it."""
+    written = document(
+        automaton("t", "l m n", [edge("l", "m", action="tick"), edge("m", "n", action="q")]),
+        automaton("s", "l m", [edge("l", "m", action="send")]),
+        automaton(
+            "e", "w f", [edge("w", "w", action="tick"), edge("w", "f", action="send"), edge("f", "w", action="receive")]
+        ),
+        automaton(
+            "r", "l m n",
+            [edge("l", way("n", z=1), action="q"), edge("l" if is_received else "n", "m", action="receive")],
+        ),
+        variables=[variable("z")],
+        syncs=[
+            ["tick", None, "tick", None],
+            [None, "send", "send", None],
+            [None, None, "receive", "receive"],
+            ["q", None, None, "q"],
+        ],
+        properties={"p": probability(op("F", op("=", "z", 1)))},
+    )  # fmt: skip
+    spaces = both(*question_of(written))
+    assert spaces is not None
+    check(*spaces)
+    assert is_smaller(*spaces) or not is_received
+    assert values_of(spaces[1]).minimum.lower == 0.0

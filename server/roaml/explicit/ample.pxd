@@ -16,12 +16,22 @@ cdef class AmpleSets:
     cdef int[::1] slot_start, slot_vector, hidden, dependent_start, dependent_vector, guard_start, guard_vector
     cdef int[::1] open_guards, frozen_at, candidates, busy_with
     cdef int[::1] own_start, own_slot, gates_start, gates, gate_slot_start, gate_slot, list_end, list_slot
-    cdef int writes_seen, is_fleeting, count, alone, chosen, chosen_rank
+    cdef int[::1] random_vector, members, smallest
+    cdef int writes_seen, is_fleeting, count, handled, alone, chosen, chosen_rank
+    cdef int is_early, takes_several, member_count
     cdef i64 runs, searches
     cdef i64[::1] frozen, waits, listed, busy
 
-    @cython.locals(count=int, i=int, k=int, vector=int)
+    @cython.locals(count=int, i=int, vector=int)
     cpdef int find(self) noexcept
+    @cython.locals(i=int, vector=int)
+    cpdef int find_early(self) noexcept
+    @cython.locals(best=int, i=int, k=int)
+    cpdef int find_several(self) noexcept
+    @cython.locals(i=int, k=int, vector=int)
+    cdef void _prepare(self) noexcept
+    @cython.locals(several=int)
+    cdef int _has_tests(self, int vector) noexcept
     @cython.locals(kind=int, i=int, hidden=int)
     cdef int _kind(self, int vector) noexcept
     @cython.locals(i=int, vector=int, k=int, instance=int)
@@ -30,10 +40,17 @@ cdef class AmpleSets:
     cdef int _is_single(self, int vector) noexcept
     @cython.locals(place=int, group=int)
     cdef int _group(self, int slot) noexcept
-    @cython.locals(i=int, group=int, k=int, at=int, place=int, slot=int)
-    cdef int _is_alone(self, int vector) noexcept
-    cdef int _freeze(self, int instance) noexcept
     @cython.locals(i=int, slot=int)
+    cdef int _is_alone(self, int vector) noexcept
+    @cython.locals(i=int)
+    cdef int _suffice(self, int vector) noexcept
+    cdef int _is_closed(self, int vector) noexcept
+    @cython.locals(group=int, k=int, place=int, slot=int)
+    cdef int _is_settled(self) noexcept
+    @cython.locals(i=int, is_frozen=bint, group=int, k=int)
+    cdef int _add(self, int vector) noexcept
+    cdef int _freeze(self, int instance) noexcept
+    @cython.locals(last=int, i=int, slot=int)
     cdef int _bar(self, int vector) noexcept
     @cython.locals(i=int, slot=int, gate=int, group=int, k=int)
     cdef int _let_wait(self, int vector) noexcept

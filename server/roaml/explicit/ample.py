@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Finds a choice that may be taken alone in a state: a persistent set of one synchronisation vector
+"""Finds choices that suffice in a state: a persistent set of synchronisation vectors
 (docs/spec/reductions.md#frozen-instances, which contains the proof).
 
 - Plain Python; Cython compiles it with the types in `ample.pxd`.
@@ -7,6 +7,10 @@
   before α is taken. An instance is frozen if each vector in which it can take part at its location waits for a frozen
   instance; if a vector waits only for other instances, one of them is added.
 - α may be taken alone if all participants are frozen, and if each vector that depends on α has a frozen participant.
+- A vector may be taken alone *early* although participants that it leaves unchanged are not frozen, if no trace ends
+  before it is taken, which the search checks.
+- Several vectors suffice together if what was said about α is true of all of them, and if chance decides nothing before
+  one of them is taken.
 - The result depends only on the state, not on the order in which states are visited.
 """
 
@@ -53,6 +57,7 @@ class AmpleSets:
         self.frozen = array("q", [0] * self.kernel.instances)
         self.frozen_at = array("i", [0] * self.kernel.instances)
         self.count = 0
+        self.handled = 0
         self.waits = array("q", [0] * (len(self.kernel.enabled) + 1))
         self.own_start = tables.own_start
         self.own_slot = tables.own_slot
@@ -71,6 +76,12 @@ class AmpleSets:
         self.chosen_rank = 0
         self.writes_seen = 0
         self.candidates = array("i", [0] * (len(self.kernel.enabled) + 1))
+        self.random_vector = tables.random_vector
+        self.is_early = 0
+        self.takes_several = 0
+        self.members = array("i", [0] * (len(self.kernel.enabled) + 1))
+        self.member_count = 0
+        self.smallest = array("i", [0] * (len(self.kernel.enabled) + 1))
 
     def find(self) -> int:
         """The vector with the smallest number among those that may be taken alone; -1 if there is none. If all of these
@@ -82,15 +93,7 @@ class AmpleSets:
             return -1
         if count == 1 and self.is_fleeting != 0:
             return self.kernel.enabled[0] if self._is_single(self.kernel.enabled[0]) != 0 else -1
-        for i in range(count):
-            vector = self.kernel.enabled[i]
-            k = i
-            while k > 0 and self.candidates[k - 1] > vector:
-                self.candidates[k] = self.candidates[k - 1]
-                k -= 1
-            self.candidates[k] = vector
-        self.searches += 1
-        self._mark_busy()
+        self._prepare()
         for i in range(count):
             vector = self.candidates[i]
             if self._kind(vector) == HIDDEN and self._is_single(vector) != 0 and self._is_alone(vector) != 0:
@@ -101,6 +104,57 @@ class AmpleSets:
                 self.writes_seen = 1
                 return vector
         return -1
+
+    def find_early(self) -> int:
+        """After `find` has found none: a vector that may be taken alone if no trace can end before it is taken; -1 if
+        there is none."""
+        vector = -1
+        self.is_early = 1
+        for i in range(self.kernel.enabled_count):
+            vector = self.candidates[i]
+            if (
+                self._has_tests(vector) != 0
+                and vector < self.kernel.first_held
+                and self._kind(vector) == HIDDEN
+                and self._is_single(vector) != 0
+                and self._is_alone(vector) != 0
+            ):
+                break
+            vector = -1
+        self.is_early = 0
+        return vector
+
+    def find_several(self) -> int:
+        """The number of the vectors in `smallest`, which suffice in the current state; 0 if all are needed."""
+        best = self.kernel.enabled_count
+        if best < 3 or self.kernel.enabled[0] >= self.kernel.first_held:
+            return 0
+        self._prepare()
+        self.takes_several = 1
+        for i in range(self.kernel.enabled_count):
+            if self._suffice(self.candidates[i]) != 0 and self.member_count < best:
+                best = self.member_count
+                for k in range(best):
+                    self.smallest[k] = self.members[k]
+        self.takes_several = 0
+        return best if best < self.kernel.enabled_count else 0
+
+    def _prepare(self) -> None:
+        """Sort the enabled vectors into `candidates`, and mark their participants."""
+        for i in range(self.kernel.enabled_count):
+            vector = self.kernel.enabled[i]
+            k = i
+            while k > 0 and self.candidates[k - 1] > vector:
+                self.candidates[k] = self.candidates[k - 1]
+                k -= 1
+            self.candidates[k] = vector
+        self.searches += 1
+        self._mark_busy()
+
+    def _has_tests(self, vector: int) -> int:
+        """Whether a vector has participants that it leaves unchanged in all of their locations."""
+        several = self.kernel.all_start[vector + 1] - self.kernel.all_start[vector]
+        return 1 if several > self.kernel.active_start[vector + 1] - self.kernel.active_start[vector] else 0
 
     def _kind(self, vector: int) -> int:
         """NEVER, HIDDEN or WRITES."""
@@ -139,25 +193,36 @@ class AmpleSets:
 
     def _is_alone(self, vector: int) -> int:
         """Whether an enabled vector may be taken alone."""
-        for i in range(self.kernel.all_start[vector], self.kernel.all_start[vector + 1]):
-            slot = self.kernel.all_slot[i]
+        for i in range(self.kernel.active_start[vector], self.kernel.active_start[vector + 1]):
+            slot = self.kernel.active_slot[i]
             if self.busy_with[self.kernel.slot_instance[slot]] != vector:
                 return 0
+        return self._is_closed(vector)
+
+    def _suffice(self, vector: int) -> int:
+        """Whether `members` suffice, which an enabled vector requires; chance decides nothing before one of them is
+        taken."""
+        if self._is_closed(vector) == 0:
+            return 0
+        for i in range(len(self.random_vector)):
+            if self._bar(self.random_vector[i]) == 0:
+                return 0
+        return self._is_settled()
+
+    def _is_closed(self, vector: int) -> int:
+        """Whether an enabled vector suffices together with those that are added to `members`."""
         self.runs += 1
         self.count = 0
+        self.handled = 0
+        self.member_count = 0
         self.alone = vector
-        self.waits[vector] = self.runs
-        for i in range(self.kernel.all_start[vector], self.kernel.all_start[vector + 1]):
-            self._freeze(self.kernel.slot_instance[self.kernel.all_slot[i]])
-        for i in range(self.kernel.all_start[vector], self.kernel.all_start[vector + 1]):
-            group = self._group(self.kernel.all_slot[i])
-            for k in range(self.dependent_start[group], self.dependent_start[group + 1]):
-                if self._bar(self.dependent_vector[k]) == 0:
-                    return 0
-        at = 0
-        while at < self.count:
-            place = self.kernel.place[self.frozen_at[at]]
-            at += 1
+        return 1 if self._add(vector) != 0 and self._is_settled() != 0 else 0
+
+    def _is_settled(self) -> int:
+        """Whether each vector of the frozen instances waits, or is a member."""
+        while self.handled < self.count:
+            place = self.kernel.place[self.frozen_at[self.handled]]
+            self.handled += 1
             for group in range(self.kernel.group_start[place], self.kernel.group_start[place + 1]):
                 slot = self.kernel.group_slot[group]
                 for k in range(self.slot_start[slot], self.slot_start[slot + 1]):
@@ -165,10 +230,39 @@ class AmpleSets:
                         return 0
         return 1
 
+    def _add(self, vector: int) -> int:
+        """Let an enabled vector be a member, and freeze the participants that it changes, and if it is the first member
+        also the others, unless it is taken early; return 0 if that is not possible."""
+        if vector != self.alone and self.takes_several == 0:
+            return 0
+        if self.takes_several != 0 and (
+            self._kind(vector) != HIDDEN or self.member_count + 1 == self.kernel.enabled_count
+        ):
+            return 0
+        self.waits[vector] = self.runs
+        self.members[self.member_count] = vector
+        self.member_count += 1
+        for i in range(self.kernel.active_start[vector], self.kernel.active_start[vector + 1]):
+            if self._freeze(self.kernel.slot_instance[self.kernel.active_slot[i]]) == 0:
+                return 0
+        for i in range(self.kernel.all_start[vector], self.kernel.all_start[vector + 1]):
+            is_frozen = vector == self.alone and self.is_early == 0
+            if is_frozen and self._freeze(self.kernel.slot_instance[self.kernel.all_slot[i]]) == 0:
+                return 0
+            group = self._group(self.kernel.all_slot[i])
+            for k in range(self.dependent_start[group], self.dependent_start[group + 1]):
+                if self._bar(self.dependent_vector[k]) == 0:
+                    return 0
+        return 1
+
     def _freeze(self, instance: int) -> int:
-        """Freeze an instance; return 0 if another enabled vector can move it."""
+        """Freeze an instance; return 0 if another enabled vector can move it, which may not be a member."""
         if self.frozen[instance] != self.runs:
-            if self.busy[instance] == self.searches and self.busy_with[instance] != self.alone:
+            if (
+                self.takes_several == 0
+                and self.busy[instance] == self.searches
+                and self.busy_with[instance] != self.alone
+            ):
                 return 0
             self.frozen[instance] = self.runs
             self.frozen_at[self.count] = instance
@@ -176,29 +270,34 @@ class AmpleSets:
         return 1
 
     def _bar(self, vector: int) -> int:
-        """Ensure that a vector has a frozen participant, or is held until the current one is taken; return 0 if that is
-        not possible."""
+        """Ensure that a vector is a member, has a frozen participant, or is held until the first member is taken;
+        return 0 if that is not possible."""
+        if self.waits[vector] == self.runs:
+            return 1
         if vector >= self.kernel.first_held:
             return 1 if self.alone < self.kernel.first_held else 0
         for i in range(self.kernel.all_start[vector], self.kernel.all_start[vector + 1]):
             if self.frozen[self.kernel.slot_instance[self.kernel.all_slot[i]]] == self.runs:
                 return 1
         if self.kernel.vector_missing[vector] == 0:
-            return 0
+            return self._add(vector)
+        last = -1
         for i in range(self.kernel.all_start[vector], self.kernel.all_start[vector + 1]):
             slot = self.kernel.all_slot[i]
             if self.kernel.ready[slot] == 0:
-                return self._freeze(self.kernel.slot_instance[slot])
-        return 0
+                last = self.kernel.slot_instance[slot]
+                if self.takes_several == 0 or self.busy[last] != self.searches:
+                    break
+        return self._freeze(last)
 
     def _let_wait(self, vector: int) -> int:
-        """Ensure that a vector waits for a frozen instance, or is held until the current one is taken; return 0 if that
-        is not possible."""
+        """Ensure that a vector is a member, waits for a frozen instance, or is held until the first member is taken;
+        return 0 if that is not possible."""
         if vector >= self.kernel.first_held and self.alone < self.kernel.first_held:
             self.waits[vector] = self.runs
             return 1
         if self.kernel.vector_missing[vector] == 0:
-            return 0
+            return self._add(vector)
         self.waits[vector] = self.runs
         self.chosen = -1
         for i in range(self.own_start[vector], self.own_start[vector + 1]):

@@ -40,6 +40,7 @@ class Independence(Record, frozen=True, eq=False):
         own_start, own_slot: the slots of each vector that are in no other vector.
         gates_start, gates: the gates of each vector (`roaml.smc.kernel` defines gates).
         gate_slot_start, gate_slot: the slots of each gate.
+        random_vector: the vectors in whose steps chance may decide between several destinations.
         is_fleeting: whether a state with only one choice need not be a state of the search: the goal does not depend on
             conditions that hold in a state for ever.
     """
@@ -58,6 +59,7 @@ class Independence(Record, frozen=True, eq=False):
     gates: Ints
     gate_slot_start: Ints
     gate_slot: Ints
+    random_vector: Ints
     is_fleeting: bool
 
 
@@ -106,6 +108,7 @@ class IndependenceAnalysis:
         self.legend = legend
         self.uses = uses
         reads, writes = [0] * len(legend.slots), [0] * len(legend.slots)
+        self.random_vector = _random_vectors(program)
         self.groups: list[_Group] = []
         for location in range(len(legend.locations)):
             for slot in program.group_slot[program.group_start[location] : program.group_start[location + 1]]:
@@ -178,8 +181,27 @@ class IndependenceAnalysis:
             *_ranges(guard_lists),
             array("i", open_guards),
             *_participants(program),
+            self.random_vector,
             is_fleeting=AT_END not in goal.lower,
         )
+
+
+def _random_vectors(program: Program) -> Ints:
+    """The vectors with a participant that has an edge with several destinations."""
+    slots = set()
+    for group, slot in enumerate(program.group_slot):
+        edges = range(program.edge_start[group], program.edge_start[group + 1])
+        if any(program.way_start[edge + 1] - program.way_start[edge] > 1 for edge in edges):
+            slots.add(slot)
+    vectors = range(len(program.active_start) - 1)
+    return array(
+        "i",
+        [
+            v
+            for v in vectors
+            if not slots.isdisjoint(program.active_slot[program.active_start[v] : program.active_start[v + 1]])
+        ],
+    )
 
 
 def _participants(program: Program) -> tuple[Ints, Ints, Ints, Ints, Ints, Ints]:

@@ -10,9 +10,9 @@ from roaml.smc.packing cimport PackedStates
 ctypedef unsigned long long u64
 ctypedef long long i64
 
-cdef u64 UINT32_MASK
+cdef u64 UINT32_MASK, UINT64_MASK
 cdef i64 MAX_COUNTED_STATES, LEARNED_FROM_STATES
-cdef int SAMPLED_TRACES, SAMPLED_STEPS, MAX_PASSED, MAX_REMEMBERED, MAX_WAITING, WAITS
+cdef int SAMPLED_TRACES, SAMPLED_STEPS, MAX_PASSED, MAX_REMEMBERED, MAX_TRIED, MAX_WAITING, WAITS
 cdef int FALSE, TRUE, UNKNOWN, FAULTY
 cdef int TIME, STUCK
 cdef int COMPLETE, PART, STATES, MEMORY, FAULT, CHOICES
@@ -41,6 +41,7 @@ cdef class StateSearch(PackedStates):
     cdef public i64[::1] start
     cdef public int[::1] parent, code
     cdef public unsigned char[::1] label
+    cdef unsigned char[::1] is_partial
     cdef public double[::1] reals
     cdef i64 code_room, reals_room
     cdef public i64 code_end, expanded, problem, transitions
@@ -56,7 +57,14 @@ cdef class StateSearch(PackedStates):
     cdef int[::1] waiting_parent
     cdef i64[::1] waiting_code
     cdef u64 peeked
+    cdef double combinations
+    cdef i64[::1] tried_value
+    cdef u64[::1] tried
+    cdef int tried_count, avoids_cycles
+    cdef int[::1] reached
 
+    @cython.locals(incoming=int[::1], free=int[::1], left=i64, end=i64, at=i64, state=i64, other=i64, k=i64)
+    cpdef bint has_partial_cycle(self)
     @cython.locals(most=u64, cell=int, state=i64, i=int)
     cdef void _enter_roots(self, i64 many) except *
     @cython.locals(k=int)
@@ -83,11 +91,28 @@ cdef class StateSearch(PackedStates):
     @cython.locals(steps=i64, label=int, lasting=int, leaf=int, verdict=int, lower=i64, status=int)
     cdef int _judged(self) noexcept
     cdef int _combined(self) noexcept
-    @cython.locals(label=int, leads_on=int, combinations=double, many=double, most=int, exit_reward=double, i=int, vector=int, count=int, pending=int,
-                   weight=double, k=int, j=int)
+    @cython.locals(label=int, leads_on=int, exit_reward=double, i=int, pending=int)
     cdef void _expand(self, i64 state) except *
-    @cython.locals(at=i64, transitions=i64, count=int, j=int, may_leave_out=int, k=int)
-    cdef int _take_alone(self, int vector, i64 state) except? -9
+    @cython.locals(count=int, many=double, j=int, most=int, k=int, weight=double, leads_on=int)
+    cdef int _take(self, int vector, i64 state, double exit_reward) except? -9
+    @cython.locals(vector=int, many=int, at=i64, transitions=i64, i=int)
+    cdef int _leave_choices_out(self, i64 state) except? -9
+    @cython.locals(k=i64, other=i64)
+    cdef int _may_be_taken(self, i64 at, i64 state) except? -9
+    @cython.locals(count=int, branches=int, _=int)
+    cdef int _list_destinations(self, i64 at, i64 end) except? -9
+    @cython.locals(vector=int)
+    cdef int _alone(self) except? -9
+    @cython.locals(found=int, i=int, cell=int)
+    cdef int _may_end_before(self, int vector) except? -9
+    @cython.locals(layout=int, i=int, at=int, leads_on=int)
+    cdef int _may_end_without(self, int vector) except? -9
+    @cython.locals(single=int, leads_on=int, goes_on=int, i=int, other=int)
+    cdef int _goes_on_without(self, int vector) except? -9
+    @cython.locals(count=int, ways=int, chance=int, i=int, slot=int, edge=int, several=int, leads_on=int, _=int)
+    cdef int _try(self, int vector) except? -9
+    @cython.locals(k=int, same=int, i=int)
+    cdef int _add_tried(self) noexcept
     @cython.locals(reason=int, added=int, leaf=int)
     cdef int _end(self) noexcept
     @cython.locals(count=int, edge_count=int, i=int, slot=int, group=int, first=int, end=int, is_single=int, at=int, k=int, edge=int, guard=int)
@@ -120,5 +145,7 @@ cdef class StateSearch(PackedStates):
     cdef void _return(self, i64 state) noexcept
     @cython.locals(label=int, vector=int, count=int, i=int, slot=int, way=int)
     cdef int _pass(self) except? -9
-    @cython.locals(place=int, group=int, first=int, end=int, edge=int, way=int)
+    @cython.locals(edge=int, way=int)
     cdef int _only_way(self, int slot) noexcept
+    @cython.locals(place=int, group=int, first=int, end=int, edge=int)
+    cdef int _only_edge(self, int slot) noexcept

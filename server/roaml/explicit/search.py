@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from roaml.smc.kernel import Kernel
 
 UINT32_MASK = 0xFFFFFFFF
+UINT64_MASK = 0xFFFFFFFFFFFFFFFF
 LEARNED_FROM_STATES = 4096
 """With more states than this, cells get bits for the values that they have in random traces, because packing all states
 again is slow."""
@@ -45,6 +46,8 @@ MAX_PASSED = 1000
 """The maximum number of states in sequence that are not stored, because they may form a cycle."""
 MAX_REMEMBERED = 1 << 17
 """The maximum number of states that are remembered although they are not stored."""
+MAX_TRIED = 64
+"""The maximum number of states that are visited to find out whether a trace can end before a vector is taken."""
 
 FALSE, TRUE, UNKNOWN, FAULTY = 0, 1, 2, 3
 TIME, STUCK = 1, 3
@@ -84,8 +87,10 @@ class StateSearch(PackedStates):
         expanded: the number of states whose choices are known; they are the first ones.
         problem: the state whose choices could not be computed; -1 if there is none.
         alone: the number of stored states in which choices were left out.
-        passed: the number of steps from states that are not stored. A path that is remembered is not followed again.
+        passed: the number of steps from states that are not stored, and of steps that were tried. A path that is
+            remembered is not followed again.
         circled: the number of these steps on paths that were ended because they may form a cycle.
+        is_partial: for each state, whether choices were left out.
     """
 
     def __init__(
@@ -148,10 +153,17 @@ class StateSearch(PackedStates):
         self.passed_to = flat("i", 1)
         self.passed_left = flat("i", 1)
         self.pending = array("i", [0] * (len(self.kernel.enabled) + 1))
+        self.combinations = 0.0
+        self.tried_value = array("q", [0]) * self.cell_count
+        self.tried = array("Q", [0]) * MAX_TRIED
+        self.tried_count = 0
+        self.avoids_cycles = 1
+        self.reached = array("i", [0])
 
         self.start = flat("q", self.state_room)
         self.parent = flat("i", self.state_room)
         self.label = flat("B", self.state_room)
+        self.is_partial = flat("B", self.state_room)
         self.code = flat("i", 256)
         self.code_room = 256
         self.code_end = 0
@@ -188,11 +200,45 @@ class StateSearch(PackedStates):
 
     # ------------------------------------------------------------ public
 
-    def leave_out(self, ample: AmpleSets) -> None:
-        """Leave out choices where `ample` finds a vector that may be taken alone."""
+    def leave_out(self, ample: AmpleSets, avoids_cycles: int) -> None:
+        """Leave out choices where `ample` finds vectors that suffice.
+
+        Args:
+            avoids_cycles: whether choices are left out only in states from which all choices that are not left out lead
+                to states that have not been expanded. Otherwise `has_partial_cycle` must be called in the end.
+        """
         self.ample = ample
         self.leaves_out = 1
+        self.avoids_cycles = avoids_cycles
         self._forget()
+
+    def has_partial_cycle(self) -> bool:
+        """Whether choices have been left out in all states of some cycle. States are removed from the others as soon as
+        none that remains leads to them; the states of a cycle remain."""
+        incoming = flat("i", self.count + 1)
+        free = flat("i", self.count + 1)
+        left = 0
+        end = 0
+        for state in range(self.count):
+            if self.is_partial[state] != 0:
+                left += 1
+                for k in range(self._list_destinations(self.start[state], self.start[state + 1])):
+                    incoming[self.reached[k]] += 1
+        for state in range(self.count):
+            if self.is_partial[state] != 0 and incoming[state] == 0:
+                free[end] = state
+                end += 1
+        at = 0
+        while at < end:
+            state = free[at]
+            at += 1
+            for k in range(self._list_destinations(self.start[state], self.start[state + 1])):
+                other = self.reached[k]
+                incoming[other] -= 1
+                if incoming[other] == 0 and self.is_partial[other] != 0:
+                    free[end] = other
+                    end += 1
+        return end < left
 
     def run(self, states: int) -> int:
         """Expand about `states` further states; return the status of the search."""
@@ -490,7 +536,7 @@ class StateSearch(PackedStates):
         """The bytes in use. Memory that was reserved but never written is not included."""
         remembered = (self.passed_mask + 1) * (8 * self.words + 8)
         return (
-            self.count * (8 * self.words + 13)
+            self.count * (8 * self.words + 14)
             + 8 * (self.table_mask + 1)
             + 4 * self.code_end
             + 8 * self.real_count
@@ -506,6 +552,7 @@ class StateSearch(PackedStates):
         self.start = grown(self.start, self.state_room)
         self.parent = grown(self.parent, self.state_room)
         self.label = grown(self.label, self.state_room)
+        self.is_partial = grown(self.is_partial, self.state_room)
         if self.passed_mask + 1 < MAX_REMEMBERED:
             self._forget()
 
@@ -604,7 +651,7 @@ class StateSearch(PackedStates):
             return
         leads_on = 0
         if label & STATUS == UNKNOWN and (self.most_depth < 0 or self.depth < self.most_depth):
-            combinations = 0.0
+            self.combinations = 0.0
             exit_reward = 0.0
             if self.kernel.exit_reward >= 0:
                 self.kernel.reward = 0.0
@@ -613,45 +660,15 @@ class StateSearch(PackedStates):
             pending = self.kernel.enabled_count
             for i in range(pending):
                 self.pending[i] = self.kernel.enabled[i]
-            if self.leaves_out != 0:
-                vector = self.ample.find()
-                if vector >= 0 and self._take_alone(vector, state) != 0:
-                    pending = 0
-                    leads_on = 1
-                if self.status != PART:
-                    self.problem = state
-                    return
+            if self.leaves_out != 0 and self._leave_choices_out(state) != 0:
+                pending = 0
+                leads_on = 1
             for i in range(pending):
-                vector = self.pending[i]
-                count = self._open(vector)
-                if self.kernel.fault != 0:
-                    self.status = FAULT
-                    self.problem = state
-                    return
-                many = 1.0
-                for j in range(count):
-                    most = 0
-                    for k in range(self.edge_from[j], self.edge_from[j + 1]):
-                        most += self.kernel.way_start[self.edges[k] + 1] - self.kernel.way_start[self.edges[k]]
-                    many *= most
-                if combinations + many > self.most_choices:
-                    self.status = CHOICES
-                    self.problem = state
-                    return
-                combinations += many
-                weight = 1.0
-                for k in range(self.kernel.all_start[vector], self.kernel.all_start[vector + 1]):
-                    weight *= self.kernel.ready[self.kernel.all_slot[k]]
-                for j in range(count):
-                    weight /= self.edge_from[j + 1] - self.edge_from[j]
-                    self.picks[j] = self.edge_from[j]
-                while True:
-                    leads_on |= self._choose(vector, count, state, weight, exit_reward)
-                    if self.status != PART:
-                        self.problem = state
-                        return
-                    if self._next_edges(count) == 0:
-                        break
+                if self.status == PART:
+                    leads_on |= self._take(self.pending[i], state, exit_reward)
+            if self.status != PART:
+                self.problem = state
+                return
             if leads_on == 0:
                 label |= ENDED
                 label |= self._end()
@@ -661,37 +678,226 @@ class StateSearch(PackedStates):
         self.start[state + 1] = self.code_end
         self.expanded = state + 1
 
-    def _take_alone(self, vector: int, state: int) -> int:
-        """Write the choices of one vector, if the goal cannot see it, and if all choices lead to states that have not
-        been expanded. So each cycle of states contains one whose choices are all known. Return whether the choices were
-        written."""
-        at = self.code_end
-        transitions = self.transitions
+    def _take(self, vector: int, state: int, exit_reward: float) -> int:
+        """Write the choices of one vector; return whether one of them leads to another state."""
         count = self._open(vector)
         if self.kernel.fault != 0:
             self.status = FAULT
             return 0
+        many = 1.0
         for j in range(count):
-            self.picks[j] = self.edge_from[j]
-        self.is_seen = 0
-        self.looks_at = self.ample.writes_seen
-        self._choose(vector, count, state, 1.0, 0.0)
-        self.looks_at = 0
-        if self.status != PART:
+            most = 0
+            for k in range(self.edge_from[j], self.edge_from[j + 1]):
+                most += self.kernel.way_start[self.edges[k] + 1] - self.kernel.way_start[self.edges[k]]
+            many *= most
+        if self.combinations + many > self.most_choices:
+            self.status = CHOICES
             return 0
-        may_leave_out = 1 - self.is_seen
-        if self.code[at] >= 0:
-            if self.code[at] <= state:
-                may_leave_out = 0
-        else:
-            for k in range(-self.code[at]):
-                if self.code[at + 3 + 2 * k] <= state:
-                    may_leave_out = 0
-        if may_leave_out == 0:
+        self.combinations += many
+        weight = 1.0
+        for k in range(self.kernel.all_start[vector], self.kernel.all_start[vector + 1]):
+            weight *= self.kernel.ready[self.kernel.all_slot[k]]
+        for j in range(count):
+            weight /= self.edge_from[j + 1] - self.edge_from[j]
+            self.picks[j] = self.edge_from[j]
+        leads_on = 0
+        while True:
+            leads_on |= self._choose(vector, count, state, weight, exit_reward)
+            if self.status != PART or self._next_edges(count) == 0:
+                return leads_on
+
+    # ------------------------------------------------------------ choices that suffice
+
+    def _leave_choices_out(self, state: int) -> int:
+        """Write the choices of some vectors that suffice, if the goal cannot see them. Return whether they were
+        written."""
+        vector = self._alone()
+        many = 1
+        self.looks_at = self.ample.writes_seen
+        if vector < 0:
+            many = self.ample.find_several()
+            self.looks_at = 0
+        at = self.code_end
+        transitions = self.transitions
+        self.is_seen = 0
+        for i in range(many):
+            if self.status == PART:
+                self._take(vector if vector >= 0 else self.ample.smallest[i], state, 0.0)
+        self.looks_at = 0
+        if self.status != PART or many == 0:
+            return 0
+        if self.is_seen != 0 or self._may_be_taken(at, state) == 0:
             self.code_end = at
             self.transitions = transitions
+            self.combinations = 0.0
             return 0
+        if many < self.kernel.enabled_count:
+            self.is_partial[state] = 1
         self.alone += 1
+        return 1
+
+    def _may_be_taken(self, at: int, state: int) -> int:
+        """Whether the choices of a state from an index of `code` on all lead to other states, which have greater
+        numbers if cycles are avoided."""
+        for k in range(self._list_destinations(at, self.code_end)):
+            other = self.reached[k]
+            if other == state or (other < state and self.avoids_cycles != 0):
+                return 0
+        return 1
+
+    def _list_destinations(self, at: int, end: int) -> int:
+        """Put the states to which the choices in a part of `code` lead into `reached`; return their number."""
+        if len(self.reached) < end - at:
+            self.reached = array("i", [0]) * (2 * (end - at))
+        count = 0
+        while at < end:
+            branches = -self.code[at]
+            if branches <= 0:
+                self.reached[count] = self.code[at]
+                count += 1
+                at += 1
+                continue
+            at += 3
+            for _ in range(branches):
+                self.reached[count] = self.code[at]
+                count += 1
+                at += 2
+        return count
+
+    def _alone(self) -> int:
+        """The vector that may be taken alone in the current state; -1 if there is none."""
+        vector = self.ample.find()
+        if vector < 0:
+            vector = self.ample.find_early()
+            if vector >= 0 and self._may_end_before(vector) != 0:
+                vector = -1
+        return vector
+
+    def _may_end_before(self, vector: int) -> int:
+        """Whether a trace from the current state may end before `vector` is taken, or whether too many states would
+        have to be visited to find out."""
+        self.tried_value[:] = self.value
+        found = -1
+        while found < 0:
+            found = self._may_end_without(vector)
+            for i in range(self.words):
+                self.following[i] = 0
+            for i in range(self.live_start[self.words]):
+                cell = self.live[i]
+                self.following[self.word[cell]] |= (
+                    (self.tried_value[cell] - self.low[cell]) & UINT64_MASK
+                ) << self.shift[cell]
+            self._enter()
+        if self.remembers != 0:
+            self._judged()
+        self.ample.writes_seen = 0
+        return found
+
+    def _may_end_without(self, vector: int) -> int:
+        """The result of `_may_end_before`; -1 if the layout has changed, so that `tried` is not valid."""
+        layout = self.layout
+        if len(self.tried) != MAX_TRIED * self.words:
+            self.tried = array("Q", [0]) * (MAX_TRIED * self.words)
+        for i in range(self.words):
+            self.tried[i] = self.now[i]
+        self.tried_count = 1
+        at = 0
+        while at < self.tried_count:
+            for i in range(self.words):
+                self.following[i] = self.tried[at * self.words + i]
+            self._enter()
+            leads_on = self._goes_on_without(vector)
+            if layout != self.layout:
+                return -1
+            if leads_on == 0:
+                return 1
+            at += 1
+        return 0
+
+    def _goes_on_without(self, vector: int) -> int:
+        """Try the steps of the current state except those of `vector`; return whether a trace cannot end here."""
+        if self.kernel.fault != 0:
+            self.kernel.fault = 0
+            return 0
+        single = self.ample.find()
+        if single == vector:
+            return 1  # It remains possible, so no trace ends before it.
+        if single >= 0:
+            leads_on = self._try(single)
+            if leads_on != 0:
+                return 1 if leads_on > 0 else 0
+        goes_on = 1 if self.kernel.vector_missing[vector] == 0 else 0
+        for i in range(self.kernel.enabled_count):
+            other = self.kernel.enabled[i]
+            if other != vector and other != single:
+                leads_on = self._try(other)
+                if leads_on < 0:
+                    return 0
+                goes_on |= leads_on
+        return goes_on
+
+    def _try(self, vector: int) -> int:
+        """Add the states to which a vector leads to `tried`; return whether one of them is another state, or -1 if the
+        vector is too complicated or held, fails, or if there are too many states."""
+        if vector >= self.kernel.first_held:
+            return -1
+        count = 0
+        ways = 1
+        chance = 0
+        for i in range(self.kernel.active_start[vector], self.kernel.active_start[vector + 1]):
+            slot = self.kernel.active_slot[i]
+            if self.kernel.ready[slot] != 1:
+                return -1
+            edge = self._only_edge(slot)
+            self.kernel.part_slot[count] = slot
+            self.kernel.part_way[count] = self.kernel.way_start[edge]
+            several = self.kernel.way_start[edge + 1] - self.kernel.way_start[edge]
+            if several > 1:
+                if ways > 1:
+                    return -1
+                ways = several
+                chance = count
+            count += 1
+        leads_on = 0
+        for _ in range(ways):
+            self.kernel.parts = count
+            self.kernel.vector = vector
+            self.kernel._execute_ways(vector)
+            self.passed += 1
+            if self.kernel.fault != 0:
+                self.kernel.fault = 0
+                self._end_step()
+                self._undo()
+                return -1
+            self._pack_step()
+            if self.misfit >= 0:
+                self._widen_all()
+            self._undo()
+            for i in range(self.words):
+                if self.following[i] != self.now[i]:
+                    leads_on = 1
+            if self._add_tried() == 0:
+                return -1
+            self.kernel.part_way[chance] += 1
+        return leads_on
+
+    def _add_tried(self) -> int:
+        """Add the state with the key `following` to `tried`, unless it is there; return 0 if there are too many."""
+        if len(self.tried) != MAX_TRIED * self.words:
+            return 1  # The layout has changed; all is tried again.
+        for k in range(self.tried_count):
+            same = 1
+            for i in range(self.words):
+                if self.tried[k * self.words + i] != self.following[i]:
+                    same = 0
+                    break
+            if same != 0:
+                return 1
+        if self.tried_count == MAX_TRIED:
+            return 0
+        for i in range(self.words):
+            self.tried[self.tried_count * self.words + i] = self.following[i]
+        self.tried_count += 1
         return 1
 
     def _end(self) -> int:
@@ -958,7 +1164,7 @@ class StateSearch(PackedStates):
         label = self._judged()
         if label & STATUS != UNKNOWN or self.kernel.fault != 0:
             return 0
-        vector = self.ample.find()
+        vector = self._alone()
         if vector < 0:
             return 0
         count = 0
@@ -1005,6 +1211,12 @@ class StateSearch(PackedStates):
 
     def _only_way(self, slot: int) -> int:
         """The way of the only enabled edge of a slot; -1 if the edge has several ways."""
+        edge = self._only_edge(slot)
+        way = self.kernel.way_start[edge]
+        return way if self.kernel.way_start[edge + 1] == way + 1 else -1
+
+    def _only_edge(self, slot: int) -> int:
+        """The only enabled edge of a slot."""
         place = self.kernel.place[self.kernel.slot_instance[slot]]
         group = self.kernel.group_start[place]
         while self.kernel.group_slot[group] != slot:
@@ -1014,5 +1226,4 @@ class StateSearch(PackedStates):
         edge = first
         while end - first > 1 and self.kernel.guard[edge] >= 0 and self.kernel._execute(self.kernel.guard[edge]) == 0:
             edge += 1
-        way = self.kernel.way_start[edge]
-        return way if self.kernel.way_start[edge + 1] == way + 1 else -1
+        return edge

@@ -143,18 +143,48 @@ def explore(
         LimitError: a limit was exceeded.
         SearchInterruptedError: Ctrl-C was pressed.
     """
-    kernel_module, search_module = modules or _modules()
     if checker.initial_states > limits.states:
         many = f"there are {checker.initial_states:,} initial states, more than {limits.states:,} (max-states)"
         raise LimitError(many, checker.initial_states)
+    tables = tables or search_tables(checker, property_, limits)
+    search = _search(
+        checker, property_, limits, tables, modules or _modules(), leaves_out=is_reduced, avoids_cycles=False
+    )
+    try:
+        space = _searched(checker, property_, limits, watch, search, is_reduced=is_reduced)
+        if is_reduced and search.has_partial_cycle():
+            search = _search(
+                checker, property_, limits, tables, modules or _modules(), leaves_out=True, avoids_cycles=True
+            )
+            space = _searched(checker, property_, limits, watch, search, is_reduced=True)
+    except KeyboardInterrupt:
+        raise SearchInterruptedError(search) from None
+    return space
+
+
+def _search(
+    checker: ModelChecker,
+    property_: CompiledProperty,
+    limits: StateLimits,
+    tables: Tables,
+    modules: Any,
+    *,
+    leaves_out: bool,
+    avoids_cycles: bool,
+) -> Any:
+    """A search that has not begun.
+
+    Args:
+        leaves_out: whether choices are left out.
+        avoids_cycles: see `StateSearch.leave_out`.
+    """
+    kernel_module, search_module = modules
     compiled = checker.compiled(property_)
-    goal = compiled.goal
-    program = compiled.program
-    steps, lower, depth = _bounds(goal)
-    simulator = kernel_module.Kernel(program, goal)
+    steps, lower, depth = _bounds(compiled.goal)
+    simulator = kernel_module.Kernel(compiled.program, compiled.goal)
     search = search_module.StateSearch(
         simulator,
-        tables or search_tables(checker, property_, limits),
+        tables,
         steps,
         lower,
         depth,
@@ -162,13 +192,10 @@ def explore(
         available() // 2 if limits.bytes is None else limits.bytes,
         limits.combinations,
     )
-    if is_reduced:
-        independence = preparation_of(checker).independence.tables(goal)
-        search.leave_out(_ample_module(search_module).AmpleSets(simulator, independence))
-    try:
-        return _searched(checker, property_, limits, watch, search, is_reduced=is_reduced)
-    except KeyboardInterrupt:
-        raise SearchInterruptedError(search) from None
+    if leaves_out:
+        independence = preparation_of(checker).independence.tables(compiled.goal)
+        search.leave_out(_ample_module(search_module).AmpleSets(simulator, independence), int(avoids_cycles))
+    return search
 
 
 def _searched(
