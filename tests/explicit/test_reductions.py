@@ -374,3 +374,73 @@ def test_ticks_that_test_a_buffer_are_taken_early(is_received: bool) -> None:
     check(*spaces)
     assert is_smaller(*spaces) or not is_received
     assert values_of(spaces[1]).minimum.lower == 0.0
+
+
+def test_a_destination_with_probability_zero_does_not_lead_on() -> None:
+    """As above, but `i` receives the message only in `m`, which it cannot reach. So the trace gets stuck if the message
+    is sent before the tick. After the tick, it does not end."""
+    stays = edge("l", way("m", "none"), way("l", op("-", 1, "none")), action="idle")
+    written = document(
+        automaton("t", "l m n", [edge("l", "m", action="tick"), edge("m", "n"), edge("n", "m")]),
+        automaton(STUCK_AUTOMATON, "l m", [edge("l", STUCK_LOCATION, action="send")]),
+        automaton(
+            "e",
+            "w f",
+            [
+                edge("w", "w", action="tick"),
+                edge("w", "f", action="send"),
+                edge("f", "f", action="idle"),
+                edge("f", "w", action="receive"),
+            ],
+        ),
+        automaton("i", "l m", [stays, edge("m", "l", action="receive")], [variable("none")]),
+        variables=[variable("z")],
+        syncs=[
+            ["tick", None, "tick", None],
+            [None, "send", "send", None],
+            [None, None, "idle", "idle"],
+            [None, None, "receive", "receive"],
+        ],
+        properties={"p": probability(op("F", op("=", "z", 1)))},
+    )
+    spaces = both(*question_of(written))
+    assert spaces is not None
+    check(*spaces)
+    assert spaces[0].can_get_stuck
+
+
+def test_a_choice_may_wait_for_chance() -> None:
+    """`r` goes with `a` or with `b`, and reaches the goal if the coin `c` agrees: always, if it waits for the coin."""
+    written = document(
+        automaton("a", "l m", [edge("l", "m", action="first")]),
+        automaton("b", "l m", [edge("l", "m", action="second")]),
+        automaton(
+            "r",
+            "l m n o",
+            [
+                edge("l", "m", action="first"),
+                edge("l", "n", action="second"),
+                edge("m", way("o", z=1), action="heads"),
+                edge("n", way("o", z=1), action="tails"),
+            ],
+        ),
+        automaton(
+            "c", "l m n o",
+            [
+                edge("l", way("m", 0.5), way("n", 0.5)), edge("l", "o"),
+                edge("m", "m", action="heads"), edge("n", "n", action="tails"),
+            ],
+        ),
+        variables=[variable("z")],
+        syncs=[
+            ["first", None, "first", None],
+            [None, "second", "second", None],
+            [None, None, "heads", "heads"],
+            [None, None, "tails", "tails"],
+        ],
+        properties={"p": probability(op("F", op("=", "z", 1)))},
+    )  # fmt: skip
+    spaces = both(*question_of(written))
+    assert spaces is not None
+    check(*spaces)
+    assert values_of(spaces[1]).maximum.lower == 1.0

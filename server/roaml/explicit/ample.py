@@ -108,6 +108,8 @@ class AmpleSets:
     def find_early(self) -> int:
         """After `find` has found none: a vector that may be taken alone if no trace can end before it is taken; -1 if
         there is none."""
+        if self.kernel.enabled_count < 2:
+            return -1
         vector = -1
         self.is_early = 1
         for i in range(self.kernel.enabled_count):

@@ -838,7 +838,8 @@ class StateSearch(PackedStates):
 
     def _try(self, vector: int) -> int:
         """Add the states to which a vector leads to `tried`; return whether one of them is another state, or -1 if the
-        vector is too complicated or held, fails, or if there are too many states."""
+        vector is too complicated or held, fails, or if there are too many states. A destination whose probability is
+        computed may have the probability 0, so that it does not lead on."""
         if vector >= self.kernel.first_held:
             return -1
         count = 0
@@ -853,7 +854,7 @@ class StateSearch(PackedStates):
             self.kernel.part_way[count] = self.kernel.way_start[edge]
             several = self.kernel.way_start[edge + 1] - self.kernel.way_start[edge]
             if several > 1:
-                if ways > 1:
+                if ways > 1 or self.kernel.way_chance[self.kernel.way_start[edge]] >= 0:
                     return -1
                 ways = several
                 chance = count
