@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,10 +12,13 @@ from smc_models import Json, automaton, document, edge, model, op, probability, 
 
 from roaml import api
 from roaml.smc.model import ModelChecker
+from roaml.smc.program import FALSE
 from roaml.smc.record import Recorder
 from roaml.smc.story import Story, build_story
 from roaml.text import Location
-from roaml.views.story import FIRST, LAST, as_html, as_mermaid, as_text, lines
+from roaml.views.cause import cause
+from roaml.views.folding import LeftOut, Repetition, folded, without_middle
+from roaml.views.story import as_html, as_mermaid, as_text, lines
 from roaml.views.turns import turns
 
 HERE = Path(__file__).parent
@@ -49,7 +53,7 @@ def test_the_page_has_a_column_for_each_who(bug: tuple[Story, PlaceOf]) -> None:
     story, place_of = bug
     page = as_html([story], place_of, "why <now>")
     assert "why &lt;now&gt;" in page
-    for who in {line.who for line in lines(story, place_of)}:
+    for who in {line.who for line in lines(story, place_of) if line.who}:
         assert page.count(f"<th>{who}</th>") == 1
 
 
@@ -61,7 +65,7 @@ def test_forwarding_steps_are_omitted() -> None:
     ready = api.checker(subject.model, ["never_empty"])
     story = build_story(Recorder(ready, ready.compiled_properties[0], 0, 10_000), EMPTY, subject.clock)
     story_lines = lines(story, lambda _: "")
-    assert {line.who for line in story_lines} == {
+    assert {line.who for line in story_lines if line.who} == {
         "Battery",
         "BatteryAbove (bt_1002)",
         "ReactiveFallback (bt_1001)",
@@ -95,13 +99,42 @@ def test_steps_of_hand_written_models_are_listed_one_by_one() -> None:
     assert story_lines == [("a", "meet: s → t", ()), ("b", "meet: s → t", ()), ("a", "t → u", ("x: 0 → 1",))]
 
 
-def test_the_middle_of_a_long_story_is_folded() -> None:
+def test_repetitions_are_folded() -> None:
     count = edge("s", way("s", x=op("+", "x", 1)))
-    goal = {"p": probability(op("F", op("=", "x", FIRST + LAST + 7)))}
+    goal = {"p": probability(op("F", op("=", "x", 9)))}
     story = walked(document(automaton("a", "s", [count]), variables=[variable("x")], properties=goal))
-    assert len(turns(story)) == FIRST + LAST + 7
-    story_lines = lines(story, lambda _: "")
-    assert len(story_lines) == FIRST + LAST + 1
-    assert story_lines[FIRST].what == "… 7 more …"
-    assert [line.step for line in story_lines] == sorted(line.step for line in story_lines)
-    assert "… 7 more …" in as_mermaid(story, lambda _: "")
+    assert len(turns(story)) == 9
+    story_lines = [(line.step, line.what, line.details) for line in lines(story, lambda _: "")]
+    assert story_lines == [(1, "s", ("x: 0 → 1",)), (2, "… 7 more times …", ()), (9, "s", ("x: 8 → 9",))]
+    assert "… 7 more times …" in as_mermaid(story, lambda _: "")
+    assert as_text(story, lambda _: "a.jani").startswith("p holds: a s and x: 8 → 9")
+
+
+def test_periods_that_consist_of_periods_are_folded() -> None:
+    day = [*["tick"] * 5, "charge"]
+    assert folded([*day * 4, None]) == [0, Repetition(1, 4, 1, 4), 5, Repetition(3, 3, 6, 23), 24]
+
+
+def test_different_lines_are_not_folded() -> None:
+    assert folded(["a", "b", "c", "a", "b", "c"]) == [0, 1, 2, 3, 4, 5]
+    assert folded([None, None, None]) == [0, 1, 2]
+
+
+def test_the_middle_of_a_long_story_is_left_out() -> None:
+    shown = without_middle(list(range(20)), 3, 5)
+    assert shown == [0, 1, 2, LeftOut(3, 14), 15, 16, 17, 18, 19]
+    assert without_middle(shown, 3, 5) == shown
+
+
+def test_the_first_line_names_the_leaf_that_failed() -> None:
+    folder = ROBOT.parent / "case_study"
+    subject = api.as_target(api.load(str(folder / "main_with_bug.xml")))
+    ready = api.checker(subject.model, ["recovers_or_succeeds"])
+    recorder = Recorder(ready, ready.compiled_properties[0], 0, 10_000)
+    failing = next(n for n in range(100) if build_story(recorder, n, subject.clock).recording.verdict == FALSE)
+    sentence = cause(build_story(recorder, failing, subject.clock), lambda _: "")
+    assert re.fullmatch(
+        r"recovers_or_succeeds fails at \d+\.000 s: the tree ends with FAILURE, "
+        r"because MoveBlock \(bt_1005\) returns FAILURE",
+        sentence,
+    )

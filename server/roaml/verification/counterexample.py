@@ -87,10 +87,13 @@ def _counterexample(
         return None
     story = traces.story(seen.trace)
     verdict = VERDICTS[story.recording.verdict]
-    from roaml.views.story import heading, lines  # noqa: PLC0415 - most verifications do not need a story
+    from roaml.views.cause import cause  # noqa: PLC0415 - most verifications do not need a story
+    from roaml.views.story import heading, lines  # noqa: PLC0415
 
-    story_lines = lines(story, place_of or _path_and_line(traces.target))
-    return Counterexample(heading(story), verdict, seen.trace, tuple(story_lines))
+    place = place_of or _path_and_line(traces.target)
+    why = cause(story, place)
+    words = f"{why}. {heading(story)}" if why else heading(story)
+    return Counterexample(words, verdict, seen.trace, tuple(lines(story, place)))
 
 
 def _path_and_line(target: VerificationTarget) -> Callable[[Location], str]:

@@ -5,27 +5,26 @@ page."""
 from __future__ import annotations
 
 import html
+import re
 from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
-from roaml.jani.expressions import Integer, Real
-from roaml.jani.model import Clause
 from roaml.jani.node import Origin
-from roaml.scxml.names import CLOCK, TREE_ROOT_PREFIX
+from roaml.scxml.names import read_tree_event
 from roaml.smc.end import End
 from roaml.smc.record import SELECTED, SHORTEST, VERDICTS, TraceVerdict
 from roaml.smc.story import Story
-from roaml.views.arrays import DeclaredChange, DeclaredValue
+from roaml.views.cause import cause
 from roaml.views.event_words import message_phrases
+from roaml.views.folding import LeftOut, Repetition, Shown, folded, without_middle
 from roaml.views.observed import reads_observer
-from roaml.views.turns import Message, Turn, turns
-from roaml.views.values import shown_parameters, shown_value
+from roaml.views.turn_words import chance, details, draws, message_text, what
+from roaml.views.turns import Turn, turns
 from roaml.views.waiting import Wait, help_line, waits
 
-MAX_CHARACTERS = 60
-"""The maximum number of characters of the states or the parameters of an event in a line."""
 FIRST, LAST = 30, 50
-"""The numbers of turns that are shown at the beginning and at the end. The turns between them are folded."""
+"""The numbers of lines that are shown at the beginning and at the end. The lines between them are folded."""
+_NUMBER = re.compile(r"-?\d+(\.\d+)?")
 
 PlaceOf = Callable[[Origin], str]
 """File and line of an origin, as text for users."""
@@ -57,15 +56,23 @@ def lines(story: Story, place_of: PlaceOf) -> list[StoryLine]:
 
 
 def _turn_lines(story: Story, place_of: PlaceOf) -> list[StoryLine]:
-    shown_turns = turns(story)
-    folded = _folded(story, shown_turns)
-    story_lines = [_line(turn, place_of) for number, turn in enumerate(shown_turns) if number not in folded]
-    if folded:
-        story_lines.insert(
-            FIRST,
-            StoryLine(shown_turns[FIRST].number, "", "", _more(folded), "", (), last_step=shown_turns[folded[-1]].last),
-        )
-    return story_lines
+    shown_turns = _without_idle_halts(story, turns(story))
+    return [
+        _line(shown_turns[shown], place_of) if isinstance(shown, int) else _folded_line(shown, shown_turns)
+        for shown in _folded(story, shown_turns)
+    ]
+
+
+def _folded_line(shown: Repetition | LeftOut, shown_turns: Sequence[Turn]) -> StoryLine:
+    text, end = _folded_text(shown, shown_turns), shown_turns[shown.last].last
+    return StoryLine(shown_turns[shown.first].number, "", "", text, "", (), last_step=end)
+
+
+def _without_idle_halts(story: Story, all_turns: Sequence[Turn]) -> list[Turn]:
+    """The turns without halts of library nodes that are not running, which have no effect."""
+    if story.is_whole:
+        return list(all_turns)
+    return [turn for turn in all_turns if not (turn.is_halted and turn.is_library_node and not any(details(turn)))]
 
 
 def _waiting(story: Story, place_of: PlaceOf) -> list[StoryLine]:
@@ -89,9 +96,9 @@ def _line(turn: Turn, place_of: PlaceOf) -> StoryLine:
         turn.number,
         "" if turn.time is None else f"{turn.time:.3f} s",
         turn.who,
-        _what(turn),
+        what(turn),
         "" if turn.origin is None else place_of(turn.origin),
-        tuple(_details(turn)),
+        tuple(details(turn)),
         turn.automaton,
         turn.origin,
         turn.destination,
@@ -108,7 +115,9 @@ def as_text(story: Story, place_of: PlaceOf, shown: str = "") -> str:
     waiting = waits_of(story)
     table = [*_turn_lines(story, place_of), *([] if shown else _waiting(story, place_of))]
     widths = [max((len(str(row[i])) for row in table), default=0) for i in range(4)]
-    text = f"{heading(story)}\n" + (f"  {story.comment}\n" if story.comment else "")
+    why = cause(story, place_of)
+    text = f"{why}\n  {heading(story)}\n" if why else f"{heading(story)}\n"
+    text += f"  {story.comment}\n" if story.comment else ""
     for row in table:
         cells = (f"{row.step:>{widths[0]}}", row.time.rjust(widths[1]), row.who.ljust(widths[2]))
         text += "  " + "  ".join((*cells, row.what.ljust(widths[3]), row.place)).rstrip() + "\n"
@@ -135,9 +144,14 @@ def heading(story: Story) -> str:
     count = len(turns(story))
     text += f"; {count:,} {'turn matters' if count == 1 else 'turns matter'}"
     automata = {automaton.name for automaton in story.automata}
-    read = [name for name in story.variables if not reads_observer(name, automata)]
+    read = [name for name in story.variables if not reads_observer(name, automata) and not _is_status(name)]
     variables = message_phrases(read, automata)
     return text + (f" (it reads {', '.join(variables)})" if variables else "")
+
+
+def _is_status(name: str) -> bool:
+    """Whether a variable contains what a node of the tree has returned."""
+    return read_tree_event(name.partition("__")[0]) is not None
 
 
 def as_mermaid(story: Story, place_of: PlaceOf, first: int = 0) -> str:
@@ -151,8 +165,7 @@ def as_mermaid(story: Story, place_of: PlaceOf, first: int = 0) -> str:
 
 
 def _mermaid(story: Story, place_of: PlaceOf, first: int) -> Iterator[str]:
-    shown_turns = [turn for turn in turns(story) if turn.last >= first]
-    folded = _folded(story, shown_turns)
+    shown_turns = _without_idle_halts(story, [turn for turn in turns(story) if turn.last >= first])
     lanes = {turn.instance for turn in shown_turns}
     names: dict[str, str] = {}
     body: list[str] = []
@@ -161,11 +174,11 @@ def _mermaid(story: Story, place_of: PlaceOf, first: int) -> Iterator[str]:
     def actor(turn: Turn) -> str:
         return names.setdefault(turn.who, f"A{len(names)}")
 
-    for number, turn in enumerate(shown_turns):
-        if number in folded:
-            if number == FIRST:
-                body.append(f"Note over {actor(turn)}: {_more(folded)}")
+    for shown in _folded(story, shown_turns):
+        if not isinstance(shown, int):
+            body.append(f"Note over {actor(shown_turns[shown.first])}: {_folded_text(shown, shown_turns)}")
             continue
+        turn = shown_turns[shown]
         if turn.time is not None and turn.time != moment:
             moment = turn.time
             body.append(f"Note over {actor(turn)}: {moment:.3f} s")
@@ -173,13 +186,13 @@ def _mermaid(story: Story, place_of: PlaceOf, first: int) -> Iterator[str]:
         sender = turn.heard.sender if turn.heard else None
         if turn.heard and sender and sender.instance in lanes and not turn.is_answered:
             arrow = f"{actor(sender)}->>{actor(turn)}"
-            event_phrase = f"tick, {turn.status}" if turn.is_ticked and turn.status else _message(turn.heard)
+            event_phrase = f"tick, {turn.status}" if turn.is_ticked and turn.status else message_text(turn.heard)
             body.append(f"{arrow}: {_escaped(event_phrase + place)}")
         else:
-            body.append(f"Note over {actor(turn)}: {_escaped(_what(turn) + place)}")
-        details = "<br/>".join(_escaped(detail) for detail in _details(turn))
-        if details:
-            body.append(f"Note over {actor(turn)}: {details}")
+            body.append(f"Note over {actor(turn)}: {_escaped(what(turn) + place)}")
+        effects = "<br/>".join(_escaped(effect) for effect in details(turn))
+        if effects:
+            body.append(f"Note over {actor(turn)}: {effects}")
     for wait in waits_of(story):
         place = "" if wait.origin is None else f" ({place_of(wait.origin)})"
         body.append(f"Note over {names.setdefault(wait.who, f'A{len(names)}')}: {_escaped(wait.what + place)}")
@@ -213,7 +226,7 @@ def _section(story: Story, place_of: PlaceOf) -> str:
         rows.append(f"<tr><th>{row.step}</th><th>{html.escape(row.time)}</th>{''.join(cells)}</tr>")
     return (
         f"<h2>{html.escape(story.property)}</h2><p>{html.escape(story.comment)}</p>"
-        f"<p>{html.escape(heading(story))}</p>"
+        f"<p><strong>{html.escape(cause(story, place_of))}</strong></p><p>{html.escape(heading(story))}</p>"
         f"<table><thead><tr><th>step</th><th>time</th>{head}</tr></thead><tbody>{''.join(rows)}</tbody></table>"
         f"<details><summary>Mermaid</summary><pre>{html.escape(as_mermaid(story, place_of))}</pre></details>"
     )
@@ -235,76 +248,33 @@ ul {{ margin: .2em 0 0; padding-left: 1.2em; }} pre {{ background: #f6f8fa; padd
 """
 
 
-def _folded(story: Story, shown_turns: Sequence[Turn]) -> range:
-    """The indexes of the turns for which one line with their number is shown."""
-    return range(0) if story.is_whole else range(FIRST, len(shown_turns) - LAST)
+def _folded(story: Story, shown_turns: Sequence[Turn]) -> list[Shown]:
+    """The indices of the turns that are shown, and what is folded between them: repetitions, and the middle of a long
+    explanation."""
+    if story.is_whole:
+        return list(range(len(shown_turns)))
+    return without_middle(folded([_key(turn) for turn in shown_turns]), FIRST, LAST)
 
 
-def _more(folded: range) -> str:
-    return f"… {len(folded):,} more …"
+def _key(turn: Turn) -> str | None:
+    """A text that is equal for turns that are the same except for numbers; `None` for the end of a trace and for what
+    observers observe, which are never folded."""
+    if turn.ends or turn.observed:
+        return None
+    texts = (_NUMBER.sub("#", text) for text in (what(turn), *details(turn)))
+    return "\n".join((turn.who, *(chance(part.destination.probability) for part in draws(turn)), *texts))
 
 
-def _what(turn: Turn) -> str:
-    if turn.observed:
-        return turn.observation
-    if turn.automaton == CLOCK and turn.heard is None:
-        return "advances the time"
-    if turn.automaton.startswith(TREE_ROOT_PREFIX) and turn.result:
-        return f"ends with {turn.result}"
-    source, destination = turn.source, turn.destination
-    if turn.starts:
-        return "starts" if turn.is_library_node else f"starts in {_short(destination)}"
-    move = _short(source if source == destination else f"{source} → {destination}")
-    place = "" if turn.is_library_node else f" in {move}"
-    answer = f": {turn.status}" if turn.status else ""
-    if turn.is_answered and turn.status:
-        return f"returns {turn.status}"
-    if turn.is_ticked:
-        return f"is ticked{place}{answer}"
-    if turn.is_halted:
-        return f"is halted{place}"
-    if turn.heard is not None:
-        return f"receives {_message(turn.heard)}{place}{answer}"
-    if turn.is_library_node:
-        return f"goes on{answer}"
-    return f"{turn.action}: {move}" if turn.action else move
-
-
-def _details(turn: Turn) -> Iterator[str]:
-    if turn.observed:
-        yield from turn.effects
-        return
-    if turn.automaton == CLOCK:
-        return
-    for part in turn.parts:
-        if len(part.edge.destinations) > 1:
-            yield _chance(part.destination.probability)
-    yield from (_change(change, turn) for change in turn.changes)
-    yield from (f"sends {_message(message)}" for message in turn.sent)
-
-
-def _chance(probability: Clause | None) -> str:
-    known = probability.exp if probability is not None else None
-    return f"by chance, {known.value:g}" if isinstance(known, (Integer, Real)) else "by chance"
-
-
-def _message(message: Message) -> str:
-    values = shown_parameters(message.values)
-    return f"{message.name} ({_short(values)})" if values else message.name
-
-
-def _change(change: DeclaredChange, turn: Turn) -> str:
-    name = change.variable.name
-    phrase = turn.phrases.get(name, name) if change.variable.instance == turn.instance else name
-    return f"{phrase}: {_shown(change.before, change.after)}"
-
-
-def _shown(before: DeclaredValue, after: DeclaredValue) -> str:
-    return f"{_short(shown_value(before))} → {_short(shown_value(after))}"
-
-
-def _short(text: str) -> str:
-    return text if len(text) <= MAX_CHARACTERS else f"{text[: MAX_CHARACTERS - 1]}…"
+def _folded_text(shown: Repetition | LeftOut, shown_turns: Sequence[Turn]) -> str:
+    first, last = shown_turns[shown.first], shown_turns[shown.last]
+    if isinstance(shown, LeftOut):
+        return f"… {shown.last - shown.first + 1:,} more …"
+    until = "" if last.time is None else f" until {last.time:.3f} s"
+    if shown.lines > 1:
+        return f"… the previous {shown.lines} lines {shown.times:,} more times{until} …"
+    if first.is_ticked and first.status:
+        return f"… {shown.times:,} more ticks{until}: {first.status} …"
+    return f"… {shown.times:,} more times{until} …"
 
 
 def _escaped(text: str) -> str:

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The sentence that states why a property holds or fails in a trace."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
+
+from roaml.jani.node import Origin
+from roaml.scxml.names import TREE_ROOT_PREFIX
+from roaml.smc.end import End
+from roaml.smc.program import FALSE, TRUE
+from roaml.smc.story import Story
+from roaml.views.turn_words import chance, details, draws, what
+from roaml.views.turns import Turn, turns
+
+_ENDS = ("SUCCESS", "FAILURE")
+_OTHER_ENDS: Mapping[End, str] = MappingProxyType(
+    {
+        End.STUCK: "because machines wait for each other",
+        End.QUIET: "because no machine can take a step any more",
+        End.DEADLOCK: "because no step is possible any more",
+        End.IDLE: "because nothing changes any more",
+        End.ROUND: "because the same states are repeated for ever",
+    }
+)
+
+
+def cause(story: Story, place_of: Callable[[Origin], str]) -> str:
+    """Why the property holds or fails, in one sentence; "" if the trace does not decide it, or if the story is not
+    about a property.
+
+    Args:
+        place_of: file and line of an origin.
+    """
+    verb = {TRUE: "holds", FALSE: "fails"}.get(story.recording.verdict, "")
+    if story.is_whole or not verb or not story.steps:
+        return ""
+    all_turns = turns(story)
+    time = story.clock[-1]
+    at = "" if time is None else f" at {time:.3f} s"
+    subject = f"{story.property} {verb}{at}"
+    if story.recording.end is End.TIME:
+        if verb == "fails":
+            return f"{subject}, because the time ends before what the property requires has happened"
+        return f"{subject}, because nothing has violated it when the time ends"
+    if story.recording.end in _OTHER_ENDS:
+        return f"{subject}, {_OTHER_ENDS[story.recording.end]}"
+    root = next((turn for turn in reversed(all_turns) if turn.ends and _is_root(turn)), None)
+    if root is not None:
+        node = _responsible(all_turns[: all_turns.index(root)])
+        why = "" if node is None else f", because {node.who} {_returned(node)}{_place(node, place_of)}"
+        return f"{subject}: the tree ends with {root.result}{why}"
+    last = next((turn for turn in reversed(all_turns) if turn.ends), None)
+    if last is None:
+        return ""
+    return f"{subject}: {_sentence(last, place_of)}{_chance_before(all_turns, last)}"
+
+
+def _is_root(turn: Turn) -> bool:
+    return turn.automaton.startswith(TREE_ROOT_PREFIX) and bool(turn.result)
+
+
+def _responsible(before: Sequence[Turn]) -> Turn | None:
+    """The node because of which the tree ended: the leaf that returned last or, if none returned at that time, the
+    lowest inner node that returned, such as a `Timeout`."""
+    lowest: Turn | None = None
+    for turn in reversed(before):
+        if turn.status not in _ENDS:
+            continue
+        if lowest is not None and turn.time != lowest.time:
+            break
+        lowest = turn
+        if not turn.is_answered:
+            break
+    return lowest
+
+
+def _returned(turn: Turn) -> str:
+    chances = [chance(part.destination.probability) for part in draws(turn)]
+    return f"returns {turn.status}{f' ({chances[-1]})' if chances else ''}"
+
+
+def _place(turn: Turn, place_of: Callable[[Origin], str]) -> str:
+    place = "" if turn.origin is None else place_of(turn.origin)
+    return f" ({place})" if place else ""
+
+
+def _sentence(turn: Turn, place_of: Callable[[Origin], str]) -> str:
+    """What an automaton does in a turn, with its effects."""
+    effects = ", ".join(details(turn))
+    return f"{turn.who} {what(turn)}{f' and {effects}' if effects else ''}{_place(turn, place_of)}"
+
+
+def _chance_before(all_turns: Sequence[Turn], last: Turn) -> str:
+    """The last relevant outcome of chance before a turn; "" if there is none."""
+    drawn = next((t for t in reversed(all_turns) if t is not last and t.number < last.number and any(draws(t))), None)
+    if drawn is None:
+        return ""
+    at = "" if drawn.time is None else f" at {drawn.time:.3f} s"
+    odds = [chance(part.destination.probability) for part in draws(drawn)][-1]
+    return f"; the last outcome of chance was that of {drawn.who}{at} ({odds.removeprefix('by chance, ')})"
