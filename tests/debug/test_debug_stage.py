@@ -69,15 +69,33 @@ def test_the_moment_in_which_a_property_is_decided_is_not_left_out(client: Clien
     client.begin(BUG, property="never_placed_empty", against=1)
     end = client.step()
 
-    def failed(start: int, by: int) -> int:
-        moments = client.ask("moments", axis="steps", by=by, count=200, **{"from": start})["moments"]
+    def failed(start: int, by: int, **given: int) -> int:
+        moments = client.ask("moments", axis="steps", by=by, count=200, **{"from": start, **given})["moments"]
         steps = [moment["step"] for moment in moments]
         assert steps == sorted(set(steps))
         return next(m["step"] for m in moments if m["verdicts"]["never_placed_empty"] == "failed")
 
     violated = failed(end - 100, 1)
     assert failed(end - 100, 7) == violated
-    assert failed(violated + 2, 5) == violated, "between the moment before the first one and the first one"
+    assert failed(violated + 2, 5, after=violated - 3) == violated, "between the state before and the first one"
+
+
+def test_moments_end_where_breakpoints_stop_the_run(client: Client) -> None:
+    client.begin(BUG, seed=3)
+    client.ask("setFunctionBreakpoints", breakpoints=[{"name": "/arm/command"}])
+    stops: list[int] = []
+    step = client.step()
+    while len(stops) < 3:
+        moments = client.ask("moments", axis="steps", by=3.5, count=40, **{"from": step + 3.5}, after=step)["moments"]
+        assert all(moment["stop"] is None for moment in moments[:-1])
+        step = moments[-1]["step"]
+        if moments[-1]["stop"] is not None:
+            stops.append(step)
+    reached = []
+    for _ in stops:
+        client.move()
+        reached.append(client.step())
+    assert stops == reached, "playing and continuing stop in the same states"
 
 
 def test_curves_are_drawn_over_each_other(client: Client) -> None:
@@ -109,3 +127,19 @@ def test_a_violation_is_marked_and_said(client: Client) -> None:
     client.event("stopped")
     assert "violated: never_placed_empty" in client.ask("timeline", width=800)["scene"]
     assert client.ask("properties")["properties"] != list(properties.values())
+
+
+def test_lanes_have_the_nodes_of_pictures(client: Client) -> None:
+    client.begin(BUG, seed=3)
+    timeline = client.ask("timeline", axis="steps", width=800, names=True)
+    nodes = client.ask("pictures")["nodes"]
+    lanes = timeline["lanes"]
+    assert any(lane[0].endswith("arm.ascxml#") for lane in lanes)
+    for node in nodes:
+        if node["kind"] in ("tree", "system"):
+            shown = [lane for lane in lanes if any(_belongs(node["node"], one) for one in lane)]
+            assert len(shown) == 1, node
+
+
+def _belongs(node: str, lane: str) -> bool:
+    return node.startswith(lane) if lane.endswith("#") else node == lane

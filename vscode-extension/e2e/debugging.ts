@@ -127,10 +127,12 @@ export function debugging(stage: Stage): void {
         await stop(window);
     });
 
-    stage.test("the stage of a tree without a system has its picture and the timeline", loneTree, async (window) => {
-        await start(window, "fetch.xml");
-        await window.run("AS2FM: Open Stage");
-        const page = await window.picture('.pane-tree .node[data-label="FollowPath"][data-look="idle"]');
+    stage.test("a run without debugging is shown on the stage, here that of a tree alone", loneTree, async (window) => {
+        await window.openFile("fetch.xml");
+        await window.running();
+        await window.repeat(() => window.press("Control+F5"), window.page.locator(".debug-toolbar"));
+        const page = await window.picture('.pane-tree .node[data-label="FollowPath"][data-look]');
+        await page.locator(".caption", { hasText: "The run has ended" }).waitFor();
         await window.screenshot("stage-tree");
         await window.becomes(() => page.locator(".pane:visible").count(), 3);
         await stop(window);
@@ -219,13 +221,30 @@ export function debugging(stage: Stage): void {
             await window.page.locator('.tab.active[data-resource-name="arm.ascxml"]').waitFor();
             await window.screenshot("stage-message");
 
-            // Played from there, it stops where the property fails.
+            // Played from there, it stops at a breakpoint, and then where the property fails.
+            const from = await stepOf(page);
+            await page.locator('.pane-ros .node[data-label="/arm/command"]').click({ modifiers: ["Alt"] });
+            await page.locator(".pane-ros circle.breakpoint").waitFor();
             await page.getByRole("button", { name: "Play" }).click();
             await page.getByRole("button", { name: "Pause" }).waitFor();
             await page.getByLabel("Speed").selectOption({ label: "64 steps/s" });
             await page.getByRole("button", { name: "Play" }).click();
+            await page.locator(".caption", { hasText: "/arm/command" }).waitFor();
+            await page.getByRole("button", { name: "Play" }).waitFor();
+            const stopped = await stepOf(page);
+            assert.ok(from < stopped && stopped < end, `${from} < ${stopped} < ${end}`);
+            await page.locator('.pane-ros .node[data-label="/arm/command"]').click({ modifiers: ["Alt"] });
+            await page.locator(".pane-ros circle.breakpoint").waitFor({ state: "detached" });
+            await page.getByRole("button", { name: "Play" }).click();
             await window.until(async () => (await stepOf(page)) === end);
             await choicesOf(window).getByText(`step ${end},`).first().waitFor();
+
+            // A state that is selected in a picture marks its lane; its transitions are reached with the keyboard.
+            await page.locator('.pane-system .node[data-label="still"]').first().click();
+            await page.locator(".pane-timeline .names .lit", { hasText: "Arm" }).waitFor();
+            await page.locator(".pane-system > .pane-content > .middle svg").first().press("t");
+            await page.locator(".pane-system [data-edges].selected").first().waitFor({ state: "attached" });
+            await window.screenshot("stage-selected");
             await stop(window);
             await page.getByText("No run is being debugged.").first().waitFor();
             await window.becomes(() => page.locator(".node[data-look]").count(), 0);

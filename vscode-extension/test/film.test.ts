@@ -2,13 +2,13 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { Moment, MomentsRequest } from "../src/stage/contract";
-import { Film, newlyFailed } from "../src/stage/view/film";
+import { Film } from "../src/stage/view/film";
 
 const NOTHING = { nodes: {}, edges: [] };
 
-function moment(step: number, position: number, isEnd = false, verdicts: Moment["verdicts"] = {}): Moment {
+function moment(step: number, position: number, isEnd = false, stop: string | null = null): Moment {
     const activity = { system: NOTHING, tree: NOTHING, ros: NOTHING };
-    return { step, position, time: position, isEnd, activity, verdicts };
+    return { step, position, time: position, isEnd, stop, activity, verdicts: {} };
 }
 
 /** Each step of a run, as it is asked for. */
@@ -25,9 +25,9 @@ function asked(film: Film): MomentsRequest {
 }
 
 test("a film plays steps at its speed, and waits for those that it does not know", () => {
-    const film = new Film({ axis: "steps", rate: 4 }, 10);
+    const film = new Film({ axis: "steps", rate: 4 }, 10, 10);
     const first = asked(film);
-    assert.deepEqual({ axis: first.axis, from: first.from, by: first.by }, { axis: "steps", from: 10, by: 1 });
+    assert.deepEqual(first, { axis: "steps", from: 10, by: 1, count: first.count, after: 10 });
     assert.equal(film.wants(), undefined, "one request at a time");
     film.play(5);
     assert.equal(film.isOver, false);
@@ -41,7 +41,7 @@ test("a film plays steps at its speed, and waits for those that it does not know
 });
 
 test("a fast film leaves out steps", () => {
-    const film = new Film({ axis: "steps", rate: 64 }, 0);
+    const film = new Film({ axis: "steps", rate: 64 }, 0, 0);
     const first = asked(film);
     assert.ok(first.by > 3 && first.by < 4, `${first.by}`);
     film.add(first, steps(first));
@@ -50,7 +50,7 @@ test("a fast film leaves out steps", () => {
 });
 
 test("a film in real time shows the last step up to the time", () => {
-    const film = new Film({ axis: "time", rate: 1 }, 2);
+    const film = new Film({ axis: "time", rate: 1 }, 2, 6);
     const first = asked(film);
     film.add(first, [moment(7, 1.5), moment(9, 2), moment(12, 2.5), moment(20, 2.5)]);
     assert.equal(film.shown?.step, 9);
@@ -61,7 +61,7 @@ test("a film in real time shows the last step up to the time", () => {
 });
 
 test("a film ends with the run, and without an answer", () => {
-    const film = new Film({ axis: "steps", rate: 16 }, 0);
+    const film = new Film({ axis: "steps", rate: 16 }, 0, 0);
     const first = asked(film);
     film.add(first, steps(first, 5));
     film.play(0.1);
@@ -70,15 +70,19 @@ test("a film ends with the run, and without an answer", () => {
     assert.equal(film.shown?.step, 5);
     assert.equal(film.isOver, true);
     assert.equal(film.wants(), undefined);
-    const other = new Film({ axis: "steps", rate: 16 }, 0);
+    const other = new Film({ axis: "steps", rate: 16 }, 0, 0);
     other.add(asked(other), null);
     assert.equal(other.isOver, true);
 });
 
-test("a property fails once", () => {
-    const before = moment(1, 1, false, { safe: "undecided", live: "failed" });
-    const after = moment(2, 2, false, { safe: "failed", live: "failed" });
-    assert.deepEqual(newlyFailed(before, after), ["safe"]);
-    assert.deepEqual(newlyFailed(after, after), []);
-    assert.deepEqual(newlyFailed(undefined, after), [], "what failed before is not new");
+test("a film ends where a breakpoint stops the run, and begins after one", () => {
+    const film = new Film({ axis: "steps", rate: 16 }, 3, 3);
+    const first = asked(film);
+    assert.equal(first.after, 3, "the breakpoint at which the run has stopped does not stop it again");
+    film.add(first, [moment(4, 4), moment(5, 5, false, "/arm/command")]);
+    const before = film.shown;
+    assert.equal(before, undefined, "what the run shows already");
+    film.play(1);
+    assert.equal(film.shown?.stop, "/arm/command");
+    assert.equal(film.isOver, true);
 });

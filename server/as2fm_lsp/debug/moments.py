@@ -19,36 +19,41 @@ MAX_STEPS = 5_000
 
 
 def moments(
-    debugger: Debugger, timeline: Timeline, axis: Axis, start: float, by: float, count: int
-) -> Iterator[tuple[int, float]]:
+    debugger: Debugger, timeline: Timeline, axis: Axis, start: float, by: float, count: int, after: int | None
+) -> Iterator[tuple[int, float, str | None]]:
     """Move the run to the states at `start`, `start + by`, …, at most `count`, within `Debugger.elsewhere`. States that
     are the same as before are left out, those between two of them in which a property is decided are added, and the
-    last one is the end of the run.
+    last one is the end of the run, or the first state in which a breakpoint or an undefined operation stops it.
 
     Args:
         start, by: positions on the axis, in s or steps.
+        after: only states after this step are shown, and breakpoints stop the run only there; `None` if the state at
+            `start` is the first one.
 
     Yields:
-        The number of steps before the state, and its position on the axis.
+        The number of steps before the state, its position on the axis, and why the run stops there; `None` if it goes
+        on.
     """
     session = debugger.session
-    before = _reach(debugger, timeline, axis, start - by) if start >= by else 0
+    before, fault = after, None
     for number in range(count):
-        position = start + number * by
         try:
-            step = _reach(debugger, timeline, axis, position)
-        except FaultError:
+            step = _reach(debugger, timeline, axis, start + number * by)
+        except FaultError as error:
+            step, fault = len(session.steps), error.message
+        session.jump(step)
+        before = step - 1 if before is None else before
+        if step <= before and fault is None and session.end is None:
+            continue
+        debugger.follow()
+        last, reason = debugger.first_stop(before, step) or (step, fault)
+        decided = {one.position for one in debugger.decided if before < one.position < last}
+        for shown in (*sorted(decided), last):
+            session.jump(shown)
+            yield shown, position_of(timeline, axis, shown), reason if shown == last else None
+        if reason is not None or session.end is not None:
             return
-        if step != before or number == 0:
-            session.jump(step)
-            debugger.follow()
-            decided = {one.position for one in debugger.decided if before < one.position < step}
-            for shown in (*sorted(decided), step):
-                session.jump(shown)
-                yield shown, position_of(timeline, axis, shown)
         before = step
-        if session.end is not None:
-            return
 
 
 def _reach(debugger: Debugger, timeline: Timeline, axis: Axis, position: float) -> int:

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 from as2fm_lsp.debug.arguments import Arguments, RequestError
 from as2fm_lsp.debug.moments import MAX_MOMENTS, moments
 from as2fm_lsp.debug.session import Body, DebugSession, Handler
-from roaml.debugging.activity import active_edges, active_nodes
+from roaml.debugging.activity import active_edges, active_nodes, nodes_of_automata
 from roaml.debugging.debugger import Debugger
 from roaml.exhaustive import Vocabulary
 from roaml.figures.svg import svg_scene
@@ -83,6 +83,7 @@ class TimelineRequests:
             names = {
                 "names": svg_scene(draw_names(timeline, NAMES_WIDTH, view.curves)),
                 "plots": [plot.name for plot in timeline.plots],
+                "lanes": list(nodes_of_automata(debugger, (lane.automaton for lane in timeline.lanes))),
             }
         return {
             "scene": svg_scene(draw_timeline(timeline, view)),
@@ -149,6 +150,7 @@ class TimelineRequests:
         axis = _axis(arguments, timeline)
         start, by = arguments.decimal("from", 0.0), arguments.decimal("by", 1.0)
         count = arguments.natural("count", 1)
+        after = arguments.natural("after", 0) if arguments.has("after") else None
         if start < 0 or by <= 0 or not 1 <= count <= MAX_MOMENTS:
             raise RequestError(f"`from` must be at least 0, `by` greater than 0, and `count` from 1 to {MAX_MOMENTS}")
         with debugger.elsewhere() as session:
@@ -158,9 +160,10 @@ class TimelineRequests:
                     "position": position,
                     "time": session.time,
                     "isEnd": session.end is not None,
+                    "stop": reason,
                     **self._activity(debugger),
                 }
-                for step, position in moments(debugger, timeline, axis, start, by, count)
+                for step, position, reason in moments(debugger, timeline, axis, start, by, count, after)
             ]
         return {"moments": shown}
 

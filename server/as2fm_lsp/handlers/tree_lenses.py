@@ -76,6 +76,6 @@ def _in_systems(context: Context, on: RequestedDocument, broken: Collection[str]
 
 def _debug(context: Context, uri: str, where: str) -> Iterator[types.Command]:
     if context.client.debug_model:
-        for title, stops in ((RUN, False), (DEBUG, True)):
-            arguments = [uri, {"stopOnEntry": stops}]
+        for title, attributes in ((RUN, {"stopOnEntry": False, "noDebug": True}), (DEBUG, {"stopOnEntry": True})):
+            arguments = [uri, attributes]
             yield types.Command(f"{title}{where}", context.client.debug_model, arguments=arguments)

@@ -4,9 +4,10 @@ sent and have not been received yet."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from roaml.debugging.debugger import Debugger
+from roaml.debugging.frames import node_of
 from roaml.ide.diagrams import DiagramKind, DiagramNodeKind
 from roaml.ide.diagrams.machine import state_id
 from roaml.ide.diagrams.ros import machine_node_ids
@@ -94,6 +95,19 @@ def active_edges(debugger: Debugger) -> Iterator[ActiveEdge]:
         if event == received:
             for actor in actors:
                 yield from (ActiveEdge(channel, node) for node in machines.get(actor, ()))
+
+
+def nodes_of_automata(debugger: Debugger, automata: Iterable[str]) -> Iterator[tuple[str, ...]]:
+    """The ids of the nodes in pictures that show the machine or tree node of each automaton. An id that ends with `#`
+    is the beginning of those of the states of a machine, in the picture of the system."""
+    nodes = debugger.sources.nodes
+    _, system = _sources(debugger)
+    ids = machine_node_ids(system) if system is not None else {}
+    origins = {known.name: known.origin for known in debugger.session.automata_of_model}
+    for automaton in automata:
+        number, origin = node_of(automaton), origins[automaton]
+        node = (nodes[number].picture,) if number in nodes else ()
+        yield (*node, *((id_in_system(origin.path, ""), *ids.get(origin.path, ())) if origin is not None else ()))
 
 
 def _sources(debugger: Debugger) -> tuple[Analysis | None, System | None]:

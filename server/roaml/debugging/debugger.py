@@ -406,15 +406,20 @@ class Debugger:
         instance = reached[0][1]
         numbers = tuple(breakpoint_.number for breakpoint_, _ in reached if breakpoint_.number)
         first = reached[0][0]
-        for filter_, breakpoint_ in breakpoints.filters.items():
-            if breakpoint_ is first:
-                return self._stop(StopReason.EXCEPTION, self._text(filter_), numbers, filter_.value, instance)
+        filter_ = self._filter_of(first)
+        if filter_ is not None:
+            return self._stop(StopReason.EXCEPTION, self._text(filter_), numbers, filter_.value, instance)
         reason = StopReason.BREAKPOINT
         if any(breakpoint_ is first for _, breakpoint_ in breakpoints.names):
             reason = StopReason.FUNCTION_BREAKPOINT
         elif any(breakpoint_ is first for _, breakpoint_ in breakpoints.variables):
             reason = StopReason.DATA_BREAKPOINT
         return self._stop(reason, first.name, numbers, "", instance)
+
+    def _filter_of(self, breakpoint_: Breakpoint) -> ExceptionFilter | None:
+        """The filter to which a breakpoint belongs; `None` if it belongs to a line, a name or a variable."""
+        filters = self.breakpoints.filters.items()
+        return next((filter_ for filter_, of_filter in filters if of_filter is breakpoint_), None)
 
     def explanation(self, stop: Stop) -> str:
         """Why the run has stopped, for readers: what has happened, what the decided properties require, and the last
@@ -496,6 +501,26 @@ class Debugger:
     def follow(self) -> None:
         """Decide the properties up to the position of the session, within `elsewhere`."""
         self._follow()
+
+    def first_stop(self, after: int, to: int) -> tuple[int, str] | None:
+        """The first position after `after`, up to `to`, at which a breakpoint stops the run, with the reason ("" for a
+        breakpoint on a line), within `elsewhere`; `None` if there is none. The steps up to `to` have been taken."""
+        matcher, steps = self._match(), self.session.steps
+        for position in range(after + 1, to + 1):
+            hits = matcher.after(steps[position - 1], self._verdicts.at(position))
+            if position == len(steps):
+                self.session.jump(position)
+                upcoming = self.upcoming()
+            else:
+                upcoming = steps[position]
+            hits += matcher.before(upcoming) if upcoming is not None else []
+            if hits:
+                self.session.jump(position)
+                reached = self._reached(hits)
+                if reached:
+                    filter_ = self._filter_of(reached[0][0])
+                    return position, reached[0][0].name if filter_ is None else self._text(filter_)
+        return None
 
     @property
     def decided(self) -> list[Decided]:

@@ -48,6 +48,7 @@ class Lane(Record):
     """The states of a machine or plugin, or the statuses of a tree node.
 
     Attributes:
+        automaton: the name of the automaton that is in these states.
         starts: the numbers of the steps that changed the state; the first is 0, for the initial state.
         states: the state after each of these steps.
         ranks: state -> its number, from 0, in the order in which states are first entered.
@@ -55,6 +56,7 @@ class Lane(Record):
 
     name: str
     kind: LaneKind
+    automaton: str
     starts: list[int] = field(default_factory=list)
     states: list[str] = field(default_factory=list)
     ranks: dict[str, int] = field(default_factory=dict)
@@ -133,11 +135,11 @@ class Timeline:
         self._machines = frozenset(machines) - nodes.keys()
         for instance in machines:
             if instance in self._machines:
-                self._add(instance, Lane(who(automata[instance]), LaneKind.MACHINE))
+                self._add(instance, Lane(who(automata[instance]), LaneKind.MACHINE, self._automata[instance]))
                 self.lanes[-1].enter(0, session.state_of(instance, session.first_locations[instance]))
         for instance, match in sorted(nodes.items(), key=lambda node: int(node[1][1])):
             self._nodes[int(match[1])] = len(self.lanes)
-            self._add(instance, Lane(who(automata[instance]), LaneKind.NODE))
+            self._add(instance, Lane(who(automata[instance]), LaneKind.NODE, self._automata[instance]))
             self.lanes[-1].enter(0, IDLE)
         self._plotted = {
             instance: "" if name == BLACKBOARD else f"{who(automata[instance])}."

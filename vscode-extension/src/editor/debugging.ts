@@ -60,6 +60,9 @@ export class Debugging implements vscode.DebugConfigurationProvider, vscode.Debu
             configuration.request = "launch";
             configuration.name = vscode.l10n.t("Debug system");
         }
+        // A run without debugging is a simulation, which is seen on the stage.
+        if (configuration["noDebug"])
+            Object.assign(configuration, { noDebug: false, stopOnEntry: false, [ON_STAGE]: true });
         if (typeof configuration["program"] === "string") return configuration;
         const program = await this.program(vscode.window.activeTextEditor?.document);
         return program && { ...configuration, program: program.fsPath };

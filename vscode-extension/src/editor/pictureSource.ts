@@ -371,7 +371,7 @@ function words(): Words {
         savePdf: vscode.l10n.t("Save as PDF"),
         nothing: vscode.l10n.t("No results"),
         help: vscode.l10n.t(
-            "Arrow keys move between nodes, Enter opens the source, Shift+F10 the menu, Space collapses a node of a tree, B sets a breakpoint, + and - zoom, 0 fits the diagram, / searches.",
+            "Arrow keys move between nodes, T selects the edges that leave a node, Enter opens the source, Shift+F10 the menu, Space collapses a node of a tree, B sets a breakpoint, + and - zoom, 0 fits the diagram, / searches.",
         ),
         byChance: vscode.l10n.t("random"),
         mocks: vscode.l10n.t("Mocks"),

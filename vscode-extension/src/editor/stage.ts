@@ -278,14 +278,14 @@ class StagePanel {
     }
 }
 
-function momentOf({ step, position, time, isEnd, verdicts, ...answer }: MomentAnswer): Moment {
+function momentOf({ step, position, time, isEnd, stop, verdicts, ...answer }: MomentAnswer): Moment {
     const nodes = activeNodes(answer);
     const activity = (kind: PictureKind): Activity => ({
         nodes: looksOf(nodes, kind),
         edges: kind === "ros" ? answer.edges : [],
     });
     const all = { system: activity("system"), tree: activity("tree"), ros: activity("ros") };
-    return { step, position, time, isEnd, verdicts, activity: all };
+    return { step, position, time, isEnd, stop, verdicts, activity: all };
 }
 
 function looksOf(nodes: readonly ActiveNode[], kind: PictureKind): Record<string, string> {

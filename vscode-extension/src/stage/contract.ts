@@ -19,16 +19,19 @@ export interface Moment {
     /** In s; null if the model has no clock. */
     readonly time: number | null;
     readonly isEnd: boolean;
+    /** Why a breakpoint stops the run here, "" for one on a line; null if none does. */
+    readonly stop: string | null;
     readonly activity: Readonly<Record<PicturePane, Activity>>;
     readonly verdicts: Readonly<Record<string, Verdict>>;
 }
 
-/** The states at `from`, `from + by`, …, at most `count`. */
+/** The states at `from`, `from + by`, …, at most `count`, of those after the step `after`. */
 export interface MomentsRequest {
     readonly axis: Axis;
     readonly from: number;
     readonly by: number;
     readonly count: number;
+    readonly after: number;
 }
 
 /** A property of the run; `text` is what it requires, in a sentence, if it is written. */

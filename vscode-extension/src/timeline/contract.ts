@@ -28,6 +28,8 @@ export interface Tile {
     readonly names?: string;
     /** The names of the curves, with `names`. */
     readonly plots?: readonly string[];
+    /** The ids of the nodes in pictures that belong to each lane, with `names`; one that ends with # is a beginning. */
+    readonly lanes?: readonly (readonly string[])[];
     readonly from: number;
     readonly to: number;
     readonly width: number;

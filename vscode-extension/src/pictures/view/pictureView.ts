@@ -74,6 +74,10 @@ export class PictureView {
     private scene: Scene | undefined;
     private sight: Sight = { x: 0, y: 0, scale: 1 };
     private selected = -1;
+    /** The edge that is selected by the keyboard; -1 if it is a node. */
+    private selectedEdge = -1;
+    /** Is called with the id of the node that the user selects. */
+    onSelect: (node: string) => void = () => undefined;
     private here: Part | null = null;
     private highlighted = "";
     private activity: Activity = { nodes: {}, edges: [] };
@@ -230,7 +234,7 @@ export class PictureView {
         this.scene?.root.remove();
         this.scene = undefined;
         this.picture = undefined;
-        this.selected = -1;
+        this.selected = this.selectedEdge = -1;
         this.notice.textContent = "";
         this.legend.replaceChildren();
         this.minimap.clear();
@@ -311,14 +315,41 @@ export class PictureView {
     // ------------------------------------------------------------------ choosing
 
     private select(node: number): void {
+        this.selectEdge(-1);
         this.scene?.nodes.get(this.selected)?.classList.remove("selected");
         this.selected = node;
+        this.onSelect(this.picture?.nodes[node]?.id ?? "");
         const chosen = this.scene?.nodes.get(node);
         chosen?.classList.add("selected");
         if (!chosen) return;
         this.reveal(node);
         this.notice.textContent = "";
         this.svg.setAttribute("aria-label", chosen.getAttribute("aria-label") ?? "");
+    }
+
+    /** Select an edge beside the node; -1 selects none. */
+    private selectEdge(edge: number): void {
+        for (const group of this.scene?.edges.get(this.selectedEdge) ?? []) group.classList.remove("selected");
+        this.selectedEdge = edge;
+        const groups = this.scene?.edges.get(edge) ?? [];
+        for (const group of groups) group.classList.add("selected");
+        const label = groups[0]?.getAttribute("aria-label");
+        if (label !== undefined && label !== null) this.svg.setAttribute("aria-label", label);
+        this.reveal(this.picture?.nodes.findIndex(({ id }) => id === this.picture?.edges[edge]?.target) ?? -1);
+    }
+
+    /** Select the next of the edges that leave the selected node, or the previous one. */
+    private selectNextEdge(by: 1 | -1): void {
+        const { picture, scene, selected } = this;
+        const leaving = [...(scene?.edges.keys() ?? [])].filter(
+            (edge) => picture?.edges[edge]?.source === picture?.nodes[selected]?.id,
+        );
+        const next = leaving.indexOf(this.selectedEdge) + by;
+        this.selectEdge(leaving[next < 0 ? leaving.length - 1 : next] ?? leaving[0] ?? -1);
+    }
+
+    private get selectedPart(): Part {
+        return this.selectedEdge >= 0 ? { edge: this.selectedEdge } : { node: this.selected };
     }
 
     /** Select the part that contains the caret. */
@@ -431,7 +462,7 @@ export class PictureView {
 
     /** Open the context menu of the selected node, or that of the picture. VS Code listens to this event. */
     private openMenu(): void {
-        const group = this.scene?.nodes.get(this.selected) ?? this.svg;
+        const group = this.parts(this.selectedPart)[0] ?? this.svg;
         const { left, top } = group.getBoundingClientRect();
         const place = { clientX: left + MENU_OFFSET, clientY: top + MENU_OFFSET };
         group.dispatchEvent(new MouseEvent("contextmenu", { bubbles: true, cancelable: true, ...place }));
@@ -547,8 +578,10 @@ export class PictureView {
         else if (ctrlKey || metaKey) return false;
         else if (isArrow(key)) this.select(neighbour(this.drawing?.nodes ?? [], this.selected, key) ?? this.selected);
         else if (key === "ContextMenu" || (key === "F10" && shiftKey)) this.openMenu();
-        else if (key === "Enter") this.jump(this.picture?.nodes[this.selected], false);
-        else if (key === "b") this.toggleBreakpoint({ node: this.selected });
+        else if (key === "Enter")
+            this.jump(this.picture?.edges[this.selectedEdge] ?? this.picture?.nodes[this.selected], false);
+        else if (key === "b") this.toggleBreakpoint(this.selectedPart);
+        else if (key === "t" || key === "T") this.selectNextEdge(shiftKey ? -1 : 1);
         else if (key === " ") this.collapse(this.selected);
         else if (key === "+" || key === "=") this.zoom(ZOOM);
         else if (key === "-") this.zoom(1 / ZOOM);

@@ -35,10 +35,11 @@ export class Film {
     private hasEnd = false;
     position: number;
 
-    /** `from` is a position on the axis of the speed. */
+    /** `from` is a position on the axis of the speed, `step` the step of the state there. */
     constructor(
         readonly speed: Speed,
         from: number,
+        private readonly step: number,
     ) {
         const least = speed.axis === "steps" ? 1 : 0;
         this.by = Math.max(least, speed.rate / MOMENTS_PER_S);
@@ -50,16 +51,14 @@ export class Film {
     wants(): MomentsRequest | undefined {
         if (this.pending || this.hasEnd || this.known > this.position + AHEAD_S * this.speed.rate) return undefined;
         this.pending = true;
-        return { axis: this.speed.axis, from: this.known + this.by, by: this.by, count: COUNT };
+        return { axis: this.speed.axis, from: this.known + this.by, by: this.by, count: COUNT, after: this.last };
     }
 
     /** Add the answer to a request; null if there is none, which ends the film. */
     add(asked: MomentsRequest, moments: readonly Moment[] | null): void {
         this.pending = false;
-        // A moment may be before the position that was asked for, if nothing has happened since then.
-        const last = this.moments.at(-1)?.step ?? -1;
-        this.moments.push(...(moments ?? []).filter(({ step }) => step > last));
-        this.hasEnd = moments === null || moments.length === 0 || moments.some(({ isEnd }) => isEnd);
+        this.moments.push(...(moments ?? []));
+        this.hasEnd = moments === null || moments.some(({ isEnd, stop }) => isEnd || stop !== null);
         this.known = asked.from + asked.by * (asked.count - 1);
     }
 
@@ -69,7 +68,12 @@ export class Film {
         this.position = Math.max(this.position, Math.min(this.position + seconds * this.speed.rate, end));
     }
 
-    /** The moment at the position; undefined if it is not known yet. */
+    /** The last step that is known. */
+    private get last(): number {
+        return this.moments.at(-1)?.step ?? this.step;
+    }
+
+    /** The moment at the position; undefined while it is the one at the beginning. */
     get shown(): Moment | undefined {
         let [low, high] = [0, this.moments.length];
         while (low < high) {
@@ -77,17 +81,10 @@ export class Film {
             if ((this.moments[middle]?.position ?? Infinity) <= this.position) low = middle + 1;
             else high = middle;
         }
-        return this.moments[Math.max(0, low - 1)];
+        return this.moments[low - 1];
     }
 
     get isOver(): boolean {
         return this.hasEnd && (this.moments.length === 0 || this.shown === this.moments.at(-1));
     }
-}
-
-/** The properties that fail in a moment and did not fail in the one before. */
-export function newlyFailed(before: Moment | undefined, now: Moment): string[] {
-    return Object.entries(now.verdicts).flatMap(([name, verdict]) =>
-        before && verdict === "failed" && before.verdicts[name] !== "failed" ? [name] : [],
-    );
 }

@@ -17,7 +17,7 @@ import {
     type StageWords,
     type ToStage,
 } from "../contract";
-import { Film, newlyFailed, SPEEDS } from "./film";
+import { Film, SPEEDS } from "./film";
 import { icon } from "./icons";
 
 /** A pane is small, and shows what happens with its surroundings. */
@@ -40,6 +40,8 @@ export class StageView {
     private state: StageState | undefined;
     private film: Film | undefined;
     private shown: Moment | undefined;
+    /** Why playing has ended. */
+    private reason = "";
     private lastFrame = 0;
 
     constructor(
@@ -54,6 +56,10 @@ export class StageView {
                 post({ from: pane, message });
             };
             const view = new PictureView(this.addPane(pane), send, LEAST_SCALE);
+            view.onSelect = (node) => {
+                this.timeline.light(node);
+                this.timeline.revealLane();
+            };
             this.pictures.set(pane, view);
         }
         this.addPane("properties").append(this.properties);
@@ -129,7 +135,8 @@ export class StageView {
         this.stop(false);
         this.state = state;
         this.root.dataset["step"] = String(state.step);
-        this.caption.textContent = state.next;
+        this.caption.textContent = [this.reason, state.next].filter((text) => text !== "").join(" · ");
+        this.reason = "";
         this.showPosition(state.step, state.time);
         this.showProperties(state.properties);
     }
@@ -177,7 +184,7 @@ export class StageView {
         if (!speed || !state) return;
         const from = speed.axis === "time" ? state.time : state.step;
         if (from === null) return;
-        this.film = new Film(speed, from);
+        this.film = new Film(speed, from, state.step);
         this.shown = undefined;
         this.lastFrame = performance.now();
         this.showPlaying();
@@ -192,18 +199,18 @@ export class StageView {
         film.play((now - this.lastFrame) / 1000);
         this.lastFrame = now;
         const moment = film.shown;
-        if (moment) {
+        const at = moment ?? this.state;
+        if (at) {
             const { axis } = film.speed;
-            const step = axis === "steps" ? film.position : moment.step;
-            this.timeline.play({ step, time: axis === "time" ? film.position : moment.time });
-            if (moment !== this.shown && this.showMoment(moment)) return;
+            const step = axis === "steps" ? film.position : at.step;
+            this.timeline.play({ step, time: axis === "time" ? film.position : at.time });
         }
+        if (moment && moment !== this.shown) this.showMoment(moment);
         if (film.isOver) this.stop(true);
         else requestAnimationFrame(this.frame);
     };
 
-    /** Show a moment that is played; return whether playing ends there, because a property fails. */
-    private showMoment(moment: Moment): boolean {
+    private showMoment(moment: Moment): void {
         const before = this.shown;
         this.shown = moment;
         for (const [pane, view] of this.pictures)
@@ -215,9 +222,7 @@ export class StageView {
             this.showProperties(
                 properties.map((one) => ({ ...one, verdict: moment.verdicts[one.name] ?? one.verdict })),
             );
-        if (newlyFailed(before, moment).length === 0) return false;
-        this.stop(true);
-        return true;
+        this.reason = moment.stop ?? "";
     }
 
     /** End playing. With `goes`, the debugger goes to what is shown, so that all other views show it, too. */

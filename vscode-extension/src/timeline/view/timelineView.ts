@@ -44,7 +44,10 @@ export class TimelineView {
     private readonly drawing = div("drawing");
     private readonly cursor = div("cursor-line");
     private readonly selected = div("selected-stretch");
+    private readonly litLane = div("lit-lane");
     private readonly notice = div("notice");
+    private lanes: readonly (readonly string[])[] = [];
+    private lit = "";
     private words: TimelineWords | undefined;
     private axis: Axis = "time";
     private visible: Stretch = { from: 0, to: 0 };
@@ -66,7 +69,7 @@ export class TimelineView {
         this.notice.setAttribute("role", "status");
         this.rows.tabIndex = 0;
         this.rows.setAttribute("role", "application");
-        this.rows.append(this.drawing, this.selected, this.cursor);
+        this.rows.append(this.litLane, this.drawing, this.selected, this.cursor);
         this.body.append(this.names, this.rows);
         root.append(this.bar, this.body, this.notice);
         this.listen();
@@ -109,6 +112,27 @@ export class TimelineView {
         if (cursor > tile.extent && !this.pending) this.hasChanged = true;
         this.visible = reveal(this.visible, cursor, Math.max(this.extent, cursor));
         this.refresh();
+    }
+
+    /** Mark the lane of a node of a picture; "" marks none. */
+    light(node: string): void {
+        this.lit = node;
+        const belongs = (id: string) => (id.endsWith("#") ? node.startsWith(id) : node === id);
+        const lane = this.lanes.findIndex((ids) => ids.some(belongs));
+        // The first row is that of the messages.
+        const rows = [...this.names.querySelectorAll(".name")].slice(1);
+        for (const [index, row] of rows.entries()) row.classList.toggle("lit", index === lane);
+        const row = rows[lane];
+        this.litLane.hidden = row === undefined;
+        if (!row) return;
+        const { top, height } = row.getBoundingClientRect();
+        const middle = top + height / 2 - this.names.getBoundingClientRect().top;
+        this.litLane.style.top = `${middle - this.litLane.offsetHeight / 2}px`;
+    }
+
+    /** Show the marked lane, if there is one. */
+    revealLane(): void {
+        if (!this.litLane.hidden) this.litLane.scrollIntoView({ block: "nearest" });
     }
 
     /** The position of the cursor on the axis. */
@@ -187,6 +211,8 @@ export class TimelineView {
         this.drawing.innerHTML = picture(tile.scene, tile.width, tile.height);
         if (tile.names !== undefined) this.names.innerHTML = picture(tile.names, NAMES_WIDTH, tile.height);
         if (tile.plots) this.curves.offer(tile.plots);
+        if (tile.lanes) this.lanes = tile.lanes;
+        this.light(this.lit);
         this.axisTop = 0;
         this.rows.style.height = `${tile.height}px`;
         this.cursor.style.height = `${tile.height}px`;
