@@ -8,17 +8,17 @@ status.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import NamedTuple
+from collections.abc import Iterator, Sequence
 
 from roaml.forest.entries import entry_of
 from roaml.forest.forest import Forest
 from roaml.forest.ports import ports_of
 from roaml.forest.scripts import script_attributes
-from roaml.libraries import Node, Port
-from roaml.libraries.programs.assembly import NodeProgram, programs
-from roaml.libraries.programs.effects import ANY_ANSWER, Answers, Situation, constant, effects
-from roaml.libraries.programs.statuses import FAILURE, RUNNING, SKIPPED, STATUS_CODES, SUCCESS
+from roaml.libraries import Node
+from roaml.libraries.programs.assembly import programs
+from roaml.libraries.programs.effects import ANY_ANSWER, effects
+from roaml.libraries.programs.linked import ANY, LinkedNode, Possible, linked
+from roaml.libraries.programs.statuses import FAILURE, RUNNING, SKIPPED, SUCCESS
 from roaml.model.tree import TreeNode
 from roaml.record import replace
 from roaml.roles import UNBOUNDED, NodeKind
@@ -29,23 +29,12 @@ MAX_SUBTREES = 100
 _BLAMED = {SUCCESS: "SUCCESS", FAILURE: "FAILURE", RUNNING: "RUNNING"}
 
 
-class Possible(NamedTuple):
-    """The statuses that a node can return: at any tick, and at its first tick."""
-
-    ever: Answers
-    first: Answers
-
-
-_ANY = Possible(ANY_ANSWER, ANY_ANSWER)
-
-
 class PossibleStatuses:
     """The statuses that the nodes of a forest can return. Each tree is analysed once. A recursive tree is assumed to
     return any status."""
 
     def __init__(self, forest: Forest) -> None:
         self.forest = forest
-        self._programs = programs(forest.settings.version)
         self._trees: dict[str, Possible] = {}
         self._depth = 0
 
@@ -62,14 +51,14 @@ class PossibleStatuses:
 
     def must_not_be_skipped(self, node: TreeNode) -> Iterator[TreeNode]:
         """The children of a node after whose skipping the library throws an exception."""
-        program = self._program(node)
-        if program is not None:
-            fatal = effects(program, self._situation(node, [_ANY] * len(node.children))).fatal
+        bound = self._linked(node)
+        if bound.program is not None:
+            fatal = bound.effects([ANY] * len(node.children)).fatal
             yield from (child for index, child in enumerate(node.children) if index in fatal)
 
     def _tree(self, name: str) -> Possible:
         if name not in self._trees:
-            self._trees[name] = _ANY  # used during the analysis, if the tree contains itself
+            self._trees[name] = ANY  # used during the analysis, if the tree contains itself
             _, tree = self.forest.trees[name]
             if len(tree.roots) == 1 and self._depth < MAX_SUBTREES:
                 self._depth += 1
@@ -79,41 +68,23 @@ class PossibleStatuses:
                 self._depth -= 1
         return self._trees[name]
 
-    def _own(self, node: TreeNode, below: list[Possible]) -> Possible:
-        program = self._program(node)
-        if program is not None:
-            result = effects(program, self._situation(node, below))
-            return Possible(result.answers, result.first)
-        name = node.plugin.value if node.plugin else ""
-        if node.is_subtree or self.forest.names_tree(node):
-            inner = self._tree(name) if name in self.forest.trees else _ANY
-            result = effects(self._programs["SubTree"], self._situation(node, [inner]))
-        else:
-            leaf = _leaf(node, self.forest.known_node(node))
-            result = effects(self._programs["condition_machine"], self._situation(node, [leaf]))
-        return Possible(result.answers, result.first)
+    def _own(self, node: TreeNode, below: Sequence[Possible]) -> Possible:
+        return self._linked(node).possible(below)
 
-    def _program(self, node: TreeNode) -> NodeProgram | None:
-        """The program of a node of a library that has a valid number of children; `None` if there is none."""
-        known = None if node.plugin is None else self.forest.known_node(node)
-        if known is None or not known.behaviour or known.name not in self._programs:
-            return None
-        least, most = known.children
-        return self._programs[known.name] if least <= len(node.children) <= most else None
+    def _linked(self, node: TreeNode) -> LinkedNode:
+        known, version = self.forest.known_node(node), self.forest.settings.version
+        settings = {s.key.value: s.value.value if entry_of(s) is None else None for s in ports_of(node)}
+        scripts = [attribute.name for attribute in script_attributes(node)]
+        if node.is_subtree or self.forest.names_tree(node):
+            name = node.plugin.value if node.plugin else ""
+            inner = self._tree(name) if name in self.forest.trees else ANY
+            return replace(linked(None, {}, scripts, 0, inner, version), conditions=programs(version)["SubTree"])
+        return linked(known, settings, scripts, len(node.children), _leaf(node, known), version)
 
     def _is_in_order(self, node: TreeNode) -> bool:
         """Whether a node may have any number of children, so that each continues after the ones before it."""
         known = self.forest.known_node(node)
         return known is not None and known.children[1] == UNBOUNDED
-
-    def _situation(self, node: TreeNode, below: list[Possible]) -> Situation:
-        known = self.forest.known_node(node)
-        ports = (
-            {port.name: number for port in known.ports if (number := _number(node, port)) is not None} if known else {}
-        )
-        scripts = frozenset(attribute.name for attribute in script_attributes(node))
-        ever, first = tuple(child.ever for child in below), tuple(child.first for child in below)
-        return Situation(ever, first, tuple(sorted(ports.items())), scripts)
 
     def unreached(self, root: TreeNode) -> Iterator[tuple[TreeNode, TreeNode, str]]:
         """The children that are never ticked.
@@ -133,33 +104,20 @@ class PossibleStatuses:
                 has_inner.add(node)
         yield from reversed(stopped_nodes)
 
-    def _stopped(self, node: TreeNode, below: list[Possible]) -> tuple[TreeNode, TreeNode, str] | None:
+    def _stopped(self, node: TreeNode, below: Sequence[Possible]) -> tuple[TreeNode, TreeNode, str] | None:
         """The first child of a node that is never ticked because of an earlier child."""
-        program = self._program(node)
-        if program is None or not self._is_in_order(node):
+        bound = self._linked(node)
+        if bound.program is None or not self._is_in_order(node):
             return None
-        setting = self._situation(node, below)
-        ticked = effects(program, setting).ticked
+        setting, ticked = bound.situation(below), bound.effects(below).ticked
         for index in range(1, len(below)):
             for before in reversed(range(index)) if index not in ticked else ():
                 for status in (status for status in _BLAMED if status not in setting.answers[before]):
                     answers = list(setting.answers)
                     answers[before] |= {status}
-                    if index in effects(program, replace(setting, answers=tuple(answers))).ticked:
+                    if index in effects(bound.program, replace(setting, answers=tuple(answers))).ticked:
                         return node.children[index], node.children[before], _BLAMED[status]
         return None
-
-
-def _number(node: TreeNode, port: Port) -> float | None:
-    """The number in a port; `None` if it is not a useful constant number. Another rule reports useless numbers."""
-    setting = next((setting for setting in ports_of(node) if setting.key.value == port.name), None)
-    text = port.default if setting is None else None if entry_of(setting) is not None else setting.value.value
-    number = None if text is None or text.strip() in STATUS_CODES else constant(text)
-    if isinstance(number, (bool, str)) or number is None or (port.limits and port.limits.counts_children):
-        return None
-    least = port.limits.minimum if port.limits else None
-    is_useful = least is None or number >= least or (port.limits and number in port.limits.special)
-    return number if is_useful else None
 
 
 def _from_leaves(root: TreeNode) -> list[TreeNode]:
@@ -175,11 +133,11 @@ def _from_leaves(root: TreeNode) -> list[TreeNode]:
 def _leaf(node: TreeNode, known: Node | None) -> Possible:
     """The statuses of a node without a program."""
     if known is None or not known.behaviour:
-        return _ANY
+        return ANY
     if known.is_synchronous:
         return Possible(frozenset((SUCCESS, FAILURE)), frozenset((SUCCESS, FAILURE)))
     if known.kind is not NodeKind.ACTION:
-        return _ANY
+        return ANY
     ends = ANY_ANSWER - {SKIPPED}
     return Possible(ends, frozenset((RUNNING,)) if known.running and not _may_be_zero(node) else ends)
 

@@ -7,24 +7,12 @@ import itertools
 from collections.abc import Collection, Mapping
 
 from roaml.libraries import library_node
-from roaml.libraries.programs.assembly import NodeProgram, programs
-from roaml.libraries.programs.effects import (
-    ALL_EFFECTS,
-    ANY_ANSWER,
-    Answers,
-    ChildEffects,
-    Effects,
-    Situation,
-    constant,
-    effects,
-    effects_on,
-)
+from roaml.libraries.programs.effects import ALL_EFFECTS, ChildEffects, Effects, effects_on
+from roaml.libraries.programs.linked import ANY, OF_MACHINE, LinkedNode, Possible, linked
 from roaml.libraries.programs.statuses import FAILURE, RUNNING, SKIPPED, SUCCESS
-from roaml.model.expand import PortConstant
+from roaml.model.expand import Instance, PortConstant
 from roaml.model.system import System, SystemAutomaton
-from roaml.record import replace
 
-_MACHINE = frozenset((SUCCESS, FAILURE, RUNNING))
 _NO_SUCCESS = frozenset((FAILURE, RUNNING))
 
 
@@ -32,28 +20,27 @@ class TreeEffects:
     """The effects of the nodes of a tree. Nodes with a wrong number of children may do anything."""
 
     def __init__(self, system: System) -> None:
-        self._answers: dict[int, Answers] = {}
+        self._linked: dict[int, LinkedNode] = {}
+        self._possible: dict[int, Possible] = {}
         for instance in reversed(system.instances):  # children before their parents
             automaton = system.by_instance.get(instance.number)
-            self._answers[instance.number] = ANY_ANSWER if automaton is None else self._of(system, automaton)
+            if automaton is not None:
+                self._linked[instance.number] = _bound(automaton, instance)
+            self._possible[instance.number] = self._of(system, instance)
 
     def on_child(self, parent: SystemAutomaton, child: SystemAutomaton) -> ChildEffects:
         """What a node of a library may do with its child."""
-        assert parent.instance is not None
         assert child.instance is not None
-        program = _program(parent)
-        if program is None:
+        instance, bound = self._of_automaton(parent)
+        if bound.program is None:
             return ALL_EFFECTS
-        return effects_on(program, self._situation(parent), parent.instance.children.index(child.instance.number))
+        index = instance.children.index(child.instance.number)
+        return effects_on(bound.program, bound.situation(self._below(instance)), index)
 
     def waits(self, node: SystemAutomaton) -> bool:
         """Whether a node of a library never returns SUCCESS at its first tick, whatever its children return."""
-        program = _program(node)
-        if program is None:
-            return False
-        situation = self._situation(node)
-        anything = (ANY_ANSWER,) * len(situation.answers)
-        return SUCCESS not in effects(program, replace(situation, answers=anything, first=anything)).first
+        instance, bound = self._of_automaton(node)
+        return bound.program is not None and SUCCESS not in bound.effects([ANY] * len(instance.children)).first
 
     def time_to_success(self, system: System, node: SystemAutomaton, waits: Mapping[int, int]) -> int:
         """The least time that passes until a node returns SUCCESS.
@@ -61,72 +48,55 @@ class TreeEffects:
         Args:
             waits: number of a node -> the time for which it waits itself.
         """
-        assert node.instance is not None
-        program, numbers = _program(node), node.instance.children
-        if program is None or SUCCESS not in self._without(node, program, ()).answers:
+        instance, bound = self._of_automaton(node)
+        numbers = instance.children
+        if bound.program is None or SUCCESS not in self._without(node, ()).answers:
             return 0
         inside = [self._time_of_child(system, number, waits) for number in numbers]
-        own = waits.get(node.instance.number, 0)
+        own = waits.get(instance.number, 0)
         children = range(len(numbers))
-        needed = [index for index in children if SUCCESS not in self._without(node, program, {index}).answers]
+        needed = [index for index in children if SUCCESS not in self._without(node, {index}).answers]
         if needed:
             in_turn = all(
-                later not in self._without(node, program, {earlier}).ticked
-                for earlier, later in itertools.pairwise(needed)
+                later not in self._without(node, {earlier}).ticked for earlier, later in itertools.pairwise(needed)
             )
             return own + (sum if in_turn else max)(inside[index] for index in needed)
-        is_one_needed = SUCCESS not in self._without(node, program, children).answers
+        is_one_needed = SUCCESS not in self._without(node, children).answers
         return own + (min(inside, default=0) if is_one_needed else 0)
 
     def _time_of_child(self, system: System, number: int, waits: Mapping[int, int]) -> int:
         child = system.by_instance.get(number)
-        is_certain = child is not None and SKIPPED not in self._answers[number]
+        is_certain = child is not None and SKIPPED not in self._possible[number].ever
         return self.time_to_success(system, child, waits) if child is not None and is_certain else 0
 
-    def _without(self, node: SystemAutomaton, program: NodeProgram, failing: Collection[int]) -> Effects:
+    def _without(self, node: SystemAutomaton, failing: Collection[int]) -> Effects:
         """The effects of a node some of whose children never return SUCCESS."""
-        situation = self._situation(node)
-        given = (
-            _NO_SUCCESS if index in failing else answers | {SUCCESS} for index, answers in enumerate(situation.answers)
+        instance, bound = self._of_automaton(node)
+        answers = (
+            _NO_SUCCESS if index in failing else below.ever | {SUCCESS}
+            for index, below in enumerate(self._below(instance))
         )
-        answers = tuple(given)
-        return effects(program, replace(situation, answers=answers, first=answers))
+        return bound.effects([Possible(given, given) for given in answers])
 
-    def _of(self, system: System, automaton: SystemAutomaton) -> Answers:
+    def _of(self, system: System, instance: Instance) -> Possible:
+        has_conditions = any(system.tree_uses[use].scripts for use in _with_outer(system, instance.use))
+        bound = self._linked.get(instance.number)
+        return ANY if has_conditions or bound is None else bound.possible(self._below(instance))
+
+    def _of_automaton(self, automaton: SystemAutomaton) -> tuple[Instance, LinkedNode]:
         assert automaton.instance is not None
-        program = _program(automaton)
-        answers = _MACHINE if automaton.path else ANY_ANSWER
-        if program is not None:
-            answers = effects(program, self._situation(automaton)).answers
-        elif automaton.instance.scripts:
-            scripts = frozenset(name for name, _ in automaton.instance.scripts)
-            answers = effects(programs()["condition_machine"], Situation((answers,), (answers,), (), scripts)).answers
-        uses = _with_outer(system, automaton.instance.use)
-        has_conditions = any(system.tree_uses[use].scripts for use in uses)
-        return ANY_ANSWER if has_conditions else answers
+        return automaton.instance, self._linked[automaton.instance.number]
 
-    def _situation(self, parent: SystemAutomaton) -> Situation:
-        assert parent.instance is not None
-        node = library_node(parent.outline.name)
-        assert node is not None
-        ports = {port.name: constant(port.default) for port in node.ports if port.default is not None}
-        for key, value in parent.instance.ports:
-            if isinstance(value, PortConstant):
-                ports[key] = constant(value.text)
-            else:
-                ports.pop(key, None)
-        below = tuple(self._answers[number] for number in parent.instance.children)
-        scripts = frozenset(name for name, _ in parent.instance.scripts)
-        return Situation(below, below, tuple(sorted(ports.items())), scripts)
+    def _below(self, instance: Instance) -> list[Possible]:
+        return [self._possible[number] for number in instance.children]
 
 
-def _program(automaton: SystemAutomaton) -> NodeProgram | None:
-    """The program of a node of a library with a valid number of children; `None` for other nodes."""
-    node = None if automaton.path else library_node(automaton.outline.name)
-    if node is None or automaton.instance is None:
-        return None
-    least, most = node.children
-    return programs().get(node.name) if least <= len(automaton.instance.children) <= most else None
+def _bound(automaton: SystemAutomaton, instance: Instance) -> LinkedNode:
+    """The node of an automaton, bound to a program of a library or to its machine."""
+    known = None if automaton.path else library_node(automaton.outline.name)
+    settings = {key: value.text if isinstance(value, PortConstant) else None for key, value in instance.ports}
+    scripts = (name for name, _ in instance.scripts)
+    return linked(known, settings, scripts, len(instance.children), OF_MACHINE if automaton.path else ANY)
 
 
 def _with_outer(system: System, use: int | None) -> list[int]:
