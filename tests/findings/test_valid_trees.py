@@ -45,7 +45,9 @@ VALID = {
 </root>""",
     "queues and updates": """
 <root BTCPP_format="4"><BehaviorTree ID="A"><Sequence>
-    <LoopString queue="a;b;c" value="{letter}" if_empty="FAILURE"><Script code="seen := letter"/></LoopString>
+    <ForceSuccess>
+      <LoopString queue="a;b;c" value="{letter}" if_empty="FAILURE"><Script code="seen := letter"/></LoopString>
+    </ForceSuccess>
     <LoopDouble queue="1;2.5;-3e2" value="{x}"><Delay delay_msec="5"><AlwaysSuccess/></Delay></LoopDouble>
     <LoopBool queue="true;0" value="{flag}"><WaitValueUpdate entry="flag"><AlwaysSuccess/></WaitValueUpdate></LoopBool>
     <SkipUnlessUpdated entry="{letter}"><AlwaysSuccess/></SkipUnlessUpdated>

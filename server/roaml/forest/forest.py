@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A file of trees with the files that belong to it, and the declarations of their nodes.
 
-- The declaration of a node comes from BehaviorTree.CPP, else from a `<TreeNodesModel>`, else from another library.
-- A library is used if the settings name it, or if the trees use its nodes (docs/spec/lone-trees.md#models).
+- In a system, a node is a plugin or a node of a library (`System.plugin`).
+- Without a system, its declaration comes from BehaviorTree.CPP, else from a `<TreeNodesModel>`, else from another
+  library. A library is used if the settings name it, or if the trees use its nodes (docs/spec/lone-trees.md#models).
 """
 
 from __future__ import annotations
@@ -13,12 +14,14 @@ from functools import cached_property
 from roaml.forest.cpp_types import normal
 from roaml.forest.ports import ports_of
 from roaml.forest.settings import TreeSettings
-from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Absent, Library, Node, Port, library
+from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Absent, Library, Node, Port, library, library_node
 from roaml.libraries.version import first_patch
 from roaml.model.kinds import PROJECT_EXTENSION
+from roaml.model.outline import MachineOutline
+from roaml.model.system import System
 from roaml.model.tree import NodeModel, Tree, TreeFile, TreeNode, nodes
 from roaml.record import Record, replace
-from roaml.roles import NodeKind
+from roaml.roles import UNBOUNDED, Direction, NodeKind
 from roaml.suggest import close_names
 
 CPP = library(BEHAVIORTREE_CPP)
@@ -51,6 +54,7 @@ class Forest(Record, frozen=True, eq=False, dict=True):
         complete: whether all included files could be read.
         models_beside: the models in other files of the folder. A node that they describe is not the node of that name
             in a library, unless they describe that one.
+        system: the system that the trees belong to; `None` for trees without a system.
     """
 
     path: str
@@ -59,6 +63,7 @@ class Forest(Record, frozen=True, eq=False, dict=True):
     beside: frozenset[str] = frozenset()
     complete: bool = True
     models_beside: tuple[NodeModel, ...] = ()
+    system: System | None = None
 
     @cached_property
     def file(self) -> TreeFile:
@@ -175,6 +180,9 @@ class Forest(Record, frozen=True, eq=False, dict=True):
     def node(self, name: str) -> Node | None:
         """The declaration of the node type `name`; `None` if there is none. In a file of version 3, the names of
         version 3 are known, too."""
+        if self.system is not None:
+            path, outline = self.system.plugin(name)
+            return None if outline is None else node_of_machine(outline) if path else library_node(name)
         renamed = CPP.renamed.get(name) if self.is_version_3 else None
         declaration = CPP.nodes.get(renamed.now if renamed else name)
         is_known = declaration is not None and (self.is_version_3 or not declaration.until)
@@ -226,6 +234,10 @@ class Forest(Record, frozen=True, eq=False, dict=True):
                         behaviour=known.name,
                     )
         return described
+
+    def is_machine(self, node: Node) -> bool:
+        """Whether a declared node is a machine of the system."""
+        return self.system is not None and not node.library
 
     def is_newer_than_used(self, node: Node) -> bool:
         """Whether the node is newer than the version of BehaviorTree.CPP in the settings."""
@@ -349,6 +361,15 @@ def node_of(model: NodeModel) -> Node:
         if port.name is not None
     )
     return Node(model.id.value, kind, ports, kind.children, model.text)
+
+
+def node_of_machine(outline: MachineOutline) -> Node:
+    """The declaration of a node that a machine executes. The number of its children is not limited here."""
+    ports = tuple(
+        Port(port.key, Direction.IN if port.direction is Direction.IN else Direction.OUT, port.type)
+        for port in outline.ports
+    )
+    return Node(outline.name, NodeKind.ACTION, ports, (0, UNBOUNDED))
 
 
 _KINDS = frozenset(kind.value for kind in NodeKind)

@@ -8,6 +8,7 @@ status.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator, Sequence
 
 from roaml.forest.entries import entry_of
@@ -16,8 +17,8 @@ from roaml.forest.ports import ports_of
 from roaml.forest.scripts import script_attributes
 from roaml.libraries import Node
 from roaml.libraries.programs.assembly import programs
-from roaml.libraries.programs.effects import ANY_ANSWER, effects
-from roaml.libraries.programs.linked import ANY, LinkedNode, Possible, linked
+from roaml.libraries.programs.effects import ANY_ANSWER, effects, effects_on
+from roaml.libraries.programs.linked import ANY, OF_MACHINE, LinkedNode, Possible, linked
 from roaml.libraries.programs.statuses import FAILURE, RUNNING, SKIPPED, SUCCESS
 from roaml.model.tree import TreeNode
 from roaml.record import replace
@@ -26,6 +27,7 @@ from roaml.roles import UNBOUNDED, NodeKind
 MAX_SUBTREES = 100
 """The maximum nesting depth of subtrees that are analysed. Deeper subtrees are assumed to return any status."""
 
+_ENDS = frozenset((SUCCESS, FAILURE))
 _BLAMED = {SUCCESS: "SUCCESS", FAILURE: "FAILURE", RUNNING: "RUNNING"}
 
 
@@ -36,18 +38,32 @@ class PossibleStatuses:
     def __init__(self, forest: Forest) -> None:
         self.forest = forest
         self._trees: dict[str, Possible] = {}
+        self._known: dict[TreeNode, Possible] = {}
         self._depth = 0
 
     def statuses(self, root: TreeNode) -> dict[TreeNode, Possible]:
         """The statuses that a node and all nodes below it can return."""
-        statuses: dict[TreeNode, Possible] = {}
-        for node in _from_leaves(root):
-            statuses[node] = self._own(node, [statuses[child] for child in node.children])
-        return statuses
+        nodes = _from_leaves(root)
+        for node in nodes:
+            if node not in self._known:
+                self._known[node] = self._linked(node).possible([self._known[child] for child in node.children])
+        return {node: self._known[node] for node in nodes}
 
-    def is_running_at_once(self, node: TreeNode) -> bool:
-        """Whether the first tick of a node always returns RUNNING."""
-        return self.statuses(node)[node].first == {RUNNING}
+    def restarted(self, node: TreeNode) -> Iterator[tuple[TreeNode, TreeNode]]:
+        """The children that never end, because the node ticks an earlier child again, which then is RUNNING, and halts
+        them: each with this earlier child."""
+        bound, count = self._linked(node), len(node.children)
+        if bound.program is None or count == 1:
+            return
+        below = [self._statuses_of(child) for child in node.children]
+        running = [index for index, statuses in enumerate(below) if statuses.first == {RUNNING}]
+        for later in running[1:]:
+            earlier = running[0]
+            if any(_is_restarted(bound, count, earlier, later, end) for end in below[earlier].ever & _ENDS):
+                yield node.children[later], node.children[earlier]
+
+    def _statuses_of(self, node: TreeNode) -> Possible:
+        return self._known[node] if node in self._known else self.statuses(node)[node]
 
     def must_not_be_skipped(self, node: TreeNode) -> Iterator[TreeNode]:
         """The children of a node after whose skipping the library throws an exception."""
@@ -68,9 +84,6 @@ class PossibleStatuses:
                 self._depth -= 1
         return self._trees[name]
 
-    def _own(self, node: TreeNode, below: Sequence[Possible]) -> Possible:
-        return self._linked(node).possible(below)
-
     def _linked(self, node: TreeNode) -> LinkedNode:
         known, version = self.forest.known_node(node), self.forest.settings.version
         settings = {s.key.value: s.value.value if entry_of(s) is None else None for s in ports_of(node)}
@@ -79,7 +92,20 @@ class PossibleStatuses:
             name = node.plugin.value if node.plugin else ""
             inner = self._tree(name) if name in self.forest.trees else ANY
             return replace(linked(None, {}, scripts, 0, inner, version), conditions=programs(version)["SubTree"])
-        return linked(known, settings, scripts, len(node.children), _leaf(node, known), version)
+        return linked(known, settings, scripts, len(node.children), self._leaf(node, known), version)
+
+    def _leaf(self, node: TreeNode, known: Node | None) -> Possible:
+        """The statuses of a node without a program."""
+        if known is not None and self.forest.is_machine(known):
+            return OF_MACHINE
+        if known is None or not known.behaviour:
+            return ANY
+        if known.is_synchronous:
+            return Possible(_ENDS, _ENDS)
+        if known.kind is not NodeKind.ACTION:
+            return ANY
+        ends = ANY_ANSWER - {SKIPPED}
+        return Possible(ends, frozenset((RUNNING,)) if known.running and not _may_be_zero(node) else ends)
 
     def _is_in_order(self, node: TreeNode) -> bool:
         """Whether a node may have any number of children, so that each continues after the ones before it."""
@@ -120,6 +146,21 @@ class PossibleStatuses:
         return None
 
 
+def _is_restarted(bound: LinkedNode, count: int, earlier: int, later: int, end: int) -> bool:
+    """Whether a node ticks a child again that has returned `end`, and halts a later child that is RUNNING if, and only
+    if, the earlier one is RUNNING then."""
+    assert bound.program is not None
+    ended, running = Possible(frozenset((end,)), frozenset((end,))), frozenset((RUNNING,))
+    below = [ended] * count
+    below[later] = Possible(running, running)
+    if RUNNING in effects_on(bound.program, bound.situation(below), later).halts:
+        return False
+    below[earlier] = Possible(running | {end}, running)
+    situation = bound.situation(below)
+    is_halted = RUNNING in effects_on(bound.program, situation, later).halts
+    return is_halted and effects_on(bound.program, situation, earlier).restarts
+
+
 def _from_leaves(root: TreeNode) -> list[TreeNode]:
     """A node and all nodes below it, children before their parents."""
     order, stack = [], [root]
@@ -130,19 +171,13 @@ def _from_leaves(root: TreeNode) -> list[TreeNode]:
     return order[::-1]
 
 
-def _leaf(node: TreeNode, known: Node | None) -> Possible:
-    """The statuses of a node without a program."""
-    if known is None or not known.behaviour:
-        return ANY
-    if known.is_synchronous:
-        return Possible(frozenset((SUCCESS, FAILURE)), frozenset((SUCCESS, FAILURE)))
-    if known.kind is not NodeKind.ACTION:
-        return ANY
-    ends = ANY_ANSWER - {SKIPPED}
-    return Possible(ends, frozenset((RUNNING,)) if known.running and not _may_be_zero(node) else ends)
-
-
 def _may_be_zero(node: TreeNode) -> bool:
     """Whether the time of an action is 0 or in an entry, so that the action may end at once."""
     time = node.element.get("wait_duration")
     return time is not None and time.value.strip().startswith(("0", "{", "="))
+
+
+@functools.lru_cache(maxsize=1)
+def statuses_of(forest: Forest) -> PossibleStatuses:
+    """The statuses of the nodes of a forest, cached for the last forest, because several rules need them."""
+    return PossibleStatuses(forest)

@@ -13,8 +13,9 @@ from collections.abc import Hashable, Iterator, Mapping
 from fractions import Fraction
 from functools import cached_property
 
+from roaml.forest.forest import node_of_machine
 from roaml.forest.scripts import script_attributes
-from roaml.libraries import Node, Port, library_node, node_in_libraries
+from roaml.libraries import Node, library_node, node_in_libraries
 from roaml.libraries.programs.assembly import NodeProgram, programs
 from roaml.libraries.programs.statuses import FAILURE, RUNNING, SUCCESS
 from roaml.lower.programs.automaton import CONDITION_MACHINE, MACHINE, MACHINES, NodeTooLargeError, node_automaton
@@ -33,11 +34,10 @@ from roaml.lower.programs.nodes import (
 from roaml.lower.programs.refusal import TreeRefusal
 from roaml.model.expand import Frame, Instance, Reference, TreeUse, node_at
 from roaml.model.node_effects import tree_effects
-from roaml.model.outline import MachineOutline
 from roaml.model.system import EntryOutline, System, SystemAutomaton
 from roaml.model.tree import TreeFile, TreeNode
 from roaml.record import Record, replace
-from roaml.roles import Direction, NodeKind
+from roaml.roles import NodeKind
 from roaml.script.names import names_in
 from roaml.scxml.model import Automaton
 from roaml.scxml.names import CONDITIONS_PREFIX
@@ -360,7 +360,7 @@ def _address(number: int, level: int) -> str:
 def _declared(automaton: SystemAutomaton, *, is_program: bool) -> Node:
     """The declaration of a node in its library; for a machine, a declaration with its ports."""
     if not is_program:
-        return _of_machine(automaton.outline)
+        return node_of_machine(automaton.outline)
     node = library_node(automaton.outline.name)
     assert node is not None, automaton.outline.name
     return node
@@ -370,12 +370,3 @@ def _is_condition(instance: Instance) -> bool:
     """Whether a node is declared as a condition, in the file of the tree or in a library."""
     known = node_in_libraries(instance.plugin)
     return instance.condition or (known is not None and known.kind is NodeKind.CONDITION)
-
-
-def _of_machine(outline: MachineOutline) -> Node:
-    def direction(port: str) -> Direction:
-        known = outline.port(port)
-        return Direction.IN if known is not None and known.direction is Direction.IN else Direction.OUT
-
-    ports = tuple(Port(port.key, direction(port.key), port.type) for port in outline.ports)
-    return Node(outline.name, NodeKind.ACTION, ports, (0, 0))

@@ -19,6 +19,7 @@ from typing import TypeAlias
 
 from roaml.diagnostics import Diagnostic, Finding, Related, RelatedPlace, Severity, Symbol, Tag
 from roaml.disk import UnreadableReason
+from roaml.forest.forest import Forest
 from roaml.interfaces.parse import parse as parse_interface
 from roaml.interfaces.registry import NotFound, Reason
 from roaml.interfaces.report import CODE as INTERFACE_SYNTAX
@@ -347,9 +348,8 @@ class _Run:
                 listed = tuple((f.path, f.problem, f.kind) for f in self.analysis.listed(self.path))
                 return (*parts, listed, self.analysis.system(self.path), size_of_translation(self.analysis, self.path))
             case FileKind.TREE:
-                forest = None if self.system_path else self.analysis.forest(self.path)
                 includes = (tuple(self._missing_includes().items()), tuple(self._found_includes().items()))
-                return (*parts, self._tree_outlines(), includes, forest)
+                return (*parts, self._tree_outlines(), includes, self._trees())
             case FileKind.PROPERTIES if self.system_path:
                 return (*parts, tuple(self.analysis.names_before(self.path, self.system_path)))
             case FileKind.XML_PROPERTIES if self.system_path:
@@ -528,10 +528,9 @@ class _Run:
             return None
         older = self.system is not None and self.system.older
         outlines = self._tree_outlines()
-        missing, interface = self._missing_includes(), self.analysis.interface
-        forest = None if self.system_path else self.analysis.forest(self.path)
+        missing, interface, trees = self._missing_includes(), self.analysis.interface, self._trees()
         return TreeContext(
-            *(self.source, document, file, self.system, outlines, missing, interface, self._gaps(), older, forest),
+            *(self.source, document, file, self.system, outlines, missing, interface, self._gaps(), older, trees),
             self._unknown_packages(),
             self._refusals(),
             self._found_includes(),
@@ -551,6 +550,12 @@ class _Run:
         if self.system_path:
             return self.analysis.tree_outlines(self.system_path)
         return self.analysis.outlines_around(self.path)
+
+    def _trees(self) -> Forest | None:
+        """The trees with which this file is checked, with the definitions of their nodes."""
+        if self.system_path:
+            return self.analysis.trees_in(self.path, self.system_path)
+        return self.analysis.forest(self.path)
 
     def _unknown_packages(self) -> frozenset[str]:
         """The names of the ROS packages in `<include>` elements that are not found."""

@@ -122,7 +122,8 @@ class TreeContext(Record, frozen=True):
         missing_includes: the paths in `<include>` that cannot be included -> the reasons.
         interface: returns a ROS type by its kind and its name as written.
         gaps: the facts that unreadable parts of this file may contain.
-        forest: the trees that are checked together with this file; `None` if the file belongs to a system.
+        trees: the trees that are checked together with this file, with the definitions of their nodes; `None` if the
+            system of the file cannot be read.
         unknown_packages: the ROS packages of includes that no folder around the file contains.
         refusals: the places and reasons why nodes cannot be translated, for a tree that is executed as by
             BehaviorTree.CPP.
@@ -139,10 +140,15 @@ class TreeContext(Record, frozen=True):
     interface: Callable[[str, str], InterfaceType | NotFound]
     gaps: tuple[PlacedGap, ...]
     older: bool = False
-    forest: Forest | None = None
+    trees: Forest | None = None
     unknown_packages: frozenset[str] = frozenset()
     refusals: tuple[UntranslatablePart, ...] = ()
     found_includes: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def forest(self) -> Forest | None:
+        """`trees`, if the file belongs to no system; otherwise `None`."""
+        return None if self.trees is None or self.trees.system is not None else self.trees
 
 
 class SystemContext(Record, frozen=True):

@@ -87,15 +87,18 @@ def linked(
     available = programs(version)
     least, most = known.children if known is not None else (0, 0)
     program = available.get(known.name) if known is not None and known.behaviour and least <= children <= most else None
-    ports = {port.name: _value(port, settings) for port in known.ports} if known is not None else {}
+    ports = {port.name: _value(port, settings, children) for port in known.ports} if known is not None else {}
     values = tuple(sorted((name, value) for name, value in ports.items() if value is not None))
     return LinkedNode(program, available["condition_machine"], leaf, values, frozenset(scripts))
 
 
-def _value(port: Port, settings: Mapping[str, str | None]) -> Known | None:
+def _value(port: Port, settings: Mapping[str, str | None], children: int) -> Known | None:
     """The constant value of a port; `None` if there is none, or if it is a number of no use, which a rule reports."""
     text = settings.get(port.name, port.default)
     value = None if text is None else constant(text)
-    if isinstance(value, (int, float)) and port.limits is not None and port.limits.minimum is not None:
-        return value if value >= port.limits.minimum or value in port.limits.special else None
-    return value
+    if not isinstance(value, (int, float)) or port.limits is None:
+        return value
+    if port.limits.counts_children:
+        return value if value <= children else None
+    least = port.limits.minimum
+    return value if least is None or value >= least or value in port.limits.special else None

@@ -132,6 +132,7 @@ class Analysis:
         self.gaps = gaps.gaps
         self.system = linking.system
         self.library_tree = linking.library_tree
+        self.trees_in = linking.trees
         self.linked_properties = linking.linked_properties
         self.typed_in = linking.typed_in
         self.environment = linking.environment

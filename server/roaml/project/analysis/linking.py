@@ -8,6 +8,8 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Protocol
 
 from roaml.expr.types import Struct, Type
+from roaml.forest.forest import Forest
+from roaml.forest.settings import NEWEST
 from roaml.jani.properties import identifiers
 from roaml.model.expand import TreeFileOutline, expand
 from roaml.model.gaps import Gap
@@ -146,6 +148,19 @@ class Linking:
         key = (system, tuple(files.values()))
         builder = self._sources.memo.get("library tree builder", path, key, lambda: LibraryTreeBuilder(system, files))
         return self._sources.memo.get("library tree", path, key, builder.tree)
+
+    def trees(self, path: str, system: str) -> Forest | None:
+        """The trees of a system that are analysed together with the tree file `path`, with the definitions of their
+        nodes; `None` if the file or the system cannot be read."""
+        linked = self.system(system)
+        if linked is None or self._sources.tree(path) is None:
+            return None
+        files = tuple(self._tree_files(linked).items())
+        if all(path != other for other, _ in files):
+            return None
+        return self._sources.memo.get(
+            "linked trees", (path, system), (files, linked), lambda: Forest(path, files, NEWEST, system=linked)
+        )
 
     def _observed(self, listed: tuple[ListedFile, ...]) -> frozenset[str]:
         """The variables that the properties of a system use."""

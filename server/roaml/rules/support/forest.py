@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Helpers of the rules about trees that belong to no system."""
+"""Helpers of the rules about trees and the declarations of their nodes."""
 
 from __future__ import annotations
 
@@ -18,6 +18,12 @@ def forest_of(context: TreeContext) -> Forest | None:
     latter must be converted first, and other findings in them would only be consequences."""
     forest = context.forest
     return None if forest is None or forest.is_version_3 else forest
+
+
+def trees_of(context: TreeContext) -> Forest | None:
+    """The trees that are checked together with a file, in a system or without one; `None` for files of version 3
+    without a system, as for `forest_of`."""
+    return forest_of(context) if context.system is None else context.trees
 
 
 def probably_meant(name: str, known: Iterable[str], most: int = MAX_WRONG_LETTERS) -> str | None:

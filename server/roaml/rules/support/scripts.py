@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Fix
-from roaml.forest.scripts import ScriptUse, grammar_of, parsed, script_attributes, scripts_of
-from roaml.model.tree import Tree, nodes
+from roaml.forest.scripts import ScriptUse, grammar_of, parsed, scripts_of
+from roaml.model.tree import Tree
 from roaml.rules.rule import TreeContext
-from roaml.rules.support.forest import forest_of
+from roaml.rules.support.forest import trees_of
 from roaml.script.parse import ScriptProblem
 from roaml.script.tree import Script
 from roaml.text import TextEdit
@@ -18,26 +18,14 @@ from roaml.xml_syntax.escapes import escape
 
 
 def scripts(context: TreeContext) -> Iterator[tuple[Tree, ScriptUse, Script, tuple[ScriptProblem, ...]]]:
-    """Each script of a file that belongs to no system, with its tree, its use, and its syntax errors at their places in
-    the file."""
-    forest = forest_of(context)
+    """Each script of a file, with its tree, its use, and its syntax errors at their places in the file."""
+    forest = trees_of(context)
     if forest is None:
         return
     grammar = grammar_of(forest.settings.version)
     for tree, node in forest.own_nodes:
         for use in scripts_of(forest, node):
             yield tree, use, *parsed(context.document.decoded(use.attribute.value_span), grammar)
-
-
-def all_scripts(context: TreeContext) -> Iterator[tuple[Attribute, Script, tuple[ScriptProblem, ...]]]:
-    """Each script with its syntax errors, in trees with and without a system."""
-    if context.system is None:
-        yield from ((use.attribute, script, problems) for _, use, script, problems in scripts(context))
-        return
-    for tree in context.file.trees:
-        for node in nodes(tree):
-            for attribute in script_attributes(node):
-                yield attribute, *parsed(context.document.decoded(attribute.value_span))
 
 
 def fixes(context: TreeContext, attribute: Attribute, problem: ScriptProblem) -> Iterator[Fix]:

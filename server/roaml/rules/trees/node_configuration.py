@@ -7,6 +7,8 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal
+from roaml.libraries import Port
+from roaml.libraries.programs.statuses import FAILURE, RUNNING, SUCCESS
 from roaml.model.expand import Reference
 from roaml.model.tree import PortSetting, TreeNode, nodes
 from roaml.rules.rule import Rule, TreeContext, replacements
@@ -20,10 +22,10 @@ def check(context: TreeContext) -> Iterator[Finding]:
     yield from _set_twice(context)
     is_as2fm = context.system is not None and context.system.is_as2fm
     for node, key, text in constant_settings(context):
-        if not is_as2fm and key in ("num_cycles", "num_attempts"):
-            continue  # BehaviorTree.CPP accepts any number; `port-range` reports those without use
-        number = integer_of(text) if key in _COUNTS else None
-        problem = _problem(node, key, number) if number is not None else None
+        known = context.trees.known_node(node) if context.trees is not None else None
+        port = known.port(key) if known is not None and known.behaviour else None
+        number = integer_of(text) if port is not None else None
+        problem = _problem(node, port, number, is_as2fm=is_as2fm) if port and number is not None else None
         if problem is not None:
             yield _finding(node, key, *problem)
     for node, automaton in instances(context):
@@ -34,10 +36,6 @@ def check(context: TreeContext) -> Iterator[Finding]:
                     f"`{attribute.name}` is read once, at the start; it must be a constant, not a blackboard variable"
                 )
                 yield _finding(node, attribute.name, reason)
-
-
-_COUNTS = ("success_count", "failure_count", "max_failures", "num_cycles", "num_attempts", "return_on_mismatch")
-"""The ports that `_problem` checks."""
 
 
 def _finding(node: TreeNode, key: str, reason: str, instead: int | None = None) -> Finding:
@@ -64,18 +62,16 @@ def _set_twice(context: TreeContext) -> Iterator[Finding]:
                     yield RULE.at(setting.key.span, message, drop)
 
 
-def _problem(node: TreeNode, key: str, number: int) -> tuple[str, int | None] | None:
+def _problem(node: TreeNode, port: Port, number: int, *, is_as2fm: bool) -> tuple[str, int | None] | None:
     """The error in a setting, and the nearest valid value; `None` if the setting is valid."""
-    count = len(node.children)
-    match node.plugin.value if node.plugin and node.type is not None else "", key:
-        case ("Parallel", "success_count" | "failure_count") if number > count > 0:
-            return f"`{key}` must be at most the number of children, which is {count}, not {number}", count
-        case ("Repeat", "num_cycles") | ("RetryUntilSuccessful" | "RetryUntilSuccesful", "num_attempts") if number < -1:
-            return f"`{key}` must be -1 (for ever), 0 or greater, not {number}", -1
-        case ("BlackboardCheckInt", "return_on_mismatch") if number not in (1, 2, 3):
-            return f"the status must be 1 (SUCCESS), 2 (FAILURE) or 3 (RUNNING), not {number}", None
-        case ("ParallelAll", "max_failures") if number > count > 0:
-            return f"`max_failures` must be at most the number of children, which is {count}, not {number}", count
+    count, limits = len(node.children), port.limits
+    if limits is not None and limits.counts_children and number > count > 0:
+        return f"`{port.name}` must be at most the number of children, which is {count}, not {number}", count
+    # BehaviorTree.CPP accepts any number; `port-range` reports those without use.
+    if limits is not None and is_as2fm and -1 in limits.special and number < -1:
+        return f"`{port.name}` must be -1 (for ever), 0 or greater, not {number}", -1
+    if port.system_constant and port.type == "NodeStatus" and number not in (SUCCESS, FAILURE, RUNNING):
+        return f"the status must be 1 (SUCCESS), 2 (FAILURE) or 3 (RUNNING), not {number}", None
     return None
 
 

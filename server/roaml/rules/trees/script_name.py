@@ -12,7 +12,7 @@ from roaml.forest.scripts import script_attributes
 from roaml.model.tree import Tree, nodes
 from roaml.rules.rule import Rule, TreeContext, did_you_mean, replacements
 from roaml.rules.support.entries import entries_of
-from roaml.rules.support.forest import forest_of
+from roaml.rules.support.forest import trees_of
 from roaml.rules.support.scripts import scripts
 from roaml.script.names import names_in
 from roaml.script.tree import Assignment, Name, Script, walk
@@ -20,13 +20,12 @@ from roaml.suggest import nearest_name
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    if context.system is not None:
-        yield from _of_system(context)
-    elif (forest := forest_of(context)) is not None:
-        yield from _alone(context, forest)
+    yield from _untranslated(context)
+    if (forest := trees_of(context)) is not None:
+        yield from _uncreated(context, forest)
 
 
-def _of_system(context: TreeContext) -> Iterator[Finding]:
+def _untranslated(context: TreeContext) -> Iterator[Finding]:
     """Report the names that the translation of the tree cannot read."""
     for name, span in {(refusal.unset, refusal.span): None for refusal in context.refusals if refusal.unset}:
         tree = next(
@@ -47,7 +46,7 @@ def _created(tree: Tree) -> set[str]:
 _NOTHING = "nothing in the trees creates"
 
 
-def _alone(context: TreeContext, forest: Forest) -> Iterator[Finding]:
+def _uncreated(context: TreeContext, forest: Forest) -> Iterator[Finding]:
     entries = entries_of(forest)
     created: set[Key] = set()
     names: dict[str, list[str]] = {}
@@ -59,6 +58,8 @@ def _alone(context: TreeContext, forest: Forest) -> Iterator[Finding]:
     for tree, _, script, problems in scripts(context):
         own = tree.id.value if tree.id else ""
         for name, operator in _names(script) if not problems else ():
+            if not operator and forest.system is not None:
+                continue  # `_untranslated` reports it
             plain = name.name.removeprefix("@")
             if entries.is_intended(own, name.name):
                 continue  # port-value reports the output port that should create the entry
@@ -79,6 +80,8 @@ def _names(script: Script) -> Iterator[tuple[Name, str]]:
 
 def _is_closed(forest: Forest, tree: Tree) -> bool:
     """Whether all uses of a tree are known: other files may remap its entries."""
+    if forest.system is not None:
+        return True
     if not forest.complete:
         return False
     return len(forest.trees) == 1 or (tree.id is not None and forest.main in forest.trees)

@@ -7,14 +7,15 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.rules.rule import Rule, TreeContext
-from roaml.rules.support.scripts import all_scripts, fixes
+from roaml.rules.support.scripts import fixes, scripts
 from roaml.script.infer import statements_without_effect
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    for use, script, problems in all_scripts(context):
+    for _, use, script, problems in scripts(context):
         for problem in problems:
-            yield RULE.at(problem.span, f"script of `{use.name}`: {problem.message}", *fixes(context, use, problem))
+            message = f"script of `{use.attribute.name}`: {problem.message}"
+            yield RULE.at(problem.span, message, *fixes(context, use.attribute, problem))
         if not problems:
             for problem in statements_without_effect(script):
                 yield RULE.at(problem.span, problem.message, severity=Severity.WARNING)

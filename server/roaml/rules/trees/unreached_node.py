@@ -8,20 +8,20 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Related, Severity, Tag
 from roaml.forest.entries import entry_of
 from roaml.forest.forest import CPP
-from roaml.forest.statuses import PossibleStatuses
+from roaml.forest.statuses import statuses_of
 from roaml.model.tree import PortSetting, TreeNode
 from roaml.rules.rule import Rule, TreeContext
-from roaml.rules.support.forest import forest_of
+from roaml.rules.support.forest import trees_of
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    forest = forest_of(context)
+    forest = trees_of(context)
     if forest is None:
         return
     for _, node in forest.own_nodes:
         if node.plugin is not None and forest.known_node(node) is CPP.nodes.get(node.plugin.value):
             yield from _of_switch(node)
-    possible = PossibleStatuses(forest)
+    possible = statuses_of(forest)
     for tree in context.file.trees:
         for root in tree.roots:
             for node, before, needed in possible.unreached(root):

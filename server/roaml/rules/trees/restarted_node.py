@@ -7,37 +7,33 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.forest.forest import Forest
-from roaml.forest.statuses import PossibleStatuses
+from roaml.forest.statuses import statuses_of
 from roaml.libraries.version import ASYNC_SEQUENCES_REFUSED_SINCE
 from roaml.model.tree import TreeNode
 from roaml.rules.rule import Rule, TreeContext
-from roaml.rules.support.forest import forest_of
+from roaml.rules.support.forest import trees_of
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    forest = forest_of(context)
+    forest = trees_of(context)
     if forest is None:
         return
-    possible = PossibleStatuses(forest)
     for _, node in forest.own_nodes:
-        name = node.plugin.value if node.plugin else ""
-        if name in ("ReactiveSequence", "ReactiveFallback") and forest.known_node(node):
-            yield from _refused(forest, node, name)
-            running = [child for child in node.children if possible.is_running_at_once(child)]
-            for child in running[1:]:
-                first = running[0]
-                message = (
-                    f"this `{_name(child)}` never ends: at the next tick, `{name}` ticks the earlier `{_name(first)}`, "
-                    "which is RUNNING again, and halts this node"
-                )
-                related = [Related(first.element.name_span, "starts again at every tick")]
-                yield RULE.at(child.element.name_span, message, related=related)
+        yield from _refused(forest, node)
+        for child, first in statuses_of(forest).restarted(node):
+            message = (
+                f"this `{_name(child)}` never ends: at the next tick, `{_name(node)}` ticks the earlier "
+                f"`{_name(first)}`, which is RUNNING again, and halts this node"
+            )
+            related = [Related(first.element.name_span, "starts again at every tick")]
+            yield RULE.at(child.element.name_span, message, related=related)
 
 
-def _refused(forest: Forest, node: TreeNode, name: str) -> Iterator[Finding]:
+def _refused(forest: Forest, node: TreeNode) -> Iterator[Finding]:
+    """Report the second `AsyncSequence`, which the library refuses (docs/spec/lone-trees.md#versions)."""
     is_refused = forest.settings.version >= ASYNC_SEQUENCES_REFUSED_SINCE
     asynchronous = [child for child in node.children if child.plugin and child.plugin.value == "AsyncSequence"]
-    if name == "ReactiveSequence" and is_refused:
+    if _name(node) == "ReactiveSequence" and is_refused and forest.known_node(node):
         for child in asynchronous[1:]:
             message = "BehaviorTree.CPP refuses a second `AsyncSequence` in a `ReactiveSequence`; use only one"
             yield RULE.at(child.element.name_span, message, severity=Severity.ERROR)

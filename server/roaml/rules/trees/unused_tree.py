@@ -7,14 +7,14 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.rules.rule import Rule, TreeContext, listing
-from roaml.rules.support.forest import forest_of
+from roaml.rules.support.forest import trees_of
 
 MAX_TREES = 5
 """The maximum number of trees that a message lists."""
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    forest = forest_of(context)
+    forest = trees_of(context)
     if forest is None or forest.is_included:
         return
     if sum(len(file.trees) for _, file in forest.files) > len(forest.trees):
@@ -29,7 +29,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
             if name.value not in used:
                 message = f"the tree `{name.value}` is not part of `{main.value}`, which is executed"
                 yield RULE.at(name.span, message)
-    elif main is None and len(own) > 1:
+    elif main is None and len(own) > 1 and context.system is None:  # tree-structure reports it in a system
         inner = {name for tree in own for name in forest.subtrees[tree.value]}
         outer = [name.value for name in own if name.value not in inner]
         if len(outer) > 1:

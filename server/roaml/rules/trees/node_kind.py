@@ -13,19 +13,21 @@ from roaml.libraries.version import TAGS_LOOKED_UP_SINCE
 from roaml.model.tree import TreeNode
 from roaml.roles import NodeKind
 from roaml.rules.rule import Rule, TreeContext
-from roaml.rules.support.forest import forest_of
+from roaml.rules.support.forest import trees_of
 from roaml.text import Span, TextEdit
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    forest = forest_of(context)
+    forest = trees_of(context)
     if forest is None:
         return
     for _, node in forest.own_nodes:
         known = forest.known_node(node)
-        if known is not None and not node.compact and node.element.name != _tag(known):
+        if known is None or forest.is_machine(known):
+            continue
+        if not node.compact and node.element.name != _tag(known):
             yield _finding(node, known)
-        if node.plugin is not None and node.plugin.value == "ReactiveSequence" and forest.known_node(node) is not None:
+        if known.name == "ReactiveSequence" and context.system is None:
             yield from _refused(context, forest, node)
 
 
