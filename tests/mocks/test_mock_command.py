@@ -157,6 +157,17 @@ def test_what_users_read(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     for part in ("succeeds: 0.", "time until success: mean", "failed attempts of RetryUntilSuccessful", "50% within",
                  "the shortest trace without success", "ticked at 10 Hz, for at most 600 s"):  # fmt: skip
         assert part in text
+    influence = r"raising IsReady \(.*tree\.xml:\d+\) from 0\.5 to 0\.51 adds about 0\.00\d+ in \[0\.00\d+, 0\.0\d+\]"
+    assert re.search(influence, text)
+
+
+def test_why_a_tree_fails_in_all_traces(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """No mock fails: the leaf that fails is a node of the library."""
+    path = tree(tmp_path, "<Sequence><Drive/><Fallback><AlwaysFailure/></Fallback></Sequence>")
+    run(["verify", path, "--mock", "*: 1 in 1 s"])
+    before, _, trace = capsys.readouterr().out.partition("the shortest trace without success (trace 0):")
+    assert re.search(r"because AlwaysFailure \(bt_\d+\) returns FAILURE \(.*tree\.xml:\d+\)$", before.strip())
+    assert trace.splitlines()[1].split()[2:4] == ["AlwaysFailure", "FAILURE"]
 
 
 def test_a_trace_of_a_tree_that_always_fails(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -15,12 +15,15 @@ from roaml.smc.program import TRUE
 from roaml.smc.statistics import Bounds
 from roaml.smc.story import Story
 from roaml.text import Location
-from roaml.verification.tree_outcome import COUNTERS, TreeOutcome
+from roaml.verification.tree_outcome import COUNTERS, Influence, TreeOutcome
+from roaml.views.cause import cause
 from roaml.views.turns import Turn, turns
 
 MAX_LEAVES = 10
 MIN_NORMAL_TRACES = 30
 """If fewer traces than this succeed, or fewer fail, the intervals of influences are only approximate."""
+RAISED_BY = 0.01
+"""The change of the probability of a mock for which the report states the influence."""
 MAX_LINES = 40
 """The maximum number of shown lines of a trace; the lines in its middle are folded."""
 
@@ -77,31 +80,49 @@ def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf, is_whole
             if rare < MIN_NORMAL_TRACES
             else ""
         )
-        yield (
-            "  change of the tree's probability of success for each leaf, if the probability of the leaf's mock "
-            f"changes by 1{note}:"
-        )
+        yield f"  influence of the leaves on the probability that the tree succeeds{note}:"
         for influence in outcome.influences[: None if is_whole else MAX_LEAVES]:
-            node = influence.leaf.node
-            place = place_of(node.origin)
-            yield f"    {_interval(influence.value, influence.bounds, sign='+')}  {node.name} ({place})"
+            yield f"    {_influence(influence, place_of)}"
         more = len(outcome.influences) - MAX_LEAVES
         if more > 0 and not is_whole:
             yield f"    … {more} more leaves with less influence (--verbose) …"
 
 
-def _interval(value: float, bounds: Bounds, sign: str = "") -> str:
+def _influence(influence: Influence, place_of: PlaceOf) -> str:
+    """What a small change of the probability of a mock adds, such as `raising Grasp (tree.xml:5) from 0.9 to 0.91 adds
+    about 0.008 in [0.005, 0.011]`."""
+    node, before = influence.leaf.node, influence.leaf.probability
+    change = RAISED_BY if before + RAISED_BY <= 1 else 1 - before
+    low, high = change * influence.bounds.lower, change * influence.bounds.upper
+    return (
+        f"raising {node.name} ({place_of(node.origin)}) from {before:.6g} to {before + change:.6g} adds about "
+        f"{change * influence.value:.2g} in [{low:.2g}, {high:.2g}]"
+    )
+
+
+def _interval(value: float, bounds: Bounds) -> str:
     if bounds.lower == bounds.upper:
-        return f"{value:{sign}.4g}"
-    upper = "∞" if math.isinf(bounds.upper) else f"{bounds.upper:{sign}.4g}"
-    return f"{value:{sign}.4g} in [{bounds.lower:{sign}.4g}, {upper}]"
+        return f"{value:.4g}"
+    upper = "∞" if math.isinf(bounds.upper) else f"{bounds.upper:.4g}"
+    return f"{value:.4g} in [{bounds.lower:.4g}, {upper}]"
 
 
 def story_as_text(mocked: MockedTree, story: Story, place_of: PlaceOf, *, is_whole: bool = False) -> str:
-    """The statuses that leaves return in a trace, with their times, in the order of the trace. Leaves that always
-    succeed are omitted. Of more than `MAX_LINES` statuses, the middle ones are omitted unless `is_whole`."""
-    leaves = {leaf.node.automaton: leaf.node for leaf in mocked.leaves if leaf.probability < 1}
-    leaf_turns = [turn for turn in turns(story) if turn.automaton in leaves and _has_ended(turn)]
+    """Why the tree succeeds or fails in a trace, in one sentence, and the statuses that leaves return.
+
+    The statuses are in the order of the trace, with their times. Successes of leaves that always succeed are omitted.
+    Of more than `MAX_LINES` statuses, the middle ones are omitted unless `is_whole`.
+    """
+    nodes = {node.automaton: node for node in mocked.tree.nodes}
+    uncertain = {leaf.node.automaton for leaf in mocked.leaves if leaf.probability < 1}
+    leaf_turns = [
+        turn
+        for turn in turns(story)
+        if turn.automaton in nodes
+        and not turn.is_answered
+        and _has_ended(turn)
+        and (turn.automaton in uncertain or turn.status == "FAILURE")
+    ]
     ticks = [
         step.number
         for step in story.steps
@@ -109,7 +130,7 @@ def story_as_text(mocked: MockedTree, story: Story, place_of: PlaceOf, *, is_who
     ]
     rows = []
     for turn in leaf_turns:
-        node = leaves[turn.automaton]
+        node = nodes[turn.automaton]
         seconds = bisect.bisect(ticks, turn.number) / float(mocked.options.rate)
         rows.append((f"{seconds:.1f} s", node.name, turn.status, place_of(node.origin)))
     widths = [max((len(row[i]) for row in rows), default=0) for i in range(3)]
@@ -121,7 +142,8 @@ def story_as_text(mocked: MockedTree, story: Story, place_of: PlaceOf, *, is_who
         lines[MAX_LINES // 2 : -MAX_LINES // 2] = [f"  … {folded} more statuses (--verbose) …"]
     outcome = "with" if story.recording.verdict == TRUE else "without"
     head = f"the shortest trace {outcome} success (trace {story.recording.trace}):"
-    return "".join(f"{line}\n" for line in (head, *lines))
+    why = cause(story, place_of)
+    return "".join(f"{line}\n" for line in (*([why] if why else []), head, *lines))
 
 
 def _has_ended(turn: Turn) -> bool:
