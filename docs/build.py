@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the reference manual from the schemas and the rule documents, and the nodes of the schema of trees:
-`python docs/build.py`.
+"""Writes what follows from other files: the reference manual, from the schemas and the rule documents; the nodes of
+the schema of trees; and the tables that the program reads (`docs/tables.py`): `python docs/build.py`.
 
-The writer is also the test that all pages are current: `python docs/build.py --check` writes nothing and exits with 1
-if a page differs from what would be written.
+The writer is also the test that all of these are current: `python docs/build.py --check` writes nothing and exits with
+1 if a file differs from what would be written.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import node_schema
+from tables import grammars, libraries, update
 
 from as2fm_lsp.cli import compare, debug, draw, experiment, explain, init, migrate, simulate, translate, verify
 from as2fm_lsp.cli import format as layout
@@ -295,13 +296,15 @@ def main() -> int:
     if options_given.rules:
         options_given.rules.write_text(all_rules(), encoding="utf-8")
         return 0
-    if not update_schema(options_given.check):
-        if options_given.check:
-            print(f"schemas/{BEHAVIOR_TREE.schema} is not what docs/build.py writes", file=sys.stderr)
-            return 1
-        return main()
+    is_check = options_given.check
+    # Each is read when the program starts, and the next one follows from it.
+    steps = (lambda: not update(libraries(), check=is_check), lambda: update_schema(is_check))
+    if not all(step() for step in (*steps, lambda: not update(grammars(), check=is_check))):
+        state = "have drifted" if is_check else "are new; start docs/build.py again"
+        print(f"the tables or the schema of trees {state}", file=sys.stderr)
+        return 1
     stale = list(drifted())
-    if options_given.check:
+    if is_check:
         for path in stale:
             print(f"{path.relative_to(HERE.parent)} is not what docs/build.py writes", file=sys.stderr)
         return 1 if stale else 0

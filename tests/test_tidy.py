@@ -31,6 +31,8 @@ READS_RESOURCES = (
     "roaml/language/resources.py",
     "roaml/language/grammar.py",
     "roaml/language/validate.py",
+    "roaml/libraries/__init__.py",
+    "roaml/libraries/declarations.py",
     "roaml/rules/__init__.py",
 )
 DISK_MODULES = {"os", "pathlib", "shutil", "tempfile", "glob", "io", "subprocess", "socket", "urllib"}

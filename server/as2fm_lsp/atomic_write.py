@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import contextlib
 import os
-import tempfile
 from collections.abc import Iterable
 
 try:
@@ -68,6 +67,8 @@ def _replace(path: str, data: Iterable[bytes]) -> None:
 
 def _temporary(folder: str) -> tuple[int, str]:
     """Create a temporary file in `folder`, open and locked. Return its descriptor and its path."""
+    import tempfile  # noqa: PLC0415 - many commands write no file
+
     while True:
         handle, path = tempfile.mkstemp(dir=folder, prefix=PREFIX)
         if fcntl is not None:

@@ -12,13 +12,25 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable
 from operator import attrgetter
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar
 
 from msgspec import Struct as Record
-from msgspec import field
+from msgspec import field, json
 from msgspec.structs import replace
 
-__all__ = ["PartlyCompared", "Record", "field", "replace"]
+__all__ = ["PartlyCompared", "Record", "decoded", "encoded", "field", "replace"]
+
+_Decoded = TypeVar("_Decoded")
+
+
+def encoded(record: Record) -> bytes:
+    """A record as JSON, which `decoded` reads."""
+    return json.format(json.encode(record), indent=1) + b"\n"
+
+
+def decoded(data: bytes, type_: type[_Decoded]) -> _Decoded:
+    """The record of a file that `encoded` has written."""
+    return json.decode(data, type=type_)
 
 
 class PartlyCompared(Record, frozen=True):

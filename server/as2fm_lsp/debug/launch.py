@@ -66,11 +66,10 @@ class Launch(Record, frozen=True):
 
 
 def warm_up() -> None:
-    """Import the rules and read the schemas of XML files, which every `launch` needs."""
+    """Import the rules and read the grammars of XML files, which every `launch` needs."""
     api.load  # noqa: B018 - `roaml.api` imports its modules on use
     for grammar in XML_GRAMMARS:
         grammar.elements  # noqa: B018 - computed once
-        grammar.validator  # noqa: B018
 
 
 def launch_of(arguments: Arguments) -> Launch:

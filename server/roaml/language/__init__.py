@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The grammar of the languages, read from `schemas/`.
+"""The grammar of the languages, in tables that are written from `schemas/`.
 
 The schemas define the syntax and the roles of its parts; completion, hover, validation, navigation and the reference
 manual read them through this package.

@@ -1,30 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The elements and attributes of a language as tables, read from its XSD.
+"""The elements and attributes of a language as tables.
 
-- Only the part of XML Schema that the schemas in `schemas/` use is supported; the tests compare the tables with
-  `xmlschema`.
+- `docs/build.py` writes the tables from the schemas (`roaml.language.schema_reader`), because reading these when the
+  program starts would take a tenth of a check.
 - Documentation is the text of `xs:documentation` (Markdown); roles are those of `xs:appinfo` (urn:roaml:roles).
 - A grammar is read on first use and cached.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from roaml.language.resources import schema_path
-from roaml.record import Record, field
-from roaml.roles import UNBOUNDED, Direction, NodeKind, ProtocolPart, SymbolKind, ValuePart, ValueRole
+from roaml.record import Record, decoded
+from roaml.roles import Direction, NodeKind, ProtocolPart, SymbolKind, ValuePart, ValueRole
 
 if TYPE_CHECKING:
     from lxml import etree
 
-_XS = "{http://www.w3.org/2001/XMLSchema}"
-_R = "{urn:roaml:roles}"
+_TABLES = Path(__file__).parent / "tables"
 
 
-class ValueChoice(Record, frozen=True):
+class ValueChoice(Record, frozen=True, omit_defaults=True):
     """One value of an enumeration. If the value is deprecated, `use` is the value that replaces it, otherwise ""."""
 
     value: str
@@ -32,7 +32,7 @@ class ValueChoice(Record, frozen=True):
     use: str = ""
 
 
-class SimpleType(Record, frozen=True):
+class SimpleType(Record, frozen=True, omit_defaults=True):
     """The set of values of an attribute: a base type of XML Schema (without prefix) restricted by facets.
 
     Attributes:
@@ -52,7 +52,7 @@ class SimpleType(Record, frozen=True):
     most: float | None = None
 
 
-class PortType(Record, frozen=True):
+class PortType(Record, frozen=True, omit_defaults=True):
     """A port of a tree node.
 
     Attributes:
@@ -71,7 +71,7 @@ class PortType(Record, frozen=True):
     alias_of: str = ""
 
 
-class AttributeType(Record, frozen=True):
+class AttributeType(Record, frozen=True, omit_defaults=True):
     """An attribute of an element.
 
     Attributes:
@@ -99,14 +99,14 @@ class AttributeType(Record, frozen=True):
     port: PortType | None = None
 
 
-class Multiplicity(Record, frozen=True):
+class Multiplicity(Record, frozen=True, omit_defaults=True):
     """The minimum and maximum number of occurrences of a child in its parent."""
 
     least: int
     most: int
 
 
-class Binding(Record, frozen=True):
+class Binding(Record, frozen=True, omit_defaults=True):
     """An event variable. It is available in conditions if `only` is `COND`, in bodies if `only` is `BODY`, and in both
     if `only` is `None`."""
 
@@ -114,7 +114,7 @@ class Binding(Record, frozen=True):
     only: ValuePart | None = None
 
 
-class ElementType(Record, frozen=True):
+class ElementType(Record, frozen=True, omit_defaults=True):
     """An element.
 
     Attributes:
@@ -133,6 +133,8 @@ class ElementType(Record, frozen=True):
         node: the kind of node if the element is a node of a tree.
         translated: false for tree nodes that are known but cannot be translated.
         program_only: whether a tree node can be translated only as a program (docs/spec/nodes.md#library).
+        order: a regular expression for the names of all children, each with a space behind it; "" if `children` and
+            `any_child` state which children are valid.
     """
 
     name: str
@@ -156,6 +158,7 @@ class ElementType(Record, frozen=True):
     node: NodeKind | None = None
     translated: bool = True
     program_only: bool = False
+    order: str = ""
 
     @property
     def ports(self) -> tuple[AttributeType, ...]:
@@ -168,6 +171,13 @@ class ElementType(Record, frozen=True):
         return (attribute.port.alias_of if attribute and attribute.port else "") or name
 
 
+class SchemaTables(Record, frozen=True, omit_defaults=True):
+    """The content of a schema: all global elements by name, and the names of the elements in each named group."""
+
+    elements: dict[str, ElementType]
+    groups: dict[str, tuple[str, ...]]
+
+
 class Grammar(Record, frozen=True, dict=True):
     """One language: the name of its schema file, the names of its root elements, and its title."""
 
@@ -178,16 +188,20 @@ class Grammar(Record, frozen=True, dict=True):
     @cached_property
     def elements(self) -> dict[str, ElementType]:
         """All global elements by name."""
-        return self._reader.elements
+        return self._tables.elements
 
     @cached_property
     def groups(self) -> dict[str, frozenset[str]]:
         """The names of the elements in each named group."""
-        return self._reader.group_names()
+        return {name: frozenset(elements) for name, elements in self._tables.groups.items()}
 
     @cached_property
-    def _reader(self) -> _Reader:
-        return _Reader(self.schema)
+    def _tables(self) -> SchemaTables:
+        return decoded(self.tables_file.read_bytes(), SchemaTables)
+
+    @property
+    def tables_file(self) -> Path:
+        return _TABLES / self.schema.replace(".xsd", ".json")
 
     @cached_property
     def validator(self) -> etree.XMLSchema:
@@ -245,205 +259,3 @@ XML_PROPERTIES = Grammar("properties.xsd", ("properties",), "properties in XML")
 STRUCTS = Grammar("structs.xsd", ("types",), "struct declarations")
 BEHAVIOR_TREE = Grammar("behaviortree.xsd", ("root",), "BehaviorTree.CPP XML")
 XML_GRAMMARS = (HL_SCXML, PLAIN_SCXML, SYSTEM, XML_PROPERTIES, STRUCTS, BEHAVIOR_TREE)
-
-
-class _Shape(Record):
-    """The parts of a complex type that have been read so far."""
-
-    attributes: dict[str, AttributeType] = field(default_factory=dict)
-    children: dict[str, Multiplicity] = field(default_factory=dict)
-    local: dict[str, ElementType] = field(default_factory=dict)
-    any_child: Multiplicity | None = None
-    any_is_opaque: bool = False
-    any_attribute: bool = False
-    text: bool = False
-
-
-class _Reader:
-    """Reads one schema file into tables."""
-
-    def __init__(self, schema: str) -> None:
-        from lxml import etree  # noqa: PLC0415 - models in JANI do not need it
-
-        top = etree.parse(str(schema_path(schema))).getroot()
-        self.named: dict[tuple[str, str], Any] = {
-            (_local(node), name): node for node in top if isinstance(node.tag, str) and (name := node.get("name"))
-        }
-        self.elements = {name: self.element(node) for (kind, name), node in self.named.items() if kind == "element"}
-
-    def group_names(self) -> dict[str, frozenset[str]]:
-        return {
-            name: frozenset(child.get("ref") for child in node.iter(f"{_XS}element"))
-            for (kind, name), node in self.named.items()
-            if kind == "group"
-        }
-
-    def element(self, node: Any) -> ElementType:
-        shape = _Shape()
-        complex_type = node.find(f"{_XS}complexType")
-        if complex_type is None and ("complexType", node.get("type")) in self.named:
-            complex_type = self.named["complexType", node.get("type")]
-        if complex_type is not None:
-            self.collect(complex_type, shape, Multiplicity(1, 1))
-        roles = dict(_roles(node))
-        ignored, deprecated = roles.get("ignored"), roles.get("deprecated")
-        tree_node = roles.get("node", {})
-        value = roles.get("value", {})
-        return ElementType(
-            node.get("name"),
-            _documentation(node),
-            shape.attributes,
-            shape.children,
-            shape.local,
-            shape.any_child,
-            shape.any_is_opaque,
-            shape.any_attribute,
-            shape.text,
-            refers=_symbols(roles.get("refers")),
-            value=_value_role(value),
-            value_type=value.get("type", ""),
-            sends=_part(roles.get("sends")),
-            receives=_part(roles.get("receives")),
-            code=int({**roles.get("sends", {}), **roles.get("receives", {})}.get("code", "0")),
-            binds=tuple(_binding(r) for kind, r in _roles(node) if kind == "binds"),
-            ignored=ignored is not None,
-            use=deprecated["use"] if deprecated else "",
-            node=NodeKind(kind) if (kind := tree_node.get("kind")) else None,
-            translated=tree_node.get("translated") != "false",
-            program_only=tree_node.get("program-only") == "true",
-        )
-
-    def collect(self, node: Any, shape: _Shape, occurs: Multiplicity) -> None:
-        """Add the attributes and children that `node` declares to `shape`. `node` is a part of a complex type and may
-        occur `occurs` times."""
-        if node.get("mixed") == "true":
-            shape.text = True
-        for part in node:
-            if not isinstance(part.tag, str):
-                continue
-            kind = _local(part)
-            if kind in ("sequence", "choice", "all"):
-                inner = _times(part, occurs)
-                if kind == "choice" and len([p for p in part if isinstance(p.tag, str)]) > 1:
-                    inner = Multiplicity(0, inner.most)
-                self.collect(part, shape, inner)
-            elif kind == "group":
-                self.collect(self.named["group", part.get("ref")], shape, _times(part, occurs))
-            elif kind == "element":
-                self.child(part, shape, _times(part, occurs))
-            elif kind == "any" and part.get("namespace") is None:
-                shape.any_child = _times(part, occurs)
-                shape.any_is_opaque = part.get("processContents") == "skip"
-            elif kind in ("complexContent", "extension"):
-                base = part.get("base")
-                if base:
-                    self.collect(self.named["complexType", base], shape, occurs)
-                self.collect(part, shape, occurs)
-            elif kind == "attributeGroup":
-                self.collect(self.named["attributeGroup", part.get("ref")], shape, occurs)
-            elif kind == "attribute":
-                shape.attributes[part.get("name")] = self.attribute(part)
-            elif kind == "anyAttribute" and part.get("namespace") is None:
-                shape.any_attribute = True
-
-    def child(self, node: Any, shape: _Shape, occurs: Multiplicity) -> None:
-        name = node.get("ref") or node.get("name")
-        if node.get("name"):
-            shape.local[name] = self.element(node)
-        if name in shape.children:
-            before = shape.children[name]
-            occurs = Multiplicity(min(before.least, occurs.least), min(UNBOUNDED, before.most + occurs.most))
-        shape.children[name] = occurs
-
-    def attribute(self, node: Any) -> AttributeType:
-        roles = dict(_roles(node))
-        value, ignored, port = roles.get("value", {}), roles.get("ignored"), roles.get("port")
-        return AttributeType(
-            node.get("name"),
-            _documentation(node),
-            node.get("use") == "required",
-            self.simple(node),
-            defines=next(iter(_symbols(roles.get("defines"))), None),
-            refers=_symbols(roles.get("refers")),
-            value=_value_role(value),
-            value_type=value.get("type", value.get("kind", "")),
-            ignored=None if ignored is None else ignored.get("quietly") == "true",
-            use=roles.get("deprecated", {}).get("use", ""),
-            port=_port(port) if port else None,
-        )
-
-    def simple(self, node: Any) -> SimpleType:
-        """The simple type of an attribute. It is built in, a named type of the schema, or declared in the attribute."""
-        definition = node.find(f"{_XS}simpleType")
-        if definition is None:
-            name = node.get("type", "xs:string")
-            if name.startswith("xs:"):
-                return SimpleType(name.removeprefix("xs:"))
-            definition = self.named["simpleType", name]
-        restriction = definition.find(f"{_XS}restriction")
-        facets = {_local(f): f.get("value") for f in restriction if isinstance(f.tag, str)}
-        return SimpleType(
-            restriction.get("base").removeprefix("xs:"),
-            tuple(
-                ValueChoice(
-                    choice.get("value"),
-                    _documentation(choice),
-                    dict(_roles(choice)).get("deprecated", {}).get("use", ""),
-                )
-                for choice in restriction.findall(f"{_XS}enumeration")
-            ),
-            facets.get("pattern", ""),
-            "minLength" in facets,
-            _number(facets.get("minExclusive")),
-            _number(facets.get("minInclusive")),
-            _number(facets.get("maxInclusive")),
-        )
-
-
-def _local(node: Any) -> str:
-    return str(node.tag).rpartition("}")[2]
-
-
-def _documentation(node: Any) -> str:
-    text = node.findtext(f"{_XS}annotation/{_XS}documentation")
-    return text.strip() if text else ""
-
-
-def _binding(role: Mapping[str, str]) -> Binding:
-    return Binding(role["name"], ValuePart(role["only"]) if "only" in role else None)
-
-
-def _roles(node: Any) -> Iterator[tuple[str, dict[str, str]]]:
-    for role in node.findall(f"{_XS}annotation/{_XS}appinfo/*"):
-        if role.tag.startswith(_R):
-            yield _local(role), dict(role.attrib)
-
-
-def _part(role: Mapping[str, str] | None) -> ProtocolPart | None:
-    return ProtocolPart(role["part"]) if role else None
-
-
-def _symbols(role: Mapping[str, str] | None) -> tuple[SymbolKind, ...]:
-    return tuple(map(SymbolKind, role["symbol"].split())) if role else ()
-
-
-def _times(node: Any, outer: Multiplicity) -> Multiplicity:
-    most = node.get("maxOccurs", "1")
-    return Multiplicity(
-        int(node.get("minOccurs", "1")) * outer.least,
-        min(UNBOUNDED, outer.most * (UNBOUNDED if most == "unbounded" else int(most))),
-    )
-
-
-def _number(text: str | None) -> float | None:
-    return None if text is None else float(text)
-
-
-def _value_role(role: Mapping[str, str]) -> ValueRole | None:
-    return ValueRole(role["is"]) if role else None
-
-
-def _port(role: Mapping[str, str]) -> PortType:
-    required, constant = (role.get(key) == "true" for key in ("required", "constant"))
-    default, alias_of = role.get("default", ""), role.get("alias-of", "")
-    return PortType(Direction(role["direction"]), role["type"], required, default, constant, alias_of)

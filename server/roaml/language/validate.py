@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The places where a document violates its grammar.
 
-- The tables of the grammar find nearly all violations, with their positions.
-- If they find none, libxml2 decides whether the document is valid, and `xmlschema` explains why it is not
-  (`SchemaViolation`). If the XML itself is not well-formed, only the tables are used.
+- The tables of the grammar find all violations, and the positions of nearly all.
+- If only the order of children is wrong, libxml2 and `xmlschema` explain why (`SchemaViolation`), except if the XML
+  itself is not well-formed.
 - Elements and attributes of foreign namespaces are ignored.
 """
 
@@ -13,8 +13,6 @@ import functools
 import re
 from collections.abc import Iterator, Mapping
 from typing import Any, TypeAlias
-
-from lxml import etree
 
 from roaml.language.grammar import AttributeType, ElementType, Grammar, Multiplicity, SimpleType
 from roaml.language.resources import schema_path
@@ -119,8 +117,9 @@ def validate(document: Document, grammar: Grammar) -> tuple[Violation, ...]:
     root = document.root
     if root is None or root.name not in grammar.roots:
         return ()
-    violations = list(_walk(document, root, grammar))
-    if not violations and not any(finding.code in _UNREAD for finding in document.findings):
+    disordered: list[Element] = []
+    violations = list(_walk(document, root, grammar, disordered))
+    if not violations and disordered and not any(finding.code in _UNREAD for finding in document.findings):
         tree, back = to_lxml(document, root)
         if not grammar.validator.validate(tree):
             violations.extend(_explain(tree, back, grammar))
@@ -167,7 +166,8 @@ _ANYTHING = ElementType("", "", {}, {}, {}, Multiplicity(0, UNBOUNDED), any_attr
 """The type of an unknown element where any element is allowed. The elements in it may be known."""
 
 
-def _walk(document: Document, root: Element, grammar: Grammar) -> Iterator[Violation]:
+def _walk(document: Document, root: Element, grammar: Grammar, disordered: list[Element]) -> Iterator[Violation]:
+    """The violations, except that elements whose children are in a wrong order are appended to `disordered`."""
     namespaces = dict(document.namespaces)
     stack: list[tuple[Element, ElementType]] = [(root, grammar.elements[root.name])]
     while stack:
@@ -176,6 +176,7 @@ def _walk(document: Document, root: Element, grammar: Grammar) -> Iterator[Viola
         if not type_.text:
             yield from _stray_text(document, element, type_)
         counts: dict[str, list[Element]] = {}
+        names = []
         below: list[tuple[Element, ElementType]] = []
         for child in element.elements:
             if is_foreign(namespaces, child):
@@ -193,7 +194,10 @@ def _walk(document: Document, root: Element, grammar: Grammar) -> Iterator[Viola
             elif not type_.any_is_opaque:
                 below.append((child, _ANYTHING))
             counts.setdefault(child.name, []).append(child)
+            names.append(f"{child.name} ")
         yield from _counts(element, type_, counts)
+        if type_.order and not re.fullmatch(type_.order, "".join(names)):
+            disordered.append(element)
         stack.extend(reversed(below))
 
 
@@ -322,6 +326,8 @@ _is_local_name = functools.lru_cache(maxsize=1024)(is_local_name)
 
 
 def _new(parent: Any, element: Element) -> Any:
+    from lxml import etree  # noqa: PLC0415 - valid documents do not need it
+
     attributes = {
         a.name: replace_forbidden(a.value)
         for a in element.attributes

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """The nodes of the behavior tree libraries BehaviorTree.CPP and Nav2, as data.
 
-Kinds, ports, types and defaults of nodes are defined only in the XML files of this package. The node elements of
-`schemas/behaviortree.xsd` are generated from them.
+Kinds, ports, types and defaults of nodes are defined only in the XML files of this package. `docs/build.py` writes from
+them the node elements of `schemas/behaviortree.xsd`, and the tables that this package reads.
 """
 
 from __future__ import annotations
 
 import functools
-from typing import Any
+from pathlib import Path
 
 from roaml.libraries.node import Absent, Library, Node, Port, PortLimits, Renamed
-from roaml.roles import UNBOUNDED, Direction, NodeKind
+from roaml.record import decoded
 
 __all__ = [
     "BEHAVIORTREE_CPP",
@@ -25,6 +25,7 @@ __all__ = [
     "library",
     "library_node",
     "node_in_libraries",
+    "table_of",
 ]
 
 BEHAVIORTREE_CPP = "behaviortree_cpp"
@@ -37,12 +38,12 @@ LIBRARIES = ("nav2",)
 @functools.cache
 def library(name: str) -> Library:
     """The library with this name: `BEHAVIORTREE_CPP` or one of `LIBRARIES`."""
-    import importlib.resources  # noqa: PLC0415 - models in JANI do not need it
+    return decoded(table_of(name).read_bytes(), Library)
 
-    data = (importlib.resources.files(__name__) / f"{name}.xml").read_bytes()
-    from lxml import etree  # noqa: PLC0415 - models in JANI do not need it
 
-    return _read(etree.fromstring(data))
+def table_of(name: str) -> Path:
+    """The file with the table of a library."""
+    return Path(__file__).parent / "tables" / f"{name}.json"
 
 
 def node_in_libraries(name: str) -> Node | None:
@@ -56,90 +57,3 @@ def library_node(name: str) -> Node | None:
     cpp = library(BEHAVIORTREE_CPP)
     renamed = cpp.renamed.get(name)
     return cpp.nodes.get(renamed.now if renamed else name) or node_in_libraries(name)
-
-
-def _read(root: Any) -> Library:
-    nodes: dict[str, Node] = {}
-    renamed: dict[str, Renamed] = {}
-    absent: dict[str, Absent] = {}
-    groups = {group.get("id"): tuple(map(_port, group)) for group in root.iterchildren("ports")}
-    for element in root.iterchildren("control", "decorator", "action", "condition"):
-        node = _node(element, groups.get(element.get("use"), ()), root.get("name"))
-        nodes[node.name] = node
-    for element in root.iterchildren("renamed"):
-        renamed[element.get("id")] = Renamed(element.get("id"), element.get("to"))
-    for element in root.iterchildren("absent"):
-        name, kind = element.get("id"), NodeKind(element.get("kind"))
-        hint = element.get("not-translated", "")
-        absent[name] = Absent(name, kind, _text(element), element.get("instead", ""), hint)
-    entries = frozenset(element.get("name") for element in root.iterchildren("entry"))
-    foreign = {element.get("id"): element.get("to") for element in root.iterchildren("foreign")}
-    return Library(root.get("name"), root.get("version"), nodes, renamed, absent, entries, foreign)
-
-
-def _node(element: Any, more: tuple[Port, ...], library_name: str) -> Node:
-    kind = NodeKind(element.tag)
-    running = element.get("running")
-    return Node(
-        element.get("id"),
-        kind,
-        (*map(_port, element.iterchildren("in", "out", "inout")), *more),
-        _children(element.get("children")) or kind.children,
-        _text(element),
-        library_name,
-        element.get("since", ""),
-        element.get("until", ""),
-        None if running is None else running == "true",
-        element.get("program-only") == "true",
-        element.get("in-systems", ""),
-        element.get("succeeds") == "true",
-        library_name,
-    )
-
-
-def _port(element: Any) -> Port:
-    return Port(
-        element.get("name"),
-        Direction(element.tag),
-        element.get("type"),
-        element.get("default"),
-        element.get("required") == "true",
-        _text(element),
-        element.get("alias-of", ""),
-        element.get("system-type", ""),
-        Direction(direction) if (direction := element.get("system-direction")) else None,
-        element.get("system-constant") == "true",
-        _limits(element),
-        element.get("names-entry") == "true",
-    )
-
-
-_LIMITS = ("min", "above", "counts-children", "at-most", "less-than")
-"""The attributes of ports that limit numbers."""
-
-
-def _limits(element: Any) -> PortLimits | None:
-    if not any(element.get(attribute) for attribute in _LIMITS):
-        return None
-    minimum = element.get("min", element.get("above"))
-    return PortLimits(
-        None if minimum is None else float(minimum),
-        element.get("above") is not None,
-        frozenset(map(float, element.get("special", "").split())),
-        element.get("counts-children") == "true",
-        element.get("at-most", ""),
-        element.get("less-than", ""),
-        element.get("effect", ""),
-    )
-
-
-def _children(text: str | None) -> tuple[int, int] | None:
-    """The minimum and maximum number of children in a text such as `2`, `2-3` or `2-`, which means at least two."""
-    if text is None:
-        return None
-    least, dash, most = text.partition("-")
-    return int(least), int(most) if most else UNBOUNDED if dash else int(least)
-
-
-def _text(element: Any) -> str:
-    return " ".join((element.text or "").split())

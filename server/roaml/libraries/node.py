@@ -14,7 +14,7 @@ EVENT_ATTRIBUTE = "_event_probability"
 libraries ignore it (docs/spec/mocks.md#world)."""
 
 
-class PortLimits(Record, frozen=True):
+class PortLimits(Record, frozen=True, omit_defaults=True):
     """The numbers that are useful values of a port (docs/spec/lone-trees.md#limits).
 
     Attributes:
@@ -36,7 +36,7 @@ class PortLimits(Record, frozen=True):
     effect: str = ""
 
 
-class Port(Record, frozen=True):
+class Port(Record, frozen=True, omit_defaults=True):
     """A port of a node.
 
     Attributes:
@@ -63,7 +63,7 @@ class Port(Record, frozen=True):
     names_entry: bool = False
 
 
-class Node(Record, frozen=True, dict=True):
+class Node(Record, frozen=True, dict=True, omit_defaults=True):
     """A node that trees can use.
 
     Attributes:
@@ -107,14 +107,14 @@ class Node(Record, frozen=True, dict=True):
         return self.port_by_name.get(name)
 
 
-class Renamed(Record, frozen=True):
+class Renamed(Record, frozen=True, omit_defaults=True):
     """The name of a node in version 3 of the library, and the name that replaces it in version 4."""
 
     name: str
     now: str
 
 
-class Absent(Record, frozen=True):
+class Absent(Record, frozen=True, omit_defaults=True):
     """A name that is not a node of the XML format.
 
     Attributes:
@@ -130,7 +130,7 @@ class Absent(Record, frozen=True):
     not_translated: str
 
 
-class Library(Record, frozen=True):
+class Library(Record, frozen=True, omit_defaults=True):
     """The nodes of one library, by name.
 
     Attributes:
@@ -146,5 +146,5 @@ class Library(Record, frozen=True):
     nodes: Mapping[str, Node]
     renamed: Mapping[str, Renamed]
     absent: Mapping[str, Absent]
-    entries: frozenset[str]
+    entries: tuple[str, ...]
     foreign: Mapping[str, str]

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reads the declarations of the libraries, for `docs/build.py`, which writes them as tables."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from lxml import etree
+
+from roaml.libraries.node import Absent, Library, Node, Port, PortLimits, Renamed
+from roaml.roles import UNBOUNDED, Direction, NodeKind
+
+
+def read_library(name: str) -> Library:
+    """The library that `NAME.xml` of this package declares."""
+    root: Any = etree.parse(str(Path(__file__).parent / f"{name}.xml")).getroot()
+    nodes: dict[str, Node] = {}
+    renamed: dict[str, Renamed] = {}
+    absent: dict[str, Absent] = {}
+    groups = {group.get("id"): tuple(map(_port, group)) for group in root.iterchildren("ports")}
+    for element in root.iterchildren("control", "decorator", "action", "condition"):
+        node = _node(element, groups.get(element.get("use"), ()), root.get("name"))
+        nodes[node.name] = node
+    for element in root.iterchildren("renamed"):
+        renamed[element.get("id")] = Renamed(element.get("id"), element.get("to"))
+    for element in root.iterchildren("absent"):
+        name, kind = element.get("id"), NodeKind(element.get("kind"))
+        hint = element.get("not-translated", "")
+        absent[name] = Absent(name, kind, _text(element), element.get("instead", ""), hint)
+    entries = tuple(sorted(element.get("name") for element in root.iterchildren("entry")))
+    foreign = {element.get("id"): element.get("to") for element in root.iterchildren("foreign")}
+    return Library(root.get("name"), root.get("version"), nodes, renamed, absent, entries, foreign)
+
+
+def _node(element: Any, more: tuple[Port, ...], library_name: str) -> Node:
+    kind = NodeKind(element.tag)
+    running = element.get("running")
+    return Node(
+        element.get("id"),
+        kind,
+        (*map(_port, element.iterchildren("in", "out", "inout")), *more),
+        _children(element.get("children")) or kind.children,
+        _text(element),
+        library_name,
+        element.get("since", ""),
+        element.get("until", ""),
+        None if running is None else running == "true",
+        element.get("program-only") == "true",
+        element.get("in-systems", ""),
+        element.get("succeeds") == "true",
+        library_name,
+    )
+
+
+def _port(element: Any) -> Port:
+    return Port(
+        element.get("name"),
+        Direction(element.tag),
+        element.get("type"),
+        element.get("default"),
+        element.get("required") == "true",
+        _text(element),
+        element.get("alias-of", ""),
+        element.get("system-type", ""),
+        Direction(direction) if (direction := element.get("system-direction")) else None,
+        element.get("system-constant") == "true",
+        _limits(element),
+        element.get("names-entry") == "true",
+    )
+
+
+_LIMITS = ("min", "above", "counts-children", "at-most", "less-than")
+"""The attributes of ports that limit numbers."""
+
+
+def _limits(element: Any) -> PortLimits | None:
+    if not any(element.get(attribute) for attribute in _LIMITS):
+        return None
+    minimum = element.get("min", element.get("above"))
+    return PortLimits(
+        None if minimum is None else float(minimum),
+        element.get("above") is not None,
+        frozenset(map(float, element.get("special", "").split())),
+        element.get("counts-children") == "true",
+        element.get("at-most", ""),
+        element.get("less-than", ""),
+        element.get("effect", ""),
+    )
+
+
+def _children(text: str | None) -> tuple[int, int] | None:
+    """The minimum and maximum number of children in a text such as `2`, `2-3` or `2-`, which means at least two."""
+    if text is None:
+        return None
+    least, dash, most = text.partition("-")
+    return int(least), int(most) if most else UNBOUNDED if dash else int(least)
+
+
+def _text(element: Any) -> str:
+    return " ".join((element.text or "").split())
