@@ -31,6 +31,7 @@ class Client:
         debug_model: the command that debugs a system or a tree.
         edit_mocks: the command that shows the mocks of a tree to edit them.
         set_expectation: the command that asks for the expected value of a property.
+        experiment: the command that asks for the values of parameters and runs an experiment.
         trigger_suggest: the command that requests completions.
     """
 
@@ -42,6 +43,7 @@ class Client:
         self.debug_model = ""
         self.edit_mocks = ""
         self.set_expectation = ""
+        self.experiment = ""
         self.trigger_suggest = ""
         self._endpoint = endpoint
 
@@ -54,6 +56,7 @@ class Client:
         self.debug_counterexample = str(options.get("debugCounterexample") or "")
         self.debug_model = str(options.get("debugModel") or "")
         self.edit_mocks = str(options.get("editMocks") or "")
+        self.experiment = str(options.get("experiment") or "")
         self.trigger_suggest = str(options.get("triggerSuggest") or "")
 
     # ------------------------------------------------------------------ facts

@@ -4,6 +4,7 @@
 import { describe } from "node:test";
 import { debugging } from "./debugging";
 import { editing } from "./editing";
+import { experiments } from "./experiments";
 import { firstStart } from "./firstStart";
 import { compatibility } from "./compatibility";
 import { serverLifeCycle } from "./serverLifeCycle";
@@ -34,6 +35,9 @@ describe("pictures", () => {
 });
 describe("verification", () => {
     verification(stage);
+});
+describe("experiments", () => {
+    experiments(stage);
 });
 describe("lone trees", () => {
     loneTrees(stage);

@@ -26,7 +26,12 @@ await esbuild.build({
 });
 await esbuild.build({
     ...common,
-    entryPoints: ["src/pictures/view/view.ts", "src/timeline/view/timeline.ts", "src/stage/view/stage.ts"],
+    entryPoints: [
+        "src/pictures/view/view.ts",
+        "src/timeline/view/timeline.ts",
+        "src/stage/view/stage.ts",
+        "src/experiment/view/experiment.ts",
+    ],
     outdir: "dist",
     entryNames: "[name]",
     platform: "browser",
@@ -34,6 +39,8 @@ await esbuild.build({
     target: "es2022",
 });
 fs.copyFileSync(path.join(here, "src/timeline/view/timeline.css"), path.join(dist, "timeline.css"));
+fs.copyFileSync(path.join(here, "src/experiment/view/experiment.css"), path.join(dist, "experiment.css"));
+fs.copyFileSync(path.join(root, "server/roaml/figures/plot.css"), path.join(dist, "plot.css"));
 fs.copyFileSync(path.join(here, "src/stage/view/stage.css"), path.join(dist, "stage.css"));
 // Pictures have the same style in the editor and in the files that the command line writes.
 const styles = [

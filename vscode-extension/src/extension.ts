@@ -8,6 +8,7 @@ import { Counterexamples } from "./editor/counterexamples";
 import { DebugSessions } from "./editor/debugSessions";
 import { Debugging } from "./editor/debugging";
 import { Documents } from "./editor/documents";
+import { Experiments } from "./editor/experiments";
 import { JaniView } from "./editor/janiView";
 import { PicturePanels } from "./editor/picturePanels";
 import { PlainScxmlPreview } from "./editor/plainScxml";
@@ -46,6 +47,7 @@ export function activate(context: vscode.ExtensionContext): void {
     const tests = new PropertyTests(server, debugging, log);
     const sessions = new DebugSessions();
     const activation = new Activation();
+    const experiments = new Experiments(context, server, debugging);
     const counterexamples = new Counterexamples(server, pictures, debugging);
     context.subscriptions.push(
         log,
@@ -58,6 +60,7 @@ export function activate(context: vscode.ExtensionContext): void {
         pictures,
         tests,
         counterexamples,
+        experiments,
         new ResultsView(tests),
         sessions,
         new ChoicesView(sessions, log),
@@ -72,7 +75,7 @@ export function activate(context: vscode.ExtensionContext): void {
         status.show(state);
     });
     pictures.onVerified(() => void tests.refresh());
-    const shown = { plain, jani, pictures, tests, counterexamples, debugging };
+    const shown = { plain, jani, pictures, tests, counterexamples, debugging, experiments };
     registerCommands({ context, log, server, activation, status, documents, tasks, ...shown });
     context.subscriptions.push(vscode.tasks.registerTaskProvider(Tasks.type, tasks));
     watchSettings(context, server, log);

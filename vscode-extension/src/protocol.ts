@@ -115,6 +115,35 @@ export interface NewProperty {
     readonly name: string;
 }
 
+/** A parameter of a system. `proposed` are values to try; `limits` states what its declaration allows, or is empty. */
+export interface AskedParameter {
+    readonly name: string;
+    readonly value: string;
+    readonly proposed: string;
+    readonly limits: string;
+}
+
+/** A number in a machine that can become a parameter; `offset` is its place in code points. */
+export interface AskedNumber {
+    readonly text: string;
+    readonly place: string;
+    readonly uri: string;
+    readonly offset: number;
+}
+
+/** What is asked before an experiment. `numbers` is empty if there are parameters. */
+export interface ExperimentForm {
+    readonly parameters: readonly AskedParameter[];
+    readonly properties: readonly { readonly name: string; readonly comment: string; readonly expected: string }[];
+    readonly numbers: readonly AskedNumber[];
+}
+
+export interface NewParameterParams extends DocumentParams {
+    readonly offset: number;
+}
+
+export const experimentForm = new RequestType<DocumentParams, ExperimentForm, void>("as2fm/experiment");
+export const newParameter = new RequestType<NewParameterParams, WorkspaceEdit | null, void>("as2fm/newParameter");
 export const propertySentences = new RequestType<DocumentParams, PropertySentences, void>("as2fm/propertySentences");
 export const newPropertyEdit = new RequestType<NewPropertyParams, NewProperty, void>("as2fm/newProperty");
 export const about = new RequestType<DocumentParams, About, void>("as2fm/about");

@@ -7,7 +7,7 @@ import argparse
 import json
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 
 from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
@@ -24,6 +24,7 @@ from as2fm_lsp.cli.formats import Format, render
 from as2fm_lsp.cli.formats.report import shown_path
 from as2fm_lsp.cli.interrupts import Interrupts
 from as2fm_lsp.cli.kernel_note import kernel_warning
+from as2fm_lsp.cli.live_experiment import LiveExperiment
 from as2fm_lsp.cli.model_arguments import UsageError, error_report, settings_of
 from as2fm_lsp.cli.output import complain, print_text
 from as2fm_lsp.cli.parameters import ParameterFileError, with_parameter_files
@@ -35,12 +36,12 @@ from as2fm_lsp.kept_points import KeptPoints, KeptPointsError
 from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, OutputFiles, outputs_of
 from roaml import api
 from roaml.exhaustive import assert_never
-from roaml.experiments.enough import Met
-from roaml.experiments.grid import Grid
-from roaml.experiments.points import PointKind
+from roaml.experiments.enough import Enough, Met
+from roaml.experiments.grid import Grid, Key
+from roaml.experiments.points import ExperimentPoint, PointKind
 from roaml.experiments.results import ExperimentResult
 from roaml.experiments.sweeps import SweepError
-from roaml.figures.plot import LinePlot
+from roaml.figures.plot import with_guide
 from roaml.jani.property_text import PropertyTextError
 from roaml.mocks.mock import MockError
 from roaml.model.parameters import Overrides
@@ -90,15 +91,18 @@ def _run(options: argparse.Namespace, interrupts: Interrupts) -> int:
             overrides=overrides,
             mocks=mocks_in(options),
         )
+        jobs = workers or options.jobs
+        if options.live:
+            return _show_live(options, grid, expectation, units, jobs, executor)
         outputs = outputs_of(options, grid.files)
         if expectation is not None:
-            return _find(options, grid, expectation, outputs, workers or options.jobs, executor)
+            return _find(options, grid, expectation, outputs, jobs, executor)
         kept = KeptPoints(options.resume, grid.digest)
         keys = grid.keys
         points = {key: kept.points[key] for key in keys if key in kept.points}
         status.stage("computing the points")
         try:
-            for point in grid.points(points, workers or options.jobs, executor):
+            for point in grid.points(points, jobs, executor):
                 points[point.setting, point.name] = point
                 kept.keep(point)
                 if status.is_due:
@@ -138,10 +142,7 @@ def _find(
         grid, options.find, expectation, is_assumed=options.assume_monotone, jobs=jobs, executor=executor
     )
     result = replace(result, path=os.path.basename(options.main))
-    sentences = [answer.text(f"{expectation.name} {expectation.text}") for answer in answers]
-    if any(point.kind is PointKind.ESTIMATE for point in result.points):
-        confidence = computed_options(options).sampling.confidence
-        sentences.append(f"the intervals of all points are right together with {confidence:g} confidence")
+    sentences = _sentences(answers, expectation, result, grid)
     table = _table(result, options.format)
     if options.format is TableFormat.TEXT:
         table += "".join(f"{sentence}\n" for sentence in sentences)
@@ -155,14 +156,61 @@ def _find(
         table += "\n"
     _write_table(options, outputs, table)
     for path in options.plot:
-        plots = [
-            replace(plot, guides=((expectation.threshold.number, expectation.text),))
-            if isinstance(plot, LinePlot)
-            else plot
-            for plot in result.plots(units_in(options))
-        ]
+        plots = with_guide(result.plots(units_in(options)), expectation.threshold.number, expectation.text)
         write_plots(outputs, path, plots, options.theme, result.page_title, result.to_html_table())
     return CLEAN if any(met is Met.YES for answer in answers for _, met in answer.verdicts) else FOUND
+
+
+def _sentences(answers: Sequence[Enough], expectation: Expectation, result: ExperimentResult, grid: Grid) -> list[str]:
+    """Which values are enough, as sentences without a full stop."""
+    sentences = [answer.text(f"{expectation.name} {expectation.text}") for answer in answers]
+    if any(point.kind is PointKind.ESTIMATE for point in result.points):
+        confidence = grid.options.sampling.confidence
+        sentences.append(f"the intervals of all points are right together with {confidence:g} confidence")
+    return sentences
+
+
+def _show_live(
+    options: argparse.Namespace,
+    grid: Grid,
+    expectation: Expectation | None,
+    units: Mapping[str, str],
+    jobs: int,
+    executor: Executor | None,
+) -> int:
+    """Write the state of the experiment for an editor while it runs. An editor cancels it by ending this process."""
+    keys = grid.keys
+    live = LiveExperiment(os.path.abspath(options.main), options.mock, len(keys), units)
+    points: dict[Key, ExperimentPoint] = {}
+    guide = None if expectation is None else (expectation.threshold.number, expectation.text)
+
+    def result() -> ExperimentResult:
+        known = tuple(points[key] for key in keys if key in points)
+        return ExperimentResult(options.main, grid.sweeps, grid.properties, known, grid.options)
+
+    def keep(point: ExperimentPoint, *_: int) -> None:
+        points[point.setting, point.name] = point
+        if live.is_due:
+            live.write(result(), guide)
+
+    live.write(result(), guide)
+    sentences: list[str] = []
+    if expectation is None:
+        for point in grid.points((), jobs, executor):
+            keep(point)
+    else:
+        answers, found = api.find_enough(
+            grid,
+            options.find,
+            expectation,
+            is_assumed=options.assume_monotone,
+            jobs=jobs,
+            executor=executor,
+            watch=keep,
+        )
+        sentences = _sentences(answers, expectation, found, grid)
+    live.write(result(), guide, sentences)
+    return CLEAN if all(point.has_value for point in points.values()) else FOUND
 
 
 def _write_table(options: argparse.Namespace, outputs: OutputFiles, table: str) -> None:

@@ -113,6 +113,8 @@ def parser() -> ArgumentParser:
         "or .pdf; with several plots, the names get numbers; may be repeated")  # fmt: skip
     add("--theme", choices=(AUTOMATIC, *THEMES), default=AUTOMATIC, help="the colors of SVG files; "
         f"{AUTOMATIC}: light, or dark if the reader prefers dark colors (default)")  # fmt: skip
+    add("--live", action="store_true", help="write only JSON Lines with the points and plots to standard output while "
+        "the experiment runs, for editors")  # fmt: skip
     add("--unit", action="append", default=[], metavar="NAME=UNIT", help="the unit of a parameter, for plots; may be "
         "repeated")  # fmt: skip
     return result

@@ -12,7 +12,7 @@ from lsprotocol import types
 
 from as2fm_lsp.context import Context
 from as2fm_lsp.display_settings import display_settings
-from as2fm_lsp.handlers import first_error, results, translate, tree_lenses
+from as2fm_lsp.handlers import experiment, first_error, results, translate, tree_lenses
 from as2fm_lsp.handlers.first_error import errors_of
 from as2fm_lsp.handlers.requested_document import requested_document
 from as2fm_lsp.handlers.symbols import pack, unpack
@@ -34,6 +34,7 @@ def register(context: Context) -> None:
         if on.path not in broken:
             shown += translate.lenses(on.snapshot, on.path, on.source, on.convert)
         shown += results.lenses(context, on, broken)
+        shown += experiment.lenses(context, on, broken)
         shown += tree_lenses.lenses(context, on, broken)
         if display_settings(session.client_settings).references:
             for lens in lenses(on.analysis, on.path):

@@ -21,6 +21,7 @@ from roaml.experiments.sweeps import Setting, Sweep, settings_of
 from roaml.explicit.space import StateLimits
 from roaml.explicit.values import NoValueError, values_of
 from roaml.record import Record, replace
+from roaml.smc.batch import end_with_main_process
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
@@ -277,7 +278,7 @@ def _computed(tasks: Sequence[_Task], jobs: int, executor: Executor | None) -> I
         return
     from concurrent.futures import ProcessPoolExecutor  # noqa: PLC0415 - most experiments need no processes
 
-    with ProcessPoolExecutor(min(jobs, len(tasks)), process_context()) as own:
+    with ProcessPoolExecutor(min(jobs, len(tasks)), process_context(), end_with_main_process) as own:
         yield from _distributed(tasks, 2 * jobs, own)
 
 

@@ -64,6 +64,11 @@ class ExperimentPoint(Record, frozen=True):
     slopes: tuple[tuple[str, float], ...] = ()
 
     @property
+    def key(self) -> str:
+        """What identifies the point in its experiment, for views."""
+        return " ".join([self.name, *(f"{parameter}={value}" for parameter, value in self.setting)])
+
+    @property
     def has_value(self) -> bool:
         return not math.isnan(self.value)
 

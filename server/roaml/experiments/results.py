@@ -9,10 +9,10 @@ from html import escape
 from typing import Any
 
 from roaml.experiments.grid import ExperimentOptions
-from roaml.experiments.points import ExperimentPoint, PointKind, Schedulers
-from roaml.experiments.sweeps import Sweep
+from roaml.experiments.points import ExperimentPoint, PointKind, Schedulers, unknown_point
+from roaml.experiments.sweeps import Sweep, settings_of
 from roaml.figures.plot import HeatMap, LinePlot, PlotAxis, PlotPoint, Series, plot_page, plot_svg
-from roaml.record import Record
+from roaml.record import Record, replace
 from roaml.verification.number_text import exact_number, number
 
 MAX_LINES = 6
@@ -138,14 +138,18 @@ class ExperimentResult(Record, frozen=True):
             notes.append(f"{note} (at {where or 'the only point'}{more})")
         return notes
 
-    def plots(self, units: Mapping[str, str] | None = None) -> list[LinePlot | HeatMap]:
+    def plots(self, units: Mapping[str, str] | None = None, *, is_growing: bool = False) -> list[LinePlot | HeatMap]:
         """A plot for each property: lines over the first parameter, one for each value of the others; or a heat map,
         if a second parameter has more than `MAX_LINES` values. With one parameter, all properties share a plot if their
         values have the same meaning.
 
         Args:
             units: parameter -> its unit.
+            is_growing: whether points are not known yet. Their places are kept free, so that the axes and the legend
+                stay as they are while the plot grows.
         """
+        if is_growing:
+            return self._complete().plots(units)
         if not self.sweeps:
             return []
         order = sorted(self.sweeps, key=lambda sweep: len(sweep.values), reverse=True)
@@ -155,6 +159,12 @@ class ExperimentResult(Record, frozen=True):
         if not others and len(self.properties) <= MAX_LINES:
             return [self._plot(self.properties, across, (), units or {})]
         return [self._plot((name,), across, others, units or {}) for name in self.properties]
+
+    def _complete(self) -> ExperimentResult:
+        """The result with points without a value in the places of those that are missing."""
+        known = {(point.setting, point.name): point for point in self.points}
+        keys = [(setting, name) for setting in settings_of(self.sweeps) for name in self.properties]
+        return replace(self, points=tuple(known.get(key) or unknown_point(*key, "") for key in keys))
 
     def _plot(self, names: Sequence[str], across: Sweep, others: Sequence[Sweep], units: Mapping[str, str]) -> LinePlot:
         numbers = across.numbers
@@ -190,7 +200,8 @@ class ExperimentResult(Record, frozen=True):
     def _plotted(self, x: float, point: ExperimentPoint) -> PlotPoint:
         note = f"{point.name}: {cell(point)} at {', '.join(f'{n} = {v}' for n, v in point.setting)}"
         has_band = point.kind is PointKind.ESTIMATE
-        return PlotPoint(x, point.value, point.low if has_band else None, point.high if has_band else None, note)
+        low, high = (point.low, point.high) if has_band else (None, None)
+        return PlotPoint(x, point.value, low, high, note, point.key)
 
     def _heat_map(self, name: str, across: Sweep, up: Sweep, units: Mapping[str, str]) -> HeatMap:
         points = {(dict(p.setting)[across.name], dict(p.setting)[up.name]): p for p in self.points if p.name == name}
@@ -205,6 +216,7 @@ class ExperimentResult(Record, frozen=True):
             tuple(tuple(point.value for point in row) for row in grid),
             self._axis((name,)).name,
             self._plot_notes(across),
+            keys=tuple(tuple(point.key for point in row) for row in grid),
         )
 
     @property

@@ -137,6 +137,7 @@ class Group(Record, frozen=True):
         edges: the indexes of the edges that the group shows.
         hint: the whole text, if the items show only a part of it.
         step: the number of the step of a run that the group shows.
+        key: what the group shows, for views in which it can be clicked; "" if nothing.
     """
 
     role: str
@@ -147,6 +148,7 @@ class Group(Record, frozen=True):
     edges: tuple[int, ...] = ()
     hint: str = ""
     step: int | None = None
+    key: str = ""
 
 
 Leaf: TypeAlias = Shape | TextItem | Polyline | Area | Glyph

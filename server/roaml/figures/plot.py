@@ -20,7 +20,7 @@ from roaml.figures.scales import Scale, ScaleKind, number_label, scale_of
 from roaml.figures.svg import PLOT_STYLES, svg_file
 from roaml.figures.text import LINE_HEIGHT, MEDIUM, SMALL, text_width, wrap
 from roaml.figures.themes import AUTOMATIC
-from roaml.record import Record
+from roaml.record import Record, replace
 
 WIDTH, HEIGHT = 560.0, 300.0
 """The size of the area of the lines or cells, in pixels."""
@@ -61,6 +61,7 @@ class PlotPoint(Record, frozen=True):
         y: the value; not a number if there is none.
         low, high: the ends of the interval that belongs to the value; `None` if there is none.
         note: what is shown if the mouse is over the point, instead of its numbers.
+        key: what identifies the point in a view in which it can be clicked.
     """
 
     x: float
@@ -68,6 +69,7 @@ class PlotPoint(Record, frozen=True):
     low: float | None = None
     high: float | None = None
     note: str = ""
+    key: str = ""
 
 
 class Series(Record, frozen=True):
@@ -114,6 +116,7 @@ class HeatMap(Record, frozen=True):
         values: the values by rows, then columns; not a number where there is none.
         value: the name of the values, with their unit.
         hints: what is shown if the mouse is over a cell, as `values`; the numbers if it is empty.
+        keys: what identifies each cell in a view, as `values`; empty if the cells cannot be clicked.
     """
 
     title: str
@@ -125,6 +128,12 @@ class HeatMap(Record, frozen=True):
     value: str
     notes: tuple[str, ...] = ()
     hints: tuple[tuple[str, ...], ...] = ()
+    keys: tuple[tuple[str, ...], ...] = ()
+
+
+def with_guide(plots: Sequence[LinePlot | HeatMap], number: float, name: str) -> list[LinePlot | HeatMap]:
+    """Plots with a line at a number on the vertical axis, where there is such an axis."""
+    return [replace(plot, guides=((number, name),)) if isinstance(plot, LinePlot) else plot for plot in plots]
 
 
 def plot_svg(plot: LinePlot | HeatMap, theme: str = AUTOMATIC) -> str:
@@ -270,7 +279,7 @@ def _clipped(series: Series, x: Scale, y: Scale) -> list[PlotPoint]:
         low, high = (None if e is None else min(max(e, y.low), y.high) for e in (point.low, point.high))
         value = point.y if y.shows(point.y) else math.nan
         if x.shows(point.x):
-            clipped.append(PlotPoint(point.x, value, low, high, point.note))
+            clipped.append(PlotPoint(point.x, value, low, high, point.note, point.key))
     return clipped
 
 
@@ -301,7 +310,8 @@ def _curve(
         for point in points:
             if not math.isnan(point.y):
                 hint = point.note or f"{series.name}: {_point_text(plot, point)}"
-                yield Group("point", tone, (_mark(number, placed(point.x, point.y)),), hint=hint)
+                mark = _mark(number, placed(point.x, point.y))
+                yield Group("point", tone, (mark,), hint=hint, key=point.key)
 
 
 def _path(points: Sequence[tuple[float, float]], *, is_stepped: bool) -> list[tuple[float, float]]:
@@ -427,7 +437,8 @@ def _heat_map(plot: HeatMap) -> Drawing:
                 items.append(TextItem(text, *place, SMALL, "on-cell" if level > 6 else ""))
             name = f"{plot.value}: {_shown(value)} at {plot.x} {plot.columns[column]}, {plot.y} {plot.rows[line]}"
             kind = "unknown" if level < 0 else f"heat-{level}"
-            groups.append(Group("heat", Tone.SERIES_1, tuple(items), kind=kind, hint=hint or name))
+            key = plot.keys[line][column] if plot.keys else ""
+            groups.append(Group("heat", Tone.SERIES_1, tuple(items), kind=kind, hint=hint or name, key=key))
     groups.append(Group("axis", Tone.PLAIN, tuple(_heat_axes(plot, area, height))))
     legend, bottom = _heat_legend(plot.value, least, greatest, area.bottom + 56)
     groups += legend

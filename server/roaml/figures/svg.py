@@ -46,22 +46,30 @@ def svg_file(
         f"{f'<desc>{escape(description)}</desc>{chr(10)}' if description else ''}"
         f"<style>\n{file_style(theme, styles)}</style>\n"
         f'<rect class="paper" {area} fill="{THEMES["light" if theme == AUTOMATIC else theme]["background"]}"/>\n'
-        f"{svg_scene(drawing)}</svg>\n"
+        f"{svg_scene(drawing, has_keys=False)}</svg>\n"
     )
 
 
-def svg_scene(drawing: Drawing) -> str:
-    """The group that contains the whole drawing. The groups of nodes and edges have their indexes as data."""
-    return f'<g class="scene">\n{"".join(map(_group, drawing.groups))}</g>\n'
+def svg_scene(drawing: Drawing, *, has_keys: bool = True) -> str:
+    """The group that contains the whole drawing. The groups of nodes and edges have their indexes as data.
+
+    Args:
+        has_keys: whether the keys of groups are data, too. Only views need them.
+    """
+    groups = "".join(_group(group, has_keys=has_keys) for group in drawing.groups)
+    return f'<g class="scene">\n{groups}</g>\n'
 
 
-def _group(group: Group) -> str:
+def _group(group: Group, *, has_keys: bool) -> str:
     classes = [group.role, f"tone-{group.tone.value}", *(f"is-{kind}" for kind in group.kind.split())]
     data = f' data-node="{group.node}"' if group.node is not None else ""
     data += f' data-edges="{" ".join(map(str, group.edges))}"' if group.edges else ""
     data += f' data-step="{group.step}"' if group.step is not None else ""
+    data += f' data-key="{escape(group.key)}"' if group.key and has_keys else ""
     hint = f"<title>{escape(group.hint)}</title>" if group.hint else ""
-    items = "".join(_group(item) if isinstance(item, Group) else "".join(_item(item)) for item in group.items)
+    items = "".join(
+        _group(item, has_keys=has_keys) if isinstance(item, Group) else "".join(_item(item)) for item in group.items
+    )
     return f'<g class="{" ".join(classes)}"{data}>{hint}{items}</g>\n'
 
 

@@ -280,9 +280,14 @@ def start_worker(stopping: c_bool) -> None:
 def follow_main_process() -> None:
     """Let this worker process ignore interrupts from the keyboard, which only the main process handles, and end when
     the main process has ended, even if it was killed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    end_with_main_process()
+
+
+def end_with_main_process() -> None:
+    """Let this worker process end when the main process has ended, even if it was killed."""
     import multiprocessing  # noqa: PLC0415 - most questions are answered without workers
 
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
     main = multiprocessing.parent_process()
     if main is not None:
         threading.Thread(target=_end_with, args=(main.sentinel,), daemon=True).start()

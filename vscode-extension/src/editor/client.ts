@@ -38,6 +38,7 @@ const SELECTOR: DocumentSelector = [
 export const SHOW_REFERENCES = "as2fm.showReferences";
 
 /** The command with which lenses show why a property fails. Arguments: the URI of a system, the name of a property. */
+export const EXPERIMENT = "as2fm.experiment";
 export const SHOW_COUNTEREXAMPLE = "as2fm.showCounterexample";
 export const SHOW_WITNESS = "as2fm.showWitness";
 export const SET_EXPECTATION = "as2fm.setExpectation";
@@ -133,6 +134,7 @@ function options(log: vscode.LogOutputChannel, listener: Listener): LanguageClie
             debugCounterexample: DEBUG_COUNTEREXAMPLE,
             debugModel: DEBUG_MODEL,
             editMocks: EDIT_MOCKS,
+            experiment: EXPERIMENT,
             setExpectation: SET_EXPECTATION,
             triggerSuggest: "editor.action.triggerSuggest",
         },

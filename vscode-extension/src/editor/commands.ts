@@ -8,6 +8,7 @@ import {
     DEBUG_COUNTEREXAMPLE,
     DEBUG_MODEL,
     EDIT_MOCKS,
+    EXPERIMENT,
     SET_EXPECTATION,
     SHOW_COUNTEREXAMPLE,
     SHOW_REFERENCES,
@@ -17,6 +18,7 @@ import type { Activation } from "./activation";
 import type { Counterexamples } from "./counterexamples";
 import type { Debugging, Trace } from "./debugging";
 import type { Documents } from "./documents";
+import { EXPERIMENT_FILE, type Experiments } from "./experiments";
 import type { JaniView } from "./janiView";
 import { chooseExpectation } from "./expectation";
 import { newProperty } from "./newProperty";
@@ -44,6 +46,7 @@ export interface Parts {
     readonly tests: PropertyTests;
     readonly counterexamples: Counterexamples;
     readonly debugging: Debugging;
+    readonly experiments: Experiments;
 }
 
 export function registerCommands(parts: Parts): void {
@@ -123,6 +126,11 @@ export function registerCommands(parts: Parts): void {
             await vscode.workspace.saveAll(false);
             const uri = server.client?.protocol2CodeConverter.asUri(model);
             return uri && parts.debugging.start(uri, attributes);
+        }),
+        // Called from a lens with a system, from the explorer with a file, and from the palette without arguments.
+        vscode.commands.registerCommand(EXPERIMENT, (of?: string | vscode.Uri, parameter?: unknown) => {
+            parts.activation.need();
+            return experiment(parts, of, typeof parameter === "string" ? parameter : undefined);
         }),
         vscode.commands.registerCommand(EDIT_MOCKS, (tree: string) => {
             const uri = server.client?.protocol2CodeConverter.asUri(tree);
@@ -262,6 +270,18 @@ async function showVersions({ context, server }: Parts): Promise<void> {
     const copy = vscode.l10n.t("Copy");
     const answer = await vscode.window.showInformationMessage(text.replaceAll("\n", " · "), copy);
     if (answer === copy) await vscode.env.clipboard.writeText(text);
+}
+
+/** Run the experiment of a file, or ask for one of a system. */
+async function experiment(parts: Parts, of: string | vscode.Uri | undefined, parameter?: string): Promise<void> {
+    const document = vscode.window.activeTextEditor?.document;
+    const file = of instanceof vscode.Uri ? of : document?.uri;
+    if (typeof of !== "string" && file?.path.endsWith(EXPERIMENT_FILE)) {
+        await parts.experiments.openFile(file);
+        return;
+    }
+    const system = typeof of === "string" ? of : (await parts.documents.system(document))?.toString();
+    if (system !== undefined) await parts.experiments.ask(system, parameter);
 }
 
 async function withEditor(run: (editor: vscode.TextEditor) => unknown): Promise<void> {

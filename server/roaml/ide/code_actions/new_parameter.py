@@ -70,6 +70,21 @@ def actions(analysis: Analysis, path: str, place: Span) -> Iterator[CodeAction]:
     yield CodeAction(f"Make {found.text} the parameter `{name}` of the system", EXTRACT, make)
 
 
+def literals(analysis: Analysis, path: str) -> Iterator[tuple[str, Span]]:
+    """The numbers of a machine that can become parameters, except 0 and 1, which are rarely quantities: the name of the
+    element, and the place of the number."""
+    file = xml_file(analysis, path)
+    for element, type_ in elements_of(file) if file is not None else ():
+        for attribute in element.attributes:
+            role = type_.attributes.get(attribute.name) if type_ else None
+            if role is None or role.value not in _ROLES or not attribute.has_value or file is None:
+                continue
+            tree, findings = parse(file.document.decoded(attribute.value_span))
+            for node in walk(tree) if not findings else ():
+                if isinstance(node, Number) and file.document.text[node.span.start : node.span.end] not in ("0", "1"):
+                    yield element.name, node.span
+
+
 def _literal_at(analysis: Analysis, path: str, place: Span) -> _Literal | None:
     file = xml_file(analysis, path)
     if file is None:

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+/** An experiment, as a new user finds it: from the delivery robot to the plot that says which battery it needs. */
+
+import * as fs from "node:fs";
+import * as path from "node:path";
+import type { Frame, Locator } from "playwright-core";
+import { MEND, sample, type Stage } from "./support/stage";
+import { themes } from "./support/themes";
+import type { Window } from "./support/window";
+import { write } from "./support/workbench";
+
+const EXPERIMENT = "battery.experiment.toml";
+
+export function experiments(stage: Stage): void {
+    stage.use();
+
+    for (const [look, theme] of themes("hc-dark", "light", "dark", "hc-light", "hc-dark")) {
+        const robot = () => {
+            const folder = sample(MEND);
+            write(path.join(folder, ".vscode/settings.json"), JSON.stringify({ "workbench.colorTheme": theme }));
+            return folder;
+        };
+        stage.test(
+            `a number becomes a parameter, and a plot says which value is enough, ${look}`,
+            robot,
+            async (window) => {
+                await window.openFile("main.xml");
+                await window.running();
+                await lens(window, "Experiment").first().click();
+                await choose(window, "Which number is varied?", 'id="level"');
+                // The number is declared in the system file, and its proposed values can be changed.
+                await window.answer("Values of initial_level (now 50)", "20:120:20");
+                await window.question("Which properties are computed?").waitFor();
+                await window.screenshot("experiment-properties");
+                await pick(window, "all_delivered");
+                await window.answer("Which value of all_delivered is enough?", ">= 0.5");
+                const view = await page(window);
+                await view.locator(".answers p", { hasText: "all_delivered ≥ 0.5 is met" }).waitFor();
+                await view.locator(".status", { hasText: "6 points" }).waitFor();
+                await view.locator(".point[data-key]").first().waitFor();
+                await window.screenshot(`experiment-${look}`);
+                // A point leads to a run with its values.
+                await view.locator('[data-key="all_delivered initial_level=20"]').first().click();
+                await window.page.locator(".debug-toolbar").waitFor();
+                await window.screenshot("experiment-run");
+            },
+        );
+    }
+
+    stage.test("an experiment in a file grows, is cancelled, and is run again", long, async (window) => {
+        await window.openFile(EXPERIMENT);
+        await window.running();
+        await window.run("AS2FM: Experiment…");
+        const view = await page(window);
+        await view.locator(".status", { hasText: /^[1-9]\d* of 181 points$/ }).waitFor();
+        await window.screenshot("experiment-grows");
+        await view.getByRole("button", { name: "Cancel" }).click();
+        await view.locator(".status", { hasText: /^Cancelled: \d+ of 181 points are known$/ }).waitFor();
+        await view.locator(".points tbody tr").first().waitFor();
+        write(path.join(window.folder, EXPERIMENT), file("100,nothing"));
+        await view.getByRole("button", { name: "Run Again" }).click();
+        await view.locator(".status", { hasText: "nothing" }).waitFor();
+    });
+}
+
+/** The sample, with a parameter and an experiment that takes long enough to be cancelled. */
+function long(): string {
+    const folder = sample(MEND);
+    const main = fs.readFileSync(path.join(folder, "main.xml"), "utf8");
+    const declared = '<parameter name="capacity" type="int32" value="100" min="20" max="200" />';
+    const section = `<parameter_declarations>${declared}</parameter_declarations>`;
+    write(
+        path.join(folder, "main.xml"),
+        main.replace(/<roaml[^>]*>/, (root) => `${root}${section}`),
+    );
+    const battery = path.join(folder, "nodes/battery.ascxml");
+    const text = fs.readFileSync(battery, "utf8");
+    write(battery, text.replace('location="level" expr="100"', 'location="level" expr="capacity"'));
+    write(path.join(folder, EXPERIMENT), file("20:200:1"));
+    return folder;
+}
+
+function file(values: string): string {
+    const lines = ['model = "main.xml"', 'property = ["all_delivered"]', 'method = "adaptive"', "epsilon = 0.005"];
+    return [...lines, "", "[set]", `capacity = "${values}"`, ""].join("\n");
+}
+
+function lens(window: Window, title: string): Locator {
+    return window.page.locator(".codelens-decoration a", { hasText: title });
+}
+
+/** Chooses the entry of a list that contains a text. */
+async function choose(window: Window, question: string, text: string): Promise<void> {
+    await window.question(question).waitFor();
+    await window.screenshot("experiment-number");
+    await window.page.locator(".quick-input-widget .monaco-list-row", { hasText: text }).first().click();
+}
+
+/** Checks one entry of a list with several, and accepts it. */
+async function pick(window: Window, name: string): Promise<void> {
+    await window.page.locator(".quick-input-widget .monaco-list-row", { hasText: name }).first().click();
+    await window.page.locator(".quick-input-widget").getByRole("button", { name: "OK" }).click();
+}
+
+/** The page of the experiment. */
+async function page(window: Window): Promise<Frame> {
+    return window.picture(".experiment");
+}
