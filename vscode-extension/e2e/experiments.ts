@@ -59,7 +59,7 @@ export function experiments(stage: Stage): void {
         await view.locator(".points tbody tr").first().waitFor();
         write(path.join(window.folder, EXPERIMENT), file("100,nothing"));
         await view.getByRole("button", { name: "Run Again" }).click();
-        await view.locator(".status", { hasText: "nothing" }).waitFor();
+        await view.locator(".points td", { hasText: "unknown" }).waitFor();
     });
 }
 
