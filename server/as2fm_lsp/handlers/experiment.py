@@ -9,6 +9,7 @@ parameter, which may be missing.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Collection, Iterator
 from typing import Any, TypedDict
 
@@ -19,7 +20,7 @@ from as2fm_lsp.handlers.parameters import document_uri, natural
 from as2fm_lsp.handlers.requested_document import RequestedDocument
 from as2fm_lsp.handlers.workspace_edit import workspace_edit
 from roaml.ide.code_actions.new_parameter import actions
-from roaml.ide.experiment import numbers_of, parameters_of, properties_of, shown_place
+from roaml.ide.experiment import numbers_of, parameters_of, properties_of
 from roaml.ide.verifiable import verifiable
 from roaml.project.paths import is_on_disk
 from roaml.text import Span
@@ -36,13 +37,13 @@ class AskedParameter(TypedDict):
     limits: str
 
 
-class Property(TypedDict):
+class ExperimentProperty(TypedDict):
     name: str
     comment: str
     expected: str
 
 
-class Number(TypedDict):
+class ExperimentNumber(TypedDict):
     """A number that can become a parameter: `uri` and `offset`, in code points, are its place."""
 
     text: str
@@ -55,8 +56,8 @@ class ExperimentForm(TypedDict):
     """What a client asks. `numbers` is empty if there are parameters."""
 
     parameters: list[AskedParameter]
-    properties: list[Property]
-    numbers: list[Number]
+    properties: list[ExperimentProperty]
+    numbers: list[ExperimentNumber]
 
 
 def register(context: Context) -> None:
@@ -77,7 +78,7 @@ def register(context: Context) -> None:
             "numbers": [
                 {
                     "text": place.text,
-                    "place": shown_place(place),
+                    "place": f"{os.path.basename(place.path)}: {place.line}",
                     "uri": session.convert.uri(place.path),
                     "offset": place.span.start,
                 }

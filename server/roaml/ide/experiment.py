@@ -4,7 +4,6 @@ property is computed. A system without parameters has numbers that can become on
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from fractions import Fraction
 
@@ -94,11 +93,6 @@ def numbers_of(analysis: Analysis, system: str) -> Iterator[NumberPlace]:
             end = source.text.find("\n", span.end)
             line = source.text[begin : end if end >= 0 else len(source.text)]
             yield NumberPlace(path, span, source.text[span.start : span.end], " ".join(line.split()))
-
-
-def shown_place(place: NumberPlace) -> str:
-    """A number for a list: the name of its file, and its line."""
-    return f"{os.path.basename(place.path)}: {place.line}"
 
 
 def _text(number: Fraction) -> str:
