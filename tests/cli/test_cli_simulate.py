@@ -25,7 +25,7 @@ def test_a_run_is_printed_as_a_story(command: Command) -> None:
 def test_the_run_is_the_trace_of_verify(command: Command) -> None:
     """`simulate` and `verify` describe the counterexample in the same way."""
     story = command("verify", str(ROBOT), "--property", "never_placed_empty", "--explain", "--seed", "0").out
-    (heading,) = [line for line in story.splitlines() if line.startswith("never_placed_empty failed in trace ")]
+    (heading,) = [line for line in story.splitlines() if line.startswith("  never_placed_empty failed in trace ")]
     trace, steps = heading.split(" trace ")[1].split(" after ")
     done = command("simulate", str(ROBOT), "--property", "never_placed_empty", "--trace", trace)
     assert done.out.startswith(f"never_placed_empty failed in trace {trace} after {steps.split(';')[0]}")

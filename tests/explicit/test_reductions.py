@@ -293,7 +293,7 @@ def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     assert run([*arguments, "--explain"]) == 0
     text = capsys.readouterr().out
     assert "p: minimum 0, maximum 1, exact, " in text
-    assert "\np failed in a trace after 64 steps" in text
+    assert "\n  p failed in a trace after 64 steps" in text
     assert (
         "\ncomputed from all reachable states: minimum and maximum over all schedulers; "
         "reductions left out choices that do not change these values\n"
