@@ -6,13 +6,13 @@ from __future__ import annotations
 import json
 import os
 import stat
+import tempfile
 import threading
 from pathlib import Path
 
 import pytest
 from command import Command
 
-import as2fm_lsp.atomic_write
 import clock
 from as2fm_lsp.atomic_write import write_file
 
@@ -68,7 +68,7 @@ def test_a_full_disk_is_reported(command: Command, tmp_path: Path, monkeypatch: 
     def fail(*_: object, **__: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(as2fm_lsp.atomic_write.tempfile, "mkstemp", fail)
+    monkeypatch.setattr(tempfile, "mkstemp", fail)
     done = command("--check", "main.xml", "--output", "report.txt")
     assert (done.status, done.err) == (2, "as2fm-lsp: report.txt: No space left on device\n")
 

@@ -52,7 +52,7 @@ NOTHING = {
     "--warnings-as-errors --statistics "
     "--stdin-filename --set --params-file",
     "debug": "",
-    "experiment": "main --set --find --meets --assume-monotone --property --scheduler "
+    "experiment": "main --live --set --find --meets --assume-monotone --property --scheduler "
     "--exhaustive --slopes --max-states --max-transitions "
     "--confidence --epsilon --method --max-traces --max-steps --seed --jobs --dask --format --theme --unit "
     "--max-time --reaction-time --ros-path --tree-semantics --params-file --mock --mocks --entry --tick-rate",
