@@ -11,7 +11,7 @@ import { ON_STAGE, type Debugging } from "./debugging";
 import { askForExperiment } from "./experimentQuestions";
 import type { LanguageServer } from "./server";
 import { isTrusted } from "./trust";
-import { webviewPage } from "./webviewPage";
+import { webviewPage, webviewPanel } from "./webviewPage";
 
 export const EXPERIMENT_FILE = ".experiment.toml";
 const ERROR_LINES = 6;
@@ -77,15 +77,8 @@ class ExperimentPanel {
     ) {
         const dist = vscode.Uri.joinPath(context.extensionUri, "dist");
         const title = vscode.l10n.t("Experiment: {0}", experiment.title);
-        this.panel = vscode.window.createWebviewPanel("as2fm.experiment", title, vscode.ViewColumn.Beside, {
-            enableScripts: true,
-            enableForms: false,
-            enableCommandUris: false,
-            retainContextWhenHidden: true,
-            localResourceRoots: [dist],
-        });
+        this.panel = webviewPanel(context, dist, "as2fm.experiment", title, vscode.ViewColumn.Beside);
         const { webview } = this.panel;
-        this.panel.iconPath = vscode.Uri.joinPath(context.extensionUri, "icons", "as2fm.png");
         webview.onDidReceiveMessage((message: FromExperiment) => void this.receive(message));
         this.panel.onDidDispose(() => this.running?.abort());
         webview.html = webviewPage(webview, dist, "experiment.js", ["view.css", "plot.css", "experiment.css"]);

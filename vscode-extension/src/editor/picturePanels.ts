@@ -6,7 +6,7 @@ import type { Activity, FromView, PictureKind } from "../pictures/contract";
 import type { Highlight } from "../protocol";
 import { PictureSource, titleOf, type ActiveNode } from "./pictureSource";
 import type { LanguageServer } from "./server";
-import { webviewPage } from "./webviewPage";
+import { webviewPage, webviewPanel } from "./webviewPage";
 
 const DELAY_MS = 200;
 const LOADING_LIMIT_MS = 10_000;
@@ -141,19 +141,12 @@ class PicturePanel implements vscode.Disposable {
     ) {
         const dist = vscode.Uri.joinPath(context.extensionUri, "dist");
         const column = { viewColumn, preserveFocus: true };
-        this.panel = vscode.window.createWebviewPanel(`as2fm.${kind}`, titleOf(kind), column, {
-            enableScripts: true,
-            enableForms: false,
-            enableCommandUris: false,
-            retainContextWhenHidden: true,
-            localResourceRoots: [dist],
-        });
+        this.panel = webviewPanel(context, dist, `as2fm.${kind}`, titleOf(kind), column);
         const { panel } = this;
         this.source = new PictureSource(kind, server, log, {
             post: (message) => void panel.webview.postMessage(message),
             setTitle: (title) => (panel.title = title),
         });
-        panel.iconPath = vscode.Uri.joinPath(context.extensionUri, "icons", "as2fm.png");
         this.loaded = new Promise((resolve) => {
             setTimeout(resolve, LOADING_LIMIT_MS);
             panel.webview.onDidReceiveMessage((message: FromView) => {

@@ -24,7 +24,7 @@ import type { PicturePanels } from "./picturePanels";
 import { jump, PictureSource, type ActiveNode } from "./pictureSource";
 import type { LanguageServer } from "./server";
 import { TimelineSource } from "./timeline";
-import { webviewPage } from "./webviewPage";
+import { webviewPage, webviewPanel } from "./webviewPage";
 
 type MomentAnswer = Answer & Omit<Moment, "activity">;
 
@@ -132,15 +132,8 @@ class StagePanel {
         const dist = vscode.Uri.joinPath(context.extensionUri, "dist");
         const title = vscode.l10n.t("Stage: {0}", vscode.workspace.asRelativePath(uri));
         const column = { viewColumn: vscode.ViewColumn.Two, preserveFocus: false };
-        this.panel = vscode.window.createWebviewPanel("as2fm.stage", title, column, {
-            enableScripts: true,
-            enableForms: false,
-            enableCommandUris: false,
-            retainContextWhenHidden: true,
-            localResourceRoots: [dist],
-        });
+        this.panel = webviewPanel(context, dist, "as2fm.stage", title, column);
         const { webview } = this.panel;
-        this.panel.iconPath = vscode.Uri.joinPath(context.extensionUri, "icons", "as2fm.png");
         for (const kind of kinds) {
             const post = (message: Parameters<PictureSource["host"]["post"]>[0]) => {
                 this.post({ to: kind, message });

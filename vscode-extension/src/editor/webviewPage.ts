@@ -1,9 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page of a webview: one script, with styles from files only.
+// Panels with a page, and the page of a webview: one script, with styles from files only.
 
 import { randomBytes } from "node:crypto";
 
 import * as vscode from "vscode";
+
+/** A panel that keeps its page while it is hidden. Its page can load files of `dist` only. */
+export function webviewPanel(
+    context: vscode.ExtensionContext,
+    dist: vscode.Uri,
+    viewType: string,
+    title: string,
+    column: Parameters<typeof vscode.window.createWebviewPanel>[2],
+): vscode.WebviewPanel {
+    const panel = vscode.window.createWebviewPanel(viewType, title, column, {
+        enableScripts: true,
+        enableForms: false,
+        enableCommandUris: false,
+        retainContextWhenHidden: true,
+        localResourceRoots: [dist],
+    });
+    panel.iconPath = vscode.Uri.joinPath(context.extensionUri, "icons", "as2fm.png");
+    return panel;
+}
 
 /** `dist` is the folder of the script and of the styles. */
 export function webviewPage(
