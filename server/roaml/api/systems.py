@@ -186,17 +186,15 @@ def to_jani(system: LoadedSystem, properties: Iterable[str] | None = None, *, ha
     Raises:
         PropertyError: the system has no property with one of the names.
     """
-    if properties is None:
-        from roaml.to_jani import translate  # noqa: PLC0415 - a check does not translate
+    from roaml.to_jani import translate  # noqa: PLC0415 - a check does not translate
 
+    if properties is None:
         return translate(to_scxml(system), system.properties, system.observed, has_activity=has_activity)
     chosen: tuple[Property | ObservedProperty, ...] = select(
         (*system.properties, *system.observed), properties, "system"
     )
     in_jani = tuple(property_ for property_ in chosen if isinstance(property_, Property))
     in_xml = tuple(property_ for property_ in chosen if isinstance(property_, ObservedProperty))
-    from roaml.to_jani import translate  # noqa: PLC0415 - a check does not translate
-
     return translate(to_scxml(system), in_jani, in_xml, has_activity=has_activity)
 
 
