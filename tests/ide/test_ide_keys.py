@@ -5,15 +5,23 @@ from __future__ import annotations
 
 import gc
 import re
+from collections import Counter
 from pathlib import Path
+from random import Random
+from typing import Any
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from ide_models import system_file
 
 from bench.generate import FIRST, write_system
+from fuzz import damage
+from roaml.model.behavior import explore
+from roaml.model.machine import Machine
+from roaml.model.values.analyse import MachineValues
+from roaml.project.analysis import values as analysis_values
 from roaml.project.settings import Settings
-from roaml.project.values import values_in
 from roaml.project.workspace import Snapshot, Workspace
 
 HERE, OTHER = "/robot/here.ascxml", "/robot/other.ascxml"
@@ -91,7 +99,7 @@ def results(snapshot: Snapshot) -> dict[str, object]:
     found: dict[str, object] = {path: snapshot.checker.diagnostics(path) for path in snapshot.files()}
     for path in (HERE, OTHER):
         if snapshot.analysis.machine(path) is not None:
-            values = values_in(snapshot.analysis, path, "/robot/main.xml")
+            values = snapshot.analysis.values_in(path, "/robot/main.xml")
             charts = {s: (c.states, c.conditions, c.seen) for s, c in values.charts.items()}
             found[f"values in {path}"] = (charts, values.sent)
             found[f"complete {path}"] = values.complete
@@ -140,3 +148,69 @@ def test_replaced_versions_are_no_garbage(tmp_path: Path) -> None:
     finally:
         gc.enable()
     assert unreachable < 100
+
+
+class Analysed:
+    """Counts the analyses of each machine, by its name: of its values, and of its steps."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.values: Counter[str] = Counter()
+        self.steps: Counter[str] = Counter()
+        analyse, run = analysis_values.analyse, explore._Explorer.run
+
+        def counted(machine: Machine, *arguments: Any, **named: Any) -> MachineValues:
+            self.values[_name(machine)] += 1
+            return analyse(machine, *arguments, **named)
+
+        def counted_steps(explorer: Any) -> explore.Behavior | None:
+            self.steps[_name(explorer.machine)] += 1
+            return run(explorer)
+
+        monkeypatch.setattr(analysis_values, "analyse", counted)
+        monkeypatch.setattr(explore._Explorer, "run", counted_steps)
+
+    def after(self, edited: Workspace, path: Path, text: str) -> tuple[Counter[str], Counter[str]]:
+        """The analyses of values and of steps in a complete check after an edit."""
+        self.values.clear()
+        self.steps.clear()
+        edited.open(str(path), text)
+        snapshot = edited.snapshot()
+        for file in snapshot.files():
+            snapshot.checker.diagnostics(file)
+        return self.values, self.steps
+
+
+def _name(machine: Machine) -> str:
+    return machine.name.value if machine.name else ""
+
+
+def test_only_changed_machines_are_analysed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An edit that changes nothing that is sent analyses one machine again, once for each round. If other values are
+    sent analyse those that receive them, and in the next round perhaps their receivers, but never others.
+    """
+    write_system(tmp_path, files=11, lines=100)
+    path, analysed = tmp_path / FIRST, Analysed(monkeypatch)
+    text = path.read_text(encoding="utf-8")
+    edited = Workspace([str(tmp_path)], Settings())
+    values, steps = analysed.after(edited, path, text)
+    assert values.keys() == steps.keys() == {f"Machine{number}" for number in range(8)}
+
+    rounds, sent = analysis_values.ROUNDS + 1, '<field name="b" expr="1"'
+    for same in (text.replace("<state ", "<state  ", 1), text.replace("values.length &gt; 3", "values.length &gt; 4")):
+        values, steps = analysed.after(edited, path, same)
+        assert values.keys() == steps.keys() == {"Machine0"}
+        assert values["Machine0"] <= rounds
+        assert steps["Machine0"] <= 2
+    speed = 'name="linear.x" expr="speed"'
+    for old, new, receiver in ((sent, f'{sent[:-1]}00"', "Machine1"), (speed, speed.replace("speed", "7"), "Machine7")):
+        values, steps = analysed.after(edited, path, text.replace(old, new))
+        assert values.keys() == {"Machine0", receiver}
+        assert steps.keys() == {"Machine0"}
+        analysed.after(edited, path, text)
+
+    random, near = Random(31), {f"Machine{number % 8}" for number in range(-2, 3)}
+    for _ in range(15):
+        text = random.choice((damage.rename, damage.change_words, damage.change_expressions))(random, text, (text,))
+        values, steps = analysed.after(edited, path, text)
+        assert values.keys() <= near
+        assert steps.keys() <= {"Machine0"}

@@ -44,7 +44,6 @@ from roaml.project.paths import slashed
 from roaml.project.settings import Settings
 from roaml.project.suppress import Suppression, covering, suppressions
 from roaml.project.translation import size_of_translation
-from roaml.project.values import arriving_at, local_values, values_in
 from roaml.record import replace
 from roaml.rules import BY_CODE, RULES
 from roaml.rules.files import file_too_large, unused_suppression
@@ -342,7 +341,7 @@ class _Run:
                 typed = self.analysis.typed_in(self.path, self.system_path)
                 lookups = tuple(self.analysis.interfaces_of(machine))
                 repeated = self.analysis.repeated_types(machine)
-                arriving = arriving_at(self.analysis, self.path, self.system_path)
+                arriving = self.analysis.arriving_at(self.path, self.system_path)
                 return (*parts, typed, lookups, repeated, self.analysis.structs(self.system_path).complete, arriving)
             case FileKind.SYSTEM:
                 listed = tuple((f.path, f.problem, f.kind) for f in self.analysis.listed(self.path))
@@ -507,8 +506,8 @@ class _Run:
             events.get,
             self._machine_gaps(machine),
             self.analysis.repeated_types(machine),
-            local_values(self.analysis, self.path, self.system_path),
-            values_in(self.analysis, self.path, self.system_path),
+            self.analysis.local_values(self.path, self.system_path),
+            self.analysis.values_in(self.path, self.system_path),
         )
 
     def _machine_gaps(self, machine: Machine) -> tuple[PlacedGap, ...]:

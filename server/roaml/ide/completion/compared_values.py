@@ -21,7 +21,6 @@ from roaml.model.values.analyse import DataChannel, data_place
 from roaml.model.values.domain import Constant as ConstantValue
 from roaml.model.values.domain import ValueSet, joined
 from roaml.model.values.evaluate import literal
-from roaml.project.values import arriving_at
 from roaml.text import Decoded
 
 _COMPARED = re.compile(r"((?:[A-Za-z_]\w*\.)*)([A-Za-z_]\w*)\s*[=!]==?\s*\w*\Z", re.ASCII)
@@ -96,5 +95,5 @@ def _arriving(request: Request, place: str) -> ValueSet:
     declaration = find_handle(machine, handler)
     name = declaration.handle if declaration is not None else handler.event
     channel = DataChannel(handler.trigger, name.value if name is not None else "")
-    fields = arriving_at(request.analysis, request.path, request.system_path).get(channel, {})
+    fields = request.analysis.arriving_at(request.path, request.system_path).get(channel, {})
     return fields.get(place.removeprefix(f"{prefix}."), ValueSet())

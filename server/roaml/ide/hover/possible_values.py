@@ -12,7 +12,6 @@ from roaml.model.machine import Chart
 from roaml.model.values.analyse import ChartValues
 from roaml.model.values.describe import described, is_informative
 from roaml.model.values.domain import ANYTHING, ValueSet, joined
-from roaml.project.values import values_in
 
 
 def possible_values(place: Place) -> str:
@@ -22,7 +21,7 @@ def possible_values(place: Place) -> str:
         return ""
     texts: dict[str, None] = {}
     for system in place.systems:
-        known = values_in(place.analysis, place.path, system)
+        known = place.analysis.values_in(place.path, system)
         for chart in machine.charts:
             if chart.scope in known.charts:
                 texts |= dict.fromkeys(_texts(place, chart, known.charts[chart.scope]))

@@ -7,7 +7,7 @@
   its files.
 - An analysis reports no findings; `roaml.project.checking` runs the rules.
 - The work is divided by subject. A module uses only those before it: `sources`, `interfaces`, `tree_files`, `systems`,
-  `families`, `expanding`, `machines`, `gaps`, `linking`. Other packages use only `Analysis`.
+  `families`, `expanding`, `machines`, `gaps`, `linking`, `values`. Other packages use only `Analysis`.
 - A system with parameters or instances is expanded to other texts, which have an analysis of their own (`expanded`).
 """
 
@@ -28,6 +28,7 @@ from roaml.project.analysis.machines import NO_STRUCTS, Machines, Structs
 from roaml.project.analysis.sources import SourceFiles
 from roaml.project.analysis.systems import Systems
 from roaml.project.analysis.tree_files import TreeFiles
+from roaml.project.analysis.values import Values
 from roaml.project.expanded import Expanded
 from roaml.project.files import Files
 from roaml.project.memo import Memo
@@ -82,6 +83,10 @@ class Analysis:
         self._open_files(sources, interfaces)
         self._open_trees(tree_files, families)
         self._open_systems(self._systems, machines, gaps, linking)
+        values = Values(sources, interfaces, self._systems, linking)
+        self.arriving_at = values.arriving_at
+        self.values_in = values.values_in
+        self.local_values = values.local_values
 
     def _open_files(self, sources: SourceFiles, interfaces: Interfaces) -> None:
         self.source = sources.source

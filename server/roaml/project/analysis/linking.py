@@ -70,6 +70,7 @@ class Linking:
         self._machines = machines
         self._gaps = gaps
         self._linked: dict[str, System | None] = {}
+        self._typed: dict[tuple[str, str | None], TypedMachine] = {}
 
     def system(self, path: str) -> System | None:
         """The linked system of a system file; `None` if the file cannot be read, or is not a system file."""
@@ -201,8 +202,11 @@ class Linking:
     def typed_in(self, path: str, system: str | None) -> TypedMachine:
         """The machine in the file `path` with its types, as a part of `system`. If `system` is `None`, the machine is
         not in a system."""
-        linked = self.system(system) if system else None
-        return self._machines.typed(path, system, self._machines.structs(system), linked.event_data if linked else {})
+        if (path, system) not in self._typed:
+            linked = self.system(system) if system else None
+            structs, events = self._machines.structs(system), linked.event_data if linked else {}
+            self._typed[path, system] = self._machines.typed(path, system, structs, events)
+        return self._typed[path, system]
 
     def environment(self, system: str | None) -> Environment:
         """The types that the machines of a system can use. A machine without a system can use only ROS types."""
