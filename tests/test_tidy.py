@@ -131,3 +131,23 @@ def test_nothing_names_a_machine_or_registry() -> None:
         if re.search(r"/work/|/root/|registry\.npmjs|pypi\.org", text):
             wrong.append(name)
     assert not wrong
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda p: p.relative_to(SERVER).as_posix())
+def test_importing_compiles_no_regular_expression(path: Path) -> None:
+    """`roaml.regex` delays the compilation until the first use."""
+    assert list(compiled_at_import(ast.parse(path.read_text(encoding="utf-8")))) == []
+
+
+def compiled_at_import(tree: ast.AST) -> Iterator[int]:
+    """The lines outside of functions that call `re.compile`."""
+    for node in ast.iter_child_nodes(tree):
+        if isinstance(node, ast.Attribute) and ast.unparse(node) == "re.compile":
+            yield node.lineno
+        if not isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
+            yield from compiled_at_import(node)
+
+
+def test_compilation_at_import_is_seen() -> None:
+    text = "import re\nA = [re.compile('a')]\nclass B:\n    c = re.compile('c')\ndef d():\n    return re.compile('d')\n"
+    assert list(compiled_at_import(ast.parse(text))) == [2, 4]

@@ -10,15 +10,14 @@
 
 from __future__ import annotations
 
-import re
-
 from lsprotocol import types
 
+from roaml.regex import regex
 from roaml.text import LineIndex
 
 MARK = "\ufeff"
 
-_SURROGATE = re.compile("[\ud800-\udfff]")
+_SURROGATE = regex("[\ud800-\udfff]")
 
 
 class Units:

@@ -20,12 +20,14 @@ from typing import Any, BinaryIO, TypeGuard
 
 from lsprotocol import types
 
+from roaml.regex import regex
+
 log = logging.getLogger(__name__)
 
-_LENGTH = re.compile(rb"(?:.*[^-])?Content-Length:[ \t]*(\d{1,12})\s*", re.IGNORECASE | re.DOTALL)
+_LENGTH = regex(rb"(?:.*[^-])?Content-Length:[ \t]*(\d{1,12})\s*", re.IGNORECASE | re.DOTALL)
 """A header with the length. It may follow the rest of an invalid message, so that the next message is recognised."""
 
-_FIELD = re.compile(rb"[A-Za-z-]+:")
+_FIELD = regex(rb"[A-Za-z-]+:")
 """The beginning of a header line."""
 
 MAX_MESSAGE_BYTES = 1 << 28

@@ -30,6 +30,7 @@ from pygls.exceptions import JsonRpcException, JsonRpcInvalidRequest, JsonRpcSer
 
 from as2fm_lsp.json_rpc import error_response
 from roaml.record import Record
+from roaml.regex import regex
 
 log = logging.getLogger(__name__)
 
@@ -40,7 +41,7 @@ MAX_WAITING_CONNECTIONS = 16
 
 MAX_FIRST_MESSAGE_BYTES = 1 << 24
 
-_HEADER = re.compile(rb"Content-(?:Length:[ \t]*(?P<length>\d{1,9})|Type:[^\r\n]*)\r?\n", re.IGNORECASE)
+_HEADER = regex(rb"Content-(?:Length:[ \t]*(?P<length>\d{1,9})|Type:[^\r\n]*)\r?\n", re.IGNORECASE)
 _BEGIN = b"content-"
 _MAX_HEADER_LINE_BYTES = 1000
 _ABSENT = (errno.EADDRNOTAVAIL, errno.EAFNOSUPPORT)

@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 import math
-import re
 
 from roaml.record import Record
+from roaml.regex import regex
 
 _SPELLINGS = {">=": ">=", "≥": ">=", "<=": "<=", "≤": "<=", ">": ">", "<": "<", "==": "==", "=": "=="}
-_FORM = re.compile(r"\s*(>=|<=|==|≥|≤|>|<|=)\s*(\S+)\s*")
+_FORM = regex(r"\s*(>=|<=|==|≥|≤|>|<|=)\s*(\S+)\s*")
 
 
 class Comparison(Record, frozen=True):

@@ -22,6 +22,7 @@ from itertools import accumulate
 from typing import NamedTuple
 
 from roaml.record import PartlyCompared, Record
+from roaml.regex import regex
 
 
 class Span(NamedTuple):
@@ -138,7 +139,7 @@ def joined(pieces: Sequence[Decoded]) -> Decoded:
     return Decoded("".join(piece.text for piece in pieces), pieces[0].base, (*sources, end))
 
 
-_LINE_END = re.compile(r"\r\n|\n|\r")
+_LINE_END = regex(r"\r\n|\n|\r")
 
 
 class LineIndex:
@@ -226,7 +227,7 @@ _BOMS = (
     (codecs.BOM_UTF16_LE, "utf-16-le"),
     (codecs.BOM_UTF16_BE, "utf-16-be"),
 )
-_DECLARED = re.compile(r"""^\s*<\?xml[^>]{0,200}?encoding\s*=\s*["']([A-Za-z][\w.-]*)["']""", re.ASCII)
+_DECLARED = regex(r"""^\s*<\?xml[^>]{0,200}?encoding\s*=\s*["']([A-Za-z][\w.-]*)["']""", re.ASCII)
 _MAX_DECLARATION_BYTES = 400
 
 

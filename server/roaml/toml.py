@@ -13,6 +13,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, TypeAlias
 
 from roaml.record import Record
+from roaml.regex import regex
 from roaml.text import LineIndex, Position, Span
 
 Path: TypeAlias = "tuple[str | int, ...]"
@@ -36,7 +37,7 @@ class TomlError(ValueError):
         self.span = span
 
 
-_WHERE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)\Z")
+_WHERE = regex(r" \(at (?:line (\d+), column (\d+)|end of document)\)\Z")
 
 
 def _parsed(text: str) -> dict[str, Any]:
@@ -88,8 +89,8 @@ MAX_KEY_PARTS = 20
 """The maximum number of parts of a dotted key. No setting has more than three."""
 
 # Each alternative also matches a text that is not complete, so that no position is examined twice.
-_PART = re.compile(r"""[A-Za-z0-9_-]+|"(?:[^"\\\n]|\\.)*"?|'[^'\n]*'?""")
-_TOKEN = re.compile(
+_PART = regex(r"""[A-Za-z0-9_-]+|"(?:[^"\\\n]|\\.)*"?|'[^'\n]*'?""")
+_TOKEN = regex(
     r"#[^\n]*"
     r'|"""(?:[^\\]|\\.)*?(?:"""|\Z)'
     r"|'''.*?(?:'''|\Z)"
@@ -100,15 +101,15 @@ _TOKEN = re.compile(
 _MAX_DEPTH = 8
 """The maximum nesting depth of values whose positions are recorded."""
 
-_SPACE = re.compile(r"[ \t]*")
-_BLANK = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")
-_KEY = re.compile(r"""[A-Za-z0-9_-]+|"(?:[^"\\]|\\.)*"|'[^']*'""")
-_STRING = re.compile(
+_SPACE = regex(r"[ \t]*")
+_BLANK = regex(r"(?:[ \t\r\n]|#[^\n]*)*")
+_KEY = regex(r"""[A-Za-z0-9_-]+|"(?:[^"\\]|\\.)*"|'[^']*'""")
+_STRING = regex(
     r'"""(?:[^\\]|\\.)*?"{3,5}(?!")' r"|'''.*?'{3,5}(?!')" r'|"(?:[^"\\\n]|\\.)*"' r"|'[^'\n]*'",
     re.DOTALL,
 )
-_BARE = re.compile(r"[^,\]}#\n]*")
-_WORD = re.compile(r"[^,=\[\]{}#\s\"']+")
+_BARE = regex(r"[^,\]}#\n]*")
+_WORD = regex(r"[^,=\[\]{}#\s\"']+")
 
 
 def places(text: str) -> Places:

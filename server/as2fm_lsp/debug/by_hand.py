@@ -15,13 +15,14 @@ from roaml.debugging.evaluate import evaluate, parsed
 from roaml.debugging.frames import Frame
 from roaml.debugging.scopes import ScopeEntry
 from roaml.debugging.values import Value, shown, type_of
+from roaml.regex import regex
 from roaml.simulation import RunError
 from roaml.simulation.intervention import Intervention
 from roaml.smc.fault import FaultError
 from roaml.views.event_words import event_phrase
 
-_COMMAND = re.compile(r"\s*(publish|call|send)\s+(\S+)\s*(.*)", re.DOTALL)
-_BEGINNING = re.compile(r"\s*(publish|call|send)\s+(\S*)")
+_COMMAND = regex(r"\s*(publish|call|send)\s+(\S+)\s*(.*)", re.DOTALL)
+_BEGINNING = regex(r"\s*(publish|call|send)\s+(\S*)")
 
 
 def is_command(text: str) -> bool:

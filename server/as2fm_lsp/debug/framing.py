@@ -14,10 +14,12 @@ from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, BinaryIO, Protocol
 
+from roaml.regex import regex
+
 MAX_BODY = 1 << 26
 """The maximum length of a message in bytes; a longer one is skipped."""
 MAX_HEADER_LINE = 4096
-_LENGTH = re.compile(rb"\s*content-length\s*:\s*(\d{1,18})\s*", re.IGNORECASE)
+_LENGTH = regex(rb"\s*content-length\s*:\s*(\d{1,18})\s*", re.IGNORECASE)
 
 Message = Mapping[str, Any]
 

@@ -7,8 +7,6 @@ The protocol has no command that requests completions. A client that has one nam
 
 from __future__ import annotations
 
-import re
-
 from lsprotocol import types
 
 from as2fm_lsp.context import Context
@@ -16,6 +14,7 @@ from as2fm_lsp.handlers.requested_document import requested_document
 from as2fm_lsp.handlers.symbols import pack, unpack
 from as2fm_lsp.markup import documentation
 from roaml.ide.completion import TRIGGERS, CompletionItem, ItemKind, complete, document, plain
+from roaml.regex import regex
 
 _KINDS = {
     ItemKind.ELEMENT: types.CompletionItemKind.Class,
@@ -64,7 +63,7 @@ def register(context: Context) -> None:
         return item
 
 
-_EMPTY_VALUE = re.compile(r"""=["']\$1\b""")
+_EMPTY_VALUE = regex(r"""=["']\$1\b""")
 """Matches a snippet whose first placeholder is the value of an attribute, without a choice of texts. The editor lists
 the texts of a choice itself."""
 

@@ -8,16 +8,16 @@ explains each of them once.
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 from roaml.jani.model import Model
+from roaml.regex import regex
 from roaml.scxml.names import NODE_AUTOMATON, TreeEventKind, tree_event_name
 
 if TYPE_CHECKING:
     from roaml.views.story import PlaceOf
 
-_MENTIONED = re.compile(r"\bbt_(\d+)(?=_|\b)")
+_MENTIONED = regex(r"\bbt_(\d+)(?=_|\b)")
 
 
 def explained(text: str, model: Model, place_of: PlaceOf) -> str:

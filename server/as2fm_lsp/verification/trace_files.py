@@ -11,12 +11,12 @@ from __future__ import annotations
 import csv
 import json
 import os
-import re
 from collections.abc import Iterable, Iterator, Sequence
 
 from as2fm_lsp.outputs import OutputFiles
 from roaml.jani.node import Origin
 from roaml.project.paths import seen_from
+from roaml.regex import regex
 from roaml.simulation.table import cells_of, suffixes_of
 from roaml.smc.end import End
 from roaml.smc.record import VERDICTS, Plain, Recorder, Recording, TraceStep
@@ -28,7 +28,7 @@ from roaml.views.waiting import waits
 
 DEFAULT_LIMIT = 10
 """The maximum number of traces of each verdict that are written, in addition to the shortest one."""
-_UNSAFE = re.compile(r"[^\w.-]")
+_UNSAFE = regex(r"[^\w.-]")
 
 
 def write_traces(

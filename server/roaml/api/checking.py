@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterable, Mapping
 
 from roaml.api.jani_files import PathError
@@ -19,6 +18,7 @@ from roaml.project.paths import is_below
 from roaml.project.settings import Settings, ament_prefixes, enclosing_root
 from roaml.project.workspace import Snapshot, Workspace
 from roaml.record import Record, replace
+from roaml.regex import regex
 from roaml.text import SourceFile
 
 
@@ -108,7 +108,7 @@ def fix(result: CheckResult) -> dict[str, bytes]:
     return {path: sources[path].encode(text) for path, text in texts.items()}
 
 
-_HALF = re.compile("[\ud800-\udfff]")
+_HALF = regex("[\ud800-\udfff]")
 
 
 def _is_text(text: str) -> bool:

@@ -19,6 +19,7 @@ from roaml.debugging.values import SEPARATOR, shown
 from roaml.expr.tree import Expr
 from roaml.jani.node import Origin
 from roaml.record import Record, field
+from roaml.regex import regex
 from roaml.scxml.names import STATUSES, TreeEventKind, read_tree_event, received_by, sent_by
 from roaml.simulation.session import Session
 from roaml.simulation.verdicts import Decided
@@ -122,7 +123,7 @@ def _hit_condition(text: str) -> Callable[[int], bool]:
     }.get(relation, lambda hits: hits == number)
 
 
-_BRACES = re.compile(r"\{([^{}]*)\}")
+_BRACES = regex(r"\{([^{}]*)\}")
 
 
 def logged(message: str, scope: Scope) -> str:

@@ -10,19 +10,19 @@ applied.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache, partial, wraps
 from typing import ParamSpec
 
 from roaml.diagnostics import Fix
+from roaml.regex import regex
 from roaml.text import Edit, Span, TextEdit
 from roaml.xml_syntax import Attribute, Comment, Document, Element, Node, Text
 
 P = ParamSpec("P")
 
 _LEVEL = "    "
-_LINE_END = re.compile(r"\r\n|\n|\r")
+_LINE_END = regex(r"\r\n|\n|\r")
 
 
 def _lazy(function: Callable[P, TextEdit]) -> Callable[P, Callable[[], TextEdit]]:

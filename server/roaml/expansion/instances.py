@@ -15,13 +15,14 @@ from roaml.model.build_machine import INTERFACE_ATTRIBUTES
 from roaml.model.syntax import Name, name_of
 from roaml.model.system_file import SystemSection
 from roaml.record import Record
+from roaml.regex import regex
 from roaml.roles import SymbolKind
 from roaml.text import Span, TextEdit
 from roaml.xml_syntax import Attribute, Document, Element
 
 REMAP = "remap"
-_NAME = re.compile(r"[A-Za-z_]\w*\Z", re.ASCII)
-_NAMESPACE = re.compile(r"/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*/?\Z", re.ASCII)
+_NAME = regex(r"[A-Za-z_]\w*\Z", re.ASCII)
+_NAMESPACE = regex(r"/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*/?\Z", re.ASCII)
 
 
 class Remap(Record, frozen=True, eq=False):

@@ -20,17 +20,18 @@ from roaml.expr.types import ScalarKind
 from roaml.language import BEHAVIOR_TREE, Grammar
 from roaml.language.grammar import ElementType
 from roaml.record import Record
+from roaml.regex import regex
 from roaml.roles import ValueRole
 from roaml.suggest import close_names, did_you_mean
 from roaml.text import Decoded, Span, TextEdit
 from roaml.xml_syntax import Attribute, Document, Element
 
-VARIABLE = re.compile(r"\$\(var\s+([^\s()]*)\s*\)")
+VARIABLE = regex(r"\$\(var\s+([^\s()]*)\s*\)")
 """The substitution `$(var NAME)`."""
 
-_DIMENSION = re.compile(r"\[([^\[\]]*)\]")
+_DIMENSION = regex(r"\[([^\[\]]*)\]")
 _EXPRESSIONS = (ValueRole.EXPRESSION, ValueRole.CONSTANT, ValueRole.LOCATION)
-_PLAIN_NUMBER = re.compile(r"\s*[-+]?[\d.]*([eE][-+]?\d+)?\s*\Z")
+_PLAIN_NUMBER = regex(r"\s*[-+]?[\d.]*([eE][-+]?\d+)?\s*\Z")
 
 
 class ParameterUse(Record, frozen=True):
@@ -213,7 +214,7 @@ class ParameterUses:
         self._problems.add(ExpansionProblem.UNKNOWN, span, message, close=close)
 
 
-_UNIT = re.compile(r"\s+(?:s|ms|us|ns)\s*\Z")
+_UNIT = regex(r"\s+(?:s|ms|us|ns)\s*\Z")
 """The unit of a duration, such as `20 ms`, after an expression."""
 
 

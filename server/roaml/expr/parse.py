@@ -38,6 +38,7 @@ from roaml.expr.tree import (
 )
 from roaml.expr.words import PREFIXES, STATEMENTS
 from roaml.record import replace
+from roaml.regex import regex
 from roaml.text import Decoded, Span, TextEdit
 
 MAX_DEPTH = 150
@@ -70,7 +71,7 @@ class ExpressionToken(NamedTuple):
     end: int
 
 
-_TOKEN = re.compile(
+_TOKEN = regex(
     r"""\s*(?:
       (?P<number>0[xX][0-9a-fA-F]+ | (?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)
     | (?P<name>[^\W\d][\w$]*|\$[\w$]*)
@@ -83,15 +84,15 @@ _TOKEN = re.compile(
     re.VERBOSE | re.DOTALL,
 )
 # The most common expressions: a name, a member of a name, and a decimal number.
-_SIMPLE_PATH = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*){0,8}\Z", re.ASCII)
-_SIMPLE_NUMBER = re.compile(r"(?:0|[1-9]\d{0,14})(\.\d{1,15})?\Z", re.ASCII)
-_ESCAPE = re.compile(r"\\(?:u\{([0-9a-fA-F]+)\}|u([0-9a-fA-F]{4})|x([0-9a-fA-F]{2})|(\r\n|.))", re.DOTALL)
+_SIMPLE_PATH = regex(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*){0,8}\Z", re.ASCII)
+_SIMPLE_NUMBER = regex(r"(?:0|[1-9]\d{0,14})(\.\d{1,15})?\Z", re.ASCII)
+_ESCAPE = regex(r"\\(?:u\{([0-9a-fA-F]+)\}|u([0-9a-fA-F]{4})|x([0-9a-fA-F]{2})|(\r\n|.))", re.DOTALL)
 _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f", "v": "\v", "0": "\0", "\n": "", "\r\n": ""}
 
 _MAX_REMEMBERED_LENGTH = 500
 """The maximum number of characters of an expression that is cached."""
 
-_SURROGATE = re.compile("[\ud800-\udfff]")
+_SURROGATE = regex("[\ud800-\udfff]")
 
 _BITS = "bit operations are not supported"
 _STORE = "use `<assign>` to store a value"

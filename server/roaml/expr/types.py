@@ -14,6 +14,7 @@ from typing import TypeAlias
 
 from roaml.exhaustive import Vocabulary
 from roaml.record import Record
+from roaml.regex import regex
 
 
 class ScalarKind(Vocabulary):
@@ -119,7 +120,7 @@ BASE_TYPES: dict[str, Scalar] = {
     "string": STRING,
 }
 
-_TYPE = re.compile(r"([A-Za-z_]\w*)((?:\[\d*\])*)\Z", re.ASCII)
+_TYPE = regex(r"([A-Za-z_]\w*)((?:\[\d*\])*)\Z", re.ASCII)
 
 
 class TypeName(Record, frozen=True):

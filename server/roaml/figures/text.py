@@ -11,6 +11,8 @@ import re
 import unicodedata
 from collections.abc import Iterator, Sequence
 
+from roaml.regex import regex
+
 SMALL, MEDIUM = 12.0, 14.0
 """The sizes of fonts, in pixels. No text is smaller than `SMALL`."""
 LINE_HEIGHT = 1.4
@@ -38,7 +40,7 @@ _WIDTHS = {
 
 _PARTS = tuple(
     map(
-        re.compile,
+        regex,
         (
             r"\S+\s*|^\s+",
             r"[^/._,;(){}\[\]=&|:+*-]*[/._,;(){}\[\]=&|:+*-]+\s*|[^/._,;(){}\[\]=&|:+*-]+",

@@ -8,6 +8,7 @@ import re
 
 from roaml.libraries.scripts import SCRIPT
 from roaml.record import Record
+from roaml.regex import regex
 
 STRING, ANY = "string", "any"
 
@@ -37,9 +38,9 @@ _REALS = ("double", "float", "chrono::milliseconds", "chrono::seconds")
 _BOOLS = ("0", "1", "true", "false", "True", "False", "TRUE", "FALSE")
 _STATUSES = ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED")
 
-_INTEGER = re.compile(r"[+-]?[0-9]+")
-_REAL = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*(?:[eE][+-]?[0-9]+)?|\.[0-9]+(?:[eE][+-]?[0-9]+)?|inf(?:inity)?|nan)", re.I)
-_LIST = re.compile(r"(?:vector|queue|SharedQueue|deque)<(.*)>\Z")
+_INTEGER = regex(r"[+-]?[0-9]+")
+_REAL = regex(r"[+-]?(?:[0-9]+\.?[0-9]*(?:[eE][+-]?[0-9]+)?|\.[0-9]+(?:[eE][+-]?[0-9]+)?|inf(?:inity)?|nan)", re.I)
+_LIST = regex(r"(?:vector|queue|SharedQueue|deque)<(.*)>\Z")
 
 
 def normal(written: str) -> str:

@@ -23,6 +23,7 @@ from roaml.libraries.programs.assembly import programs
 from roaml.libraries.scripts import SCRIPT
 from roaml.model.tree import PortSetting, Tree, TreeNode, blackboard_variable
 from roaml.record import Record
+from roaml.regex import regex
 from roaml.roles import Direction
 from roaml.script.names import names_in
 from roaml.text import Span
@@ -34,7 +35,7 @@ Key: TypeAlias = tuple[str, str]
 """The name of a tree, and the name of an entry in it."""
 
 _TRUE = ("1", "true", "True", "TRUE")
-_NAME = re.compile(r"@?[A-Za-z_][\w.:-]*\Z", re.ASCII)
+_NAME = regex(r"@?[A-Za-z_][\w.:-]*\Z", re.ASCII)
 
 
 class Use(Record, frozen=True):

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 
 from roaml.expr.operators import Operator
@@ -13,11 +12,12 @@ from roaml.jani.operators import BINARY_OPERATORS
 from roaml.json_syntax import JsonNumber, JsonString, JsonValue
 from roaml.model.property_file import Port, PortKind, PortVariable, PortVariableKind, PropertyFile
 from roaml.model.value_types import GOAL_STATUSES
+from roaml.regex import regex
 from roaml.scxml.names import STATUSES
 
 _STATUS_NAMES: Mapping[int, str] = {number: name for name, number in STATUSES.items()}
-_STATUS = re.compile(r"bt_\d+_response__status")
-_CODE = re.compile(r"\w+_result(?:_handle_client_\w+)?__code")
+_STATUS = regex(r"bt_\d+_response__status")
+_CODE = regex(r"\w+_result(?:_handle_client_\w+)?__code")
 _COMPARISONS = ("=", "≠", "<", "≤", ">", "≥")
 _COMPARING = frozenset(
     (

@@ -8,7 +8,6 @@
 from __future__ import annotations
 
 import enum
-import re
 from collections.abc import Iterable, Iterator
 from functools import cache, lru_cache
 from operator import attrgetter
@@ -24,6 +23,7 @@ from roaml.model.kinds import FileKind
 from roaml.model.syntax import name_of
 from roaml.model.tree import blackboard_variable
 from roaml.project.analysis import Analysis
+from roaml.regex import regex
 from roaml.roles import NodeKind, SymbolKind, ValueRole
 from roaml.text import Decoded, Span
 from roaml.xml_syntax import Attribute
@@ -86,7 +86,7 @@ def semantic_tokens(analysis: Analysis, path: str, within: Span | None = None) -
     return tuple(_on_lines(source.text, sorted(tokens, key=attrgetter("span"))))
 
 
-_LINE = re.compile(r"[^\r\n]+")
+_LINE = regex(r"[^\r\n]+")
 
 
 def _on_lines(text: str, tokens: Iterable[SemanticToken]) -> Iterator[SemanticToken]:

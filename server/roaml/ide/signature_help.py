@@ -13,11 +13,12 @@ from roaml.ide.describe import language as describe_language
 from roaml.ide.syntax import expression_at, xml_file
 from roaml.project.analysis import Analysis
 from roaml.record import Record
+from roaml.regex import regex
 
 TRIGGERS = ("(", ",")
 
-_TOKEN = re.compile(r"'(?:\\.|[^'\\])*(?:'|\Z)|\"(?:\\.|[^\"\\])*(?:\"|\Z)|[()\[\]{},]", re.DOTALL)
-_CALLED = re.compile(r"Math\s*\.\s*(\w+)\s*\Z")
+_TOKEN = regex(r"'(?:\\.|[^'\\])*(?:'|\Z)|\"(?:\\.|[^\"\\])*(?:\"|\Z)|[()\[\]{},]", re.DOTALL)
+_CALLED = regex(r"Math\s*\.\s*(\w+)\s*\Z")
 _PAIRS = {")": "(", "]": "[", "}": "{"}
 
 

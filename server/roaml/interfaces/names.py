@@ -10,10 +10,12 @@ from __future__ import annotations
 import keyword
 import re
 
-PACKAGE_NAME = re.compile(r"[a-z][a-z0-9]*(?:_[a-z0-9]+)*")
+from roaml.regex import regex
+
+PACKAGE_NAME = regex(r"[a-z][a-z0-9]*(?:_[a-z0-9]+)*")
 FIELD_NAME = PACKAGE_NAME
-CONSTANT_NAME = re.compile(r"[A-Z][A-Z0-9]*(?:_[A-Z0-9]+)*")
-TYPE_NAME = re.compile(r"[A-Z][A-Za-z0-9]*")
+CONSTANT_NAME = regex(r"[A-Z][A-Z0-9]*(?:_[A-Z0-9]+)*")
+TYPE_NAME = regex(r"[A-Z][A-Za-z0-9]*")
 
 _CPP_KEYWORDS = """
     alignas alignof and and_eq asm auto bitand bitor bool break case catch char class compl const const_cast constexpr

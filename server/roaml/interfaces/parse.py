@@ -13,7 +13,6 @@ Source of the syntax: the ROS 2 documentation, "About ROS 2 interfaces", and `ro
 
 from __future__ import annotations
 
-import re
 from typing import NamedTuple
 
 from roaml.diagnostics import Finding, Related, Severity
@@ -23,16 +22,17 @@ from roaml.interfaces.type_syntax import find_type, parse_type
 from roaml.interfaces.types import KIND_NAMES, SECTION_NAMES, Constant, Definition, Field, FieldType, Kind, Section
 from roaml.interfaces.values import parse_scalar, parse_value, skip_blanks, value_end
 from roaml.record import Record, field, replace
+from roaml.regex import regex
 from roaml.text import Span
 
 MAX_LENGTH = 1_000_000
 """The maximum number of characters of a definition that are read. The line that crosses this limit and all lines after
 it are not read. Real definitions are a hundred times shorter."""
 
-_LINE = re.compile(r"([^\r\n]*)(?:\r\n|\r|\n|\Z)")
-_NAME = re.compile(r"[^ \t#=]+")
-_DASHES = re.compile(r"--+")
-_NAME_AND_SIZE = re.compile(r"([^\[]+)(\[[^\]]*\])")
+_LINE = regex(r"([^\r\n]*)(?:\r\n|\r|\n|\Z)")
+_NAME = regex(r"[^ \t#=]+")
+_DASHES = regex(r"--+")
+_NAME_AND_SIZE = regex(r"([^\[]+)(\[[^\]]*\])")
 _PLACEHOLDER = "structure_needs_at_least_one_member"
 
 

@@ -9,7 +9,6 @@
 from __future__ import annotations
 
 import enum
-import re
 from collections.abc import Callable, Iterable, Iterator
 
 from roaml.diagnostics import Finding
@@ -18,6 +17,7 @@ from roaml.interfaces.parse import parse
 from roaml.interfaces.search import SearchPath
 from roaml.interfaces.types import KIND_NAMES, KINDS, Definition, Kind
 from roaml.record import Record, replace
+from roaml.regex import regex
 from roaml.suggest import are_similar, close_names, did_you_mean
 from roaml.text import SourceFile
 
@@ -25,8 +25,8 @@ _MAX_CLOSE = 3
 """The maximum number of similar names that are suggested."""
 _MAX_NAME_LENGTH = 100
 """The number of characters at the beginning of a malformed name for which similar names are searched."""
-_KIND_SUFFIX = re.compile("_(?:msg|srv|interface|action)s?$")
-_WORD_BREAKS = re.compile(r"[^A-Za-z0-9_]+")
+_KIND_SUFFIX = regex("_(?:msg|srv|interface|action)s?$")
+_WORD_BREAKS = regex(r"[^A-Za-z0-9_]+")
 
 
 class Reason(enum.Enum):

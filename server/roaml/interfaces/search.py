@@ -22,6 +22,7 @@ from typing import NamedTuple, Protocol, TypeAlias
 from roaml.disk import read
 from roaml.interfaces.names import PACKAGE_NAME, TYPE_NAME
 from roaml.interfaces.types import KINDS, Kind
+from roaml.regex import regex
 
 MAX_DEPTH = 6
 """The maximum depth of packages below a workspace or `--ros-path` folder."""
@@ -41,8 +42,8 @@ _Files: TypeAlias = Mapping[Kind, Mapping[str, str]]
 _NO_FILES: _Files = {kind: {} for kind in KINDS}
 _PACKAGE_XML_HEAD = 8192
 """The number of bytes at the beginning of a `package.xml` that are searched for the name of the package."""
-_XML_COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
-_XML_NAME = re.compile(r"<name>\s*([^<>\s]+)\s*</name>")
+_XML_COMMENT = regex(r"<!--.*?(?:-->|\Z)", re.DOTALL)
+_XML_NAME = regex(r"<name>\s*([^<>\s]+)\s*</name>")
 
 
 class SearchPath:

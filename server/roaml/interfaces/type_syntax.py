@@ -6,17 +6,16 @@ Any text gives a type: errors are reported, and the readable part is kept.
 
 from __future__ import annotations
 
-import re
-
 from roaml.diagnostics import Severity
 from roaml.interfaces.names import PACKAGE_NAME, TYPE_NAME
 from roaml.interfaces.report import FileFindings, shorten
 from roaml.interfaces.types import FOREIGN_TYPES, PRIMITIVES, STRINGS, ArrayKind, FieldType
+from roaml.regex import regex
 from roaml.suggest import close_names, did_you_mean
 from roaml.text import Span
 
-_TOKEN = re.compile(r"[^ \t#<\[]*(?:[ \t]*<=?[ \t]*[^ \t#\[]*)?(?:[ \t]*\[(?:[^\]#]{0,30}\]|[^ \t\]#]*))*[^ \t#]*")
-_LIMIT = re.compile(r"[0-9]{1,10}")
+_TOKEN = regex(r"[^ \t#<\[]*(?:[ \t]*<=?[ \t]*[^ \t#\[]*)?(?:[ \t]*\[(?:[^\]#]{0,30}\]|[^ \t\]#]*))*[^ \t#]*")
+_LIMIT = regex(r"[0-9]{1,10}")
 _GREATEST_LIMIT = 2**32 - 1  # lengths are sent as uint32
 
 _FOREIGN_TYPES = {**FOREIGN_TYPES, "octet": "byte"}

@@ -13,14 +13,15 @@ from collections.abc import Iterator
 
 from roaml.interfaces.report import FileFindings, shorten
 from roaml.interfaces.types import FLOATS, INTEGER_RANGES, STRINGS, ArrayKind, FieldType, Scalar, Value
+from roaml.regex import regex
 from roaml.text import Span
 
 _QUOTED = r'"[^"\\\r\n]*(?:\\.[^"\\\r\n]*)*"' + r"|'[^'\\\r\n]*(?:\\.[^'\\\r\n]*)*'"
-_STRING = re.compile(_QUOTED)
-_LIST = re.compile(rf"\[(?:[^\]\"'#]+|{_QUOTED})*\]?")
-_INTEGER = re.compile(r"[+-]?(?:[0-9]+|0[xX][0-9a-fA-F]+|0[oO][0-7]+|0[bB][01]+)")
-_FLOAT = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
-_ESCAPE = re.compile(r"\\(?:x([0-9a-fA-F]{2})|u((?![dD][89a-fA-F])[0-9a-fA-F]{4})|([abfnrtv\\\"']))")
+_STRING = regex(_QUOTED)
+_LIST = regex(rf"\[(?:[^\]\"'#]+|{_QUOTED})*\]?")
+_INTEGER = regex(r"[+-]?(?:[0-9]+|0[xX][0-9a-fA-F]+|0[oO][0-7]+|0[bB][01]+)")
+_FLOAT = regex(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_ESCAPE = regex(r"\\(?:x([0-9a-fA-F]{2})|u((?![dD][89a-fA-F])[0-9a-fA-F]{4})|([abfnrtv\\\"']))")
 _SIMPLE_ESCAPES = dict(zip("abfnrtv\\\"'", "\a\b\f\n\r\t\v\\\"'", strict=True))
 _BOOLS = {"true": True, "1": True, "false": False, "0": False}
 _GREATEST_FLOAT = {"float32": 3.4028234663852886e38, "float64": 1.7976931348623157e308}

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from contextlib import suppress
 
@@ -13,9 +12,10 @@ from roaml.jani.model import Constant, Model
 from roaml.jani.semantics import EvaluationError, Value, evaluate
 from roaml.jani.types import BOOL, INT, REAL, BasicType, BoundedType
 from roaml.record import replace
+from roaml.regex import regex
 from roaml.suggest import nearest_name
 
-_INTEGER = re.compile(r"[+-]?[0-9]{1,19}")
+_INTEGER = regex(r"[+-]?[0-9]{1,19}")
 _TYPE_PHRASES: dict[BasicType, str] = {
     BOOL: "true or false",
     INT: "a whole number of 64 bits",

@@ -14,12 +14,13 @@
 
 from __future__ import annotations
 
-import re
 from typing import Any, NamedTuple, TypeAlias
+
+from roaml.regex import regex
 
 Json: TypeAlias = Any
 
-_TOKEN = re.compile(
+_TOKEN = regex(
     r"\s*(?:(?P<number>\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?)|(?P<quoted>\"[^\"]*\")"
     r"|(?P<name>[^\W\d][\w.]*)|(?P<mark><=>|=>|<=|>=|!=|==|&&|\|\||[-+*/()\[\]{},?:=<>&|!⇒⇔≤≥≠¬∧∨]))"
 )
@@ -28,7 +29,7 @@ _SPELLINGS = {
     "¬": "!",
 }  # fmt: skip
 _JANI = {"&": "∧", "|": "∨", "=>": "⇒", "<=": "≤", ">=": "≥", "!=": "≠"}
-_HEAD = re.compile(r"(?P<kind>[PR])(?P<extreme>min|max)?")
+_HEAD = regex(r"(?P<kind>[PR])(?P<extreme>min|max)?")
 _FUNCTIONS = {
     "min": "min", "max": "max", "mod": "%", "pow": "pow", "log": "log", "floor": "floor", "ceil": "ceil",
 }  # fmt: skip

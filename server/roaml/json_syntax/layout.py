@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
 
-_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[^\[\]{},:"]+|[\[{][\]}]?|[\]},:]')
+from roaml.regex import regex
+
+_TOKEN = regex(r'"(?:[^"\\]|\\.)*"|[^\[\]{},:"]+|[\[{][\]}]?|[\]},:]')
 
 
 def indented(chunks: Iterable[str], indent: int) -> Iterator[str]:

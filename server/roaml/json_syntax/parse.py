@@ -10,7 +10,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from typing import Any, NoReturn
 
@@ -31,6 +30,7 @@ from roaml.json_syntax.values import (
     Nulls,
 )
 from roaml.record import replace
+from roaml.regex import regex
 from roaml.text import Span, TextEdit
 
 MAX_FINDINGS = 100
@@ -45,7 +45,7 @@ def parse(text: str) -> tuple[JsonValue, tuple[Finding, ...]]:
 
 
 _SPACE = r"[ \t\n\r]*"
-_TOKEN = re.compile(
+_TOKEN = regex(
     rf"{_SPACE}(,)?{_SPACE}(?:"
     rf'"([^"\\\x00-\x1f]*)"(?:{_SPACE}(:))?'
     r"|(-?(?:0|[1-9][0-9]*))((?:\.[0-9]+)?[eE][+-]?[0-9]+|\.[0-9]+)?(?![\w.+-])"
@@ -58,24 +58,24 @@ _TOKEN = re.compile(
 """An ordinary token with the comma before it. Always matches; `lastindex` identifies the token."""
 _STRING, _KEY, _INTEGER, _REAL, _BOOL, _NULLS, _OPEN, _CLOSE = 2, 3, 4, 5, 6, 7, 8, 9
 
-_COLON = re.compile(rf"{_SPACE}:")
-_ASSIGNMENT = re.compile(r"=>?")
-_NAME_AND_COLON = re.compile(r"([\w-]+)\s*:")
+_COLON = regex(rf"{_SPACE}:")
+_ASSIGNMENT = regex(r"=>?")
+_NAME_AND_COLON = regex(r"([\w-]+)\s*:")
 """The text of a key without a closing quote, and the colon after it."""
 _STRING_BODY = {
-    '"': re.compile(r'((?:[^"\\\n\r]|\\[^\n\r])*)(")?'),
-    "'": re.compile(r"((?:[^'\\\n\r]|\\[^\n\r])*)(')?"),
+    '"': regex(r'((?:[^"\\\n\r]|\\[^\n\r])*)(")?'),
+    "'": regex(r"((?:[^'\\\n\r]|\\[^\n\r])*)(')?"),
 }
 _DELIMITERS = " \t,]}\\"
-_WORD = re.compile(r"""(?:(?!//|/\*)[^,:;\[\]{}"\n\r])+""")
+_WORD = regex(r"""(?:(?!//|/\*)[^,:;\[\]{}"\n\r])+""")
 _INTERLUDES = (
-    (re.compile(rf",(?:{_SPACE},)*"), "surplus comma; remove it", ""),
-    (re.compile(r"//[^\n\r]*|/\*(?:[^*]|\*(?!/))*(?:\*/)?|#[^\n\r]*"), "JSON does not support comments", ""),
-    (re.compile(r"[^\S \t\n\r]+|\ufeff+"), "this character is not white space in JSON", " "),
-    (re.compile(";"), "values must be separated by commas", ","),
+    (regex(rf",(?:{_SPACE},)*"), "surplus comma; remove it", ""),
+    (regex(r"//[^\n\r]*|/\*(?:[^*]|\*(?!/))*(?:\*/)?|#[^\n\r]*"), "JSON does not support comments", ""),
+    (regex(r"[^\S \t\n\r]+|\ufeff+"), "this character is not white space in JSON", " "),
+    (regex(";"), "values must be separated by commas", ","),
 )
 """Invalid text that is skipped: its pattern, the message of its finding, and the text that replaces it."""
-_SLOPPY_NUMBER = re.compile(r"([+-]?)([0-9]*)(?:\.([0-9]*))?(?:[eE]([+-]?[0-9]+))?\Z")
+_SLOPPY_NUMBER = regex(r"([+-]?)([0-9]*)(?:\.([0-9]*))?(?:[eE]([+-]?[0-9]+))?\Z")
 _FOREIGN_LITERALS = {"True": "true", "TRUE": "true", "False": "false", "FALSE": "false", "None": "null", "NULL": "null"}
 _NO_NUMBERS = {"nan", "infinity", "inf"}
 

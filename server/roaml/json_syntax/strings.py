@@ -7,6 +7,7 @@ import re
 from json.encoder import encode_basestring
 from typing import NamedTuple
 
+from roaml.regex import regex
 from roaml.text import Span, TextEdit
 
 _SIMPLE_ESCAPES = {
@@ -19,7 +20,7 @@ _SIMPLE_ESCAPES = {
     "r": "\r",
     "t": "\t",
 }
-_SPECIAL = re.compile(
+_SPECIAL = regex(
     r"\\u([dD][89abAB][0-9a-fA-F]{2})\\u([dD][c-fC-F][0-9a-fA-F]{2})"  # two halves of one character
     r"|\\u([0-9a-fA-F]{4})"
     r'|\\(["\\/bfnrt])'
@@ -27,7 +28,7 @@ _SPECIAL = re.compile(
     r"|([\x00-\x1f])",
     re.DOTALL,
 )
-_SURROGATE = re.compile("[\ud800-\udfff]")
+_SURROGATE = regex("[\ud800-\udfff]")
 
 
 class StringProblem(NamedTuple):

@@ -17,6 +17,7 @@ from typing import Any, TypeAlias
 from roaml.language.grammar import AttributeType, ElementType, Grammar, Multiplicity, SimpleType
 from roaml.language.resources import schema_path
 from roaml.record import Record
+from roaml.regex import regex
 from roaml.roles import UNBOUNDED
 from roaml.text import Span
 from roaml.xml_syntax import Attribute, CData, Document, Element, Text
@@ -261,9 +262,9 @@ def unmet(simple: SimpleType, value: str) -> str:
     return ""
 
 
-_INTEGER = re.compile(r"[+-]?\d+\Z", re.ASCII)
-_DECIMAL = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)\Z", re.ASCII)
-_DOUBLE = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\Z", re.ASCII)
+_INTEGER = regex(r"[+-]?\d+\Z", re.ASCII)
+_DECIMAL = regex(r"[+-]?(\d+(\.\d*)?|\.\d+)\Z", re.ASCII)
+_DOUBLE = regex(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\Z", re.ASCII)
 _NUMBERS: dict[str, tuple[re.Pattern[str], str, float | None]] = {
     "integer": (_INTEGER, "a whole number", None),
     "nonNegativeInteger": (_INTEGER, "a whole number, at least 0", 0),

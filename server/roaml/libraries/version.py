@@ -6,10 +6,12 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
+from roaml.regex import regex
+
 _LATEST = 999
 """The number that represents the latest patch of a minor version, or the latest minor version."""
 
-_TEXT = re.compile(r"4\.([0-9]{1,3})(?:\.([0-9]{1,3}))?\Z", re.ASCII)
+_TEXT = regex(r"4\.([0-9]{1,3})(?:\.([0-9]{1,3}))?\Z", re.ASCII)
 
 
 class Version(NamedTuple):

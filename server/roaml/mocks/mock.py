@@ -3,16 +3,16 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 from fractions import Fraction
 
 from roaml.record import Record
+from roaml.regex import regex
 from roaml.text import Span
 
-_MOCK = re.compile(r"(?P<name>.+?)\s*:\s*(?P<probability>[^\s:]+)(?:\s+in\s+(?P<duration>.+))?\Z")
-_DURATION = re.compile(r"(\d+(?:\.\d+)?)\s*(ms|s|min)\Z")
+_MOCK = regex(r"(?P<name>.+?)\s*:\s*(?P<probability>[^\s:]+)(?:\s+in\s+(?P<duration>.+))?\Z")
+_DURATION = regex(r"(\d+(?:\.\d+)?)\s*(ms|s|min)\Z")
 _MILLISECONDS = {"ms": 1, "s": 1000, "min": 60_000}
 ALL = "*"
 

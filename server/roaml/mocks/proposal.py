@@ -15,8 +15,9 @@ from roaml.mocks.assumptions import Assumption, Constant, assumption
 from roaml.mocks.mock import ALL, Mock, mock_for
 from roaml.mocks.unfolding import unfold
 from roaml.record import Record
+from roaml.regex import regex
 
-_READS_AS_CONDITION = re.compile(r"(Is|Has|Are|Can)[A-Z_0-9]|(is|has|are|can)_")
+_READS_AS_CONDITION = regex(r"(Is|Has|Are|Can)[A-Z_0-9]|(is|has|are|can)_")
 """The beginning of a name that reads as a condition."""
 _LIBRARY = "Nav2"
 CONDITION_PROBABILITY = 0.5

@@ -4,8 +4,6 @@ them."""
 
 from __future__ import annotations
 
-import re
-
 from roaml.expr.types import BASE_TYPES, parse_type
 from roaml.language import HL_SCXML, ElementType
 from roaml.language.validate import is_foreign
@@ -42,6 +40,7 @@ from roaml.model.syntax import (
     type_of,
     value_of,
 )
+from roaml.regex import regex
 from roaml.roles import Direction, ProtocolPart, SymbolKind
 from roaml.text import Span
 from roaml.xml_syntax import Comment, Document, Element
@@ -50,7 +49,7 @@ INTERFACE_ATTRIBUTES = ("topic", "service_name", "action_name")
 
 _PLAIN = frozenset(("datamodel", "data", "state", "onentry", "onexit", "transition", "target", "assign", "send"))
 _PLAIN_ELEMENTS = _PLAIN | {"param", "if", "elseif", "else", "expr", "ascxml", "scxml"}
-_TYPE_COMMENT = re.compile(r"TYPE\s+([^\s:]+)\s*:\s*(\S+)")
+_TYPE_COMMENT = regex(r"TYPE\s+([^\s:]+)\s*:\s*(\S+)")
 
 
 def build_machine(document: Document) -> Machine | None:

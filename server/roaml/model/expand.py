@@ -19,6 +19,7 @@ from typing import TypeAlias
 from roaml.libraries.scripts import AFTERWARDS, CONDITIONS, script_ports
 from roaml.model.tree import Tree, TreeFile, TreeNode, blackboard_variable, port_key
 from roaml.record import PartlyCompared, Record, field
+from roaml.regex import regex
 from roaml.script.names import names_in
 from roaml.scxml.names import NODE_PREFIX
 from roaml.suggest import close_names
@@ -715,7 +716,7 @@ def _variables(tree: TreeOutline) -> frozenset[str]:
 
 
 _NO_REMAPS = _OWN_ATTRIBUTES | {"xmlns"}
-_WORD = re.compile(r"(?<!\w)[A-Za-z_]\w*", re.ASCII)
-_REFERENCE = re.compile(r"\{([^{}]*)\}")
-_STRING = re.compile(r"'[^']*'")
+_WORD = regex(r"(?<!\w)[A-Za-z_]\w*", re.ASCII)
+_REFERENCE = regex(r"\{([^{}]*)\}")
+_STRING = regex(r"'[^']*'")
 _SCRIPT_WORDS = {"true", "false"}

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 
 from roaml.language import BEHAVIOR_TREE, HL_SCXML, STRUCTS, SYSTEM, XML_PROPERTIES, Grammar
 from roaml.model.config_files import CONFIG_FILE, PROJECT_FILE
+from roaml.regex import regex
 
 
 class FileKind(enum.Enum):
@@ -55,13 +56,13 @@ _ROOTS = {
     "specification": FileKind.SPECIFICATION,
 }
 
-_FIRST_TAG = re.compile(r"<(?:[^\s<>!?/:\"'=]+:)?([^\s<>!?/:\"'=]+)")
-_SKIPPED = re.compile(r"<!--.*?(?:-->|\Z)|<\?.*?(?:\?>|\Z)|<!DOCTYPE[^>\[]*(?:\[.*?\]\s*>|>|\Z)", re.DOTALL)
-_TREE_MARK = re.compile(r"<\s*(?:BehaviorTree|TreeNodesModel)\b|BTCPP_format|main_tree_to_execute")
-_JANI_MODEL = re.compile(r'"(?:jani-version|automata)"\s*:')
-_JSON_SCHEMA = re.compile(r'"type"\s*:\s*"object"')
-_OUR_TABLE = re.compile(r"^\s*\[.*\bas2fm\b|^\s*tool\b.*\bas2fm\b", re.MULTILINE)
-_EXTENSION = re.compile(r"(?<=[^/\\])\.[^./\\]+\Z")
+_FIRST_TAG = regex(r"<(?:[^\s<>!?/:\"'=]+:)?([^\s<>!?/:\"'=]+)")
+_SKIPPED = regex(r"<!--.*?(?:-->|\Z)|<\?.*?(?:\?>|\Z)|<!DOCTYPE[^>\[]*(?:\[.*?\]\s*>|>|\Z)", re.DOTALL)
+_TREE_MARK = regex(r"<\s*(?:BehaviorTree|TreeNodesModel)\b|BTCPP_format|main_tree_to_execute")
+_JANI_MODEL = regex(r'"(?:jani-version|automata)"\s*:')
+_JSON_SCHEMA = regex(r'"type"\s*:\s*"object"')
+_OUR_TABLE = regex(r"^\s*\[.*\bas2fm\b|^\s*tool\b.*\bas2fm\b", re.MULTILINE)
+_EXTENSION = regex(r"(?<=[^/\\])\.[^./\\]+\Z")
 _HEAD = 20_000
 
 

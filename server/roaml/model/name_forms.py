@@ -6,10 +6,11 @@ from __future__ import annotations
 import re
 
 from roaml.expr.words import CONTEXTUAL, RESERVED
+from roaml.regex import regex
 from roaml.scxml.names import STATUSES
 
-VARIABLE = re.compile(r"[A-Za-z_]\w*\Z", re.ASCII)
-EVENT = re.compile(r"[A-Za-z_][A-Za-z0-9._-]*\Z")
+VARIABLE = regex(r"[A-Za-z_]\w*\Z", re.ASCII)
+EVENT = regex(r"[A-Za-z_][A-Za-z0-9._-]*\Z")
 
 
 def is_reserved(name: str) -> bool:

@@ -11,6 +11,7 @@ from roaml.expr.words import RESERVED
 from roaml.language import BEHAVIOR_TREE, ElementType
 from roaml.model.syntax import Name, name_of
 from roaml.record import Record
+from roaml.regex import regex
 from roaml.roles import Direction, ValueRole
 from roaml.suggest import are_similar
 from roaml.xml_syntax import Attribute, Document, Element, Text
@@ -18,9 +19,9 @@ from roaml.xml_syntax import Attribute, Document, Element, Text
 EXPLICIT = ("Action", "Condition", "Control", "Decorator")
 SUBTREES = ("SubTree", "SubTreePlus")
 
-_REFERENCE = re.compile(r"\s*\{(.*)\}\s*\Z", re.DOTALL)
-_VARIABLE = re.compile(r"@?[A-Za-z_$][\w$]*\Z", re.ASCII)
-_BEGINS_LIKE_REFERENCE = re.compile(r"\s*\{.+\}", re.DOTALL)
+_REFERENCE = regex(r"\s*\{(.*)\}\s*\Z", re.DOTALL)
+_VARIABLE = regex(r"@?[A-Za-z_$][\w$]*\Z", re.ASCII)
+_BEGINS_LIKE_REFERENCE = regex(r"\s*\{.+\}", re.DOTALL)
 
 
 class PortSetting(Record, frozen=True, eq=False):

@@ -16,6 +16,7 @@ from typing import NamedTuple
 from roaml.exhaustive import Vocabulary
 from roaml.observers.properties import And, Atom, Constant, Formula, Not, Or, Since, Window, historically, implies, once
 from roaml.record import Record
+from roaml.regex import regex
 from roaml.text import Span
 
 MAX_DEPTH = 100
@@ -101,7 +102,7 @@ _SPELLINGS = {
 }
 _BINARY = frozenset((_TokenKind.AND, _TokenKind.OR, _TokenKind.IMPLIES, _TokenKind.SINCE))
 _BRACES = {"atom": _TokenKind.ATOM, "bounds": _TokenKind.BOUNDS}
-_TOKEN = re.compile(
+_TOKEN = regex(
     r"(?P<space>\s+)"
     r"|(?P<atom>\{(?:[^{}'\"]|'[^']*'|\"[^\"]*\")*\})"
     r"|(?P<bounds>\[[^\[\]]*\])"
@@ -109,7 +110,7 @@ _TOKEN = re.compile(
     r"|(?P<other>.)",
     re.DOTALL,
 )
-_BOUNDS = re.compile(r"\[\s*(\d{0,18})\s*:\s*(\d{0,18})\s*\]", re.ASCII)
+_BOUNDS = regex(r"\[\s*(\d{0,18})\s*:\s*(\d{0,18})\s*\]", re.ASCII)
 
 
 def _tokens(text: str) -> Iterator[_Token]:

@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Fix
+from roaml.regex import regex
 from roaml.text import Edit, SourceFile, Span, TextEdit, computed
 
-_LINE_END = re.compile(r"\r\n|\n|\r")
+_LINE_END = regex(r"\r\n|\n|\r")
 
 
 def line_end_of(source: SourceFile) -> str:
@@ -39,7 +39,7 @@ def in_layout(source: SourceFile, edits: Iterable[Edit]) -> Iterator[TextEdit]:
         yield edit if before or after else TextEdit(lines, "")
 
 
-_BLANK = re.compile(r"\s*")
+_BLANK = regex(r"\s*")
 
 
 def _blank_around(source: SourceFile, span: Span) -> Span | None:

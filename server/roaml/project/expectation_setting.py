@@ -4,15 +4,15 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterator
 from typing import Any
 
 from roaml.model.config_files import CONFIG_FILE
+from roaml.regex import regex
 from roaml.text import Span, TextEdit
 from roaml.toml import Path, Places, TomlError, loads, places
 
-_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+_BARE_KEY = regex(r"[A-Za-z0-9_-]+")
 
 
 def expectation_edit(path: str, text: str, name: str, expected: str) -> TextEdit | None:

@@ -7,15 +7,15 @@ A comment applies to its line. A comment on a line without other content applies
 from __future__ import annotations
 
 import bisect
-import re
 from collections.abc import Callable, Iterable
 
 from roaml.diagnostics import Finding, current_code
 from roaml.record import Record
+from roaml.regex import regex
 from roaml.text import Span
 from roaml.xml_syntax import Comment, Document, Element, Node, Text
 
-_COMMENT = re.compile(r"\s*as2fm:\s*ignore(?:\s*\[([^\]]*)\])?\s*\Z")
+_COMMENT = regex(r"\s*as2fm:\s*ignore(?:\s*\[([^\]]*)\])?\s*\Z")
 
 
 class Suppression(Record, frozen=True):

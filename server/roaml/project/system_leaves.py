@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 
 from roaml.forest.forest import node_of
@@ -12,9 +11,10 @@ from roaml.mocks.system_leaves import SystemLeaf, leaves_without_plugins
 from roaml.model.system import System
 from roaml.project.analysis import Analysis
 from roaml.project.paths import folder_of, full
+from roaml.regex import regex
 from roaml.text import SourceFile
 
-_CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
+_CAMEL = regex(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 
 def missing_leaves(analysis: Analysis, system: System) -> tuple[SystemLeaf, ...]:

@@ -12,6 +12,7 @@ import re
 from pathlib import Path
 from types import ModuleType
 
+from roaml.regex import regex
 from roaml.rules import expansion_rules, parser_rules, property_rules
 from roaml.rules.answers import (
     answer_needs_time,
@@ -265,4 +266,4 @@ def in_reference(text: str) -> str:
     return _DEFINITION.sub(r"[\1](../spec/\2)", text)
 
 
-_DEFINITION = re.compile(r"\[([^]]+)\]\((?:\.\./)+docs/spec/([^)]+)\)")
+_DEFINITION = regex(r"\[([^]]+)\]\((?:\.\./)+docs/spec/([^)]+)\)")

@@ -6,6 +6,7 @@ from __future__ import annotations
 import functools
 import re
 
+from roaml.regex import regex
 from roaml.script.parse import parse
 from roaml.script.tree import Assignment, Name, walk
 from roaml.text import Decoded
@@ -29,4 +30,4 @@ def names_in(text: str) -> tuple[tuple[str, str], ...]:
     return tuple(names)
 
 
-_CREATED = re.compile(r"(@?[A-Za-z_]\w*)\s*:=", re.ASCII)
+_CREATED = regex(r"(@?[A-Za-z_]\w*)\s*:=", re.ASCII)

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 from roaml.exhaustive import Vocabulary
 from roaml.record import Record
+from roaml.regex import regex
 from roaml.script.tree import (
     Assignment,
     Binary,
@@ -57,7 +58,7 @@ _FAMILIES = (
 
 _COMPARISON, _CONDITIONAL, _ASSIGNMENT = 5, 2, 1
 
-_TOKEN = re.compile(
+_TOKEN = regex(
     r"""(?P<space>\s+)
       | (?P<number>0[xX][0-9A-Fa-f]+ | [0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)
       | (?P<name>[A-Za-z_@][A-Za-z0-9_]*)

@@ -13,6 +13,7 @@ from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
 from roaml.exhaustive import Vocabulary, assert_never
+from roaml.regex import regex
 from roaml.scxml.events import EventRole, Role, ScxmlEvent
 
 TRANSLATION_MARK = "Translated from HL-SCXML by roaml"
@@ -112,7 +113,7 @@ def automaton_role(automaton: str) -> Role:
 
 
 NODE_PREFIX = "BT_plugin_"
-NODE_AUTOMATON = re.compile(NODE_PREFIX + r"(\d+)_(.+)")
+NODE_AUTOMATON = regex(NODE_PREFIX + r"(\d+)_(.+)")
 """The name of the automaton of a tree node, with the number and the name of the node as groups."""
 
 # ------------------------------------------------------------------------ events
@@ -127,7 +128,7 @@ BLACKBOARD_WRITE_PREFIX = "bt_blackboard_set_"
 ENTRY_PREFIX = "entry__"
 """The beginning of the name of the variable in which a node of a library stores the value of a blackboard entry that it
 has read last."""
-_TREE_EVENT = re.compile(r"bt_(\d+)(?:_inner\d*)?_(tick|response|halt|halt_response)")
+_TREE_EVENT = regex(r"bt_(\d+)(?:_inner\d*)?_(tick|response|halt|halt_response)")
 _OBSERVER_SUFFIX = "__observer"
 """The end of the name of the automaton that observes a property in XML (docs/spec/jani.md#observers)."""
 STATUSES = {"SUCCESS": 1, "FAILURE": 2, "RUNNING": 3}
@@ -184,7 +185,7 @@ def read_executes_goal(variable: str) -> tuple[str, int] | None:
     return (match[1], int(match[2])) if match else None
 
 
-_EXECUTES_GOAL = re.compile(_EXECUTES_PREFIX + r"(.+)_([0-9]+)_*")
+_EXECUTES_GOAL = regex(_EXECUTES_PREFIX + r"(.+)_([0-9]+)_*")
 
 
 class InterfaceEventKind(Vocabulary):
@@ -266,7 +267,7 @@ def is_interface_event(name: str) -> bool:
 
 _INTERFACE_PREFIXES = (TOPIC_PREFIX, SERVICE_PREFIX, ACTION_PREFIX, CANCEL_PREFIX)
 _INTERFACE_EVENTS = tuple(
-    (kind, re.compile(form))
+    (kind, regex(form))
     for kind, form in (
         (InterfaceEventKind.MESSAGE, rf"{TOPIC_PREFIX}(.+)_msg"),
         (InterfaceEventKind.REQUEST, rf"{SERVICE_PREFIX}(.+)_req(?:uest)?"),
@@ -310,7 +311,7 @@ def is_synchronising(event: str) -> bool:
     return role_of(event).is_synchronising
 
 
-_BLOCKING = re.compile(
+_BLOCKING = regex(
     r"bt_[0-9]+(?:_inner[0-9]*)?_(?:tick|halt|response|halt_response)\Z"
     r"|action_.+_goal_.+\Z"
     r"|action_.+_result"
@@ -416,7 +417,7 @@ def array_of(length: str) -> str:
     return length[: match.start()] if match else ""
 
 
-_LENGTH = re.compile(r"\.d[0-9]+_len\Z")
+_LENGTH = regex(r"\.d[0-9]+_len\Z")
 
 
 def safe_name(name: str) -> str:

@@ -8,19 +8,18 @@ text that asks for it, such as `messages /arm/command`.
 
 from __future__ import annotations
 
-import re
-
 from roaml.jani.expressions import Integer, Name
 from roaml.jani.model import Assignment, Automaton, Destination, Edge, Model, Variable
 from roaml.jani.types import INT
 from roaml.record import replace
+from roaml.regex import regex
 from roaml.scxml.names import sent_by, topic_message
 from roaml.suggest import close_names, did_you_mean
 from roaml.to_jani.observer_parts import next_index
 
-_COUNTER = re.compile(r"(messages|ticks) (\S.*)")
-_NODE = re.compile(r"BT_plugin_(\d+)_(.+)")
-_TICK = re.compile(r"bt_(\d+)_tick")
+_COUNTER = regex(r"(messages|ticks) (\S.*)")
+_NODE = regex(r"BT_plugin_(\d+)_(.+)")
+_TICK = regex(r"bt_(\d+)_tick")
 
 
 class CounterError(ValueError):

@@ -11,11 +11,11 @@
 from __future__ import annotations
 
 import math
-import re
 
 from roaml.comparison import Comparison, read_comparison
 from roaml.jani.operators import BinaryOperator
 from roaml.record import Record
+from roaml.regex import regex
 from roaml.smc.goal import Question, Threshold
 from roaml.smc.run import Answer
 from roaml.smc.statistics import Bounds
@@ -27,7 +27,7 @@ _RELATIONS = {
     "<": BinaryOperator.LESS,
     "==": BinaryOperator.EQUAL,
 }
-_FORM = re.compile(r"\s*(.+?)\s*((?:>=|<=|==|≥|≤|>|<|=)\s*\S+)\s*")
+_FORM = regex(r"\s*(.+?)\s*((?:>=|<=|==|≥|≤|>|<|=)\s*\S+)\s*")
 NO_EXPECTATION = "no expectation set"
 """The text for a result with which no expectation is compared."""
 

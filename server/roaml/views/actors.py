@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping
 
 from roaml.exhaustive import assert_never
 from roaml.jani.model import Automaton, Model
+from roaml.regex import regex
 from roaml.scxml.events import Role
 from roaml.scxml.names import (
     ACTION_HANDLER_PREFIX,
@@ -28,7 +28,7 @@ from roaml.scxml.names import (
 from roaml.views.ends import is_event, is_translation
 from roaml.views.event_words import blackboard_phrase, event_phrase, interface_phrase
 
-_CONDITIONS = re.compile(CONDITIONS_PREFIX + r"(\d+)(?:_inner\d*)?_(.+)")
+_CONDITIONS = regex(CONDITIONS_PREFIX + r"(\d+)(?:_inner\d*)?_(.+)")
 _TREE_EVENTS = {
     TreeEventKind.TICK: "the tick of",
     TreeEventKind.HALT: "the halt of",

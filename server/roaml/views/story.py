@@ -5,11 +5,11 @@ page."""
 from __future__ import annotations
 
 import html
-import re
 from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 from roaml.jani.node import Origin
+from roaml.regex import regex
 from roaml.scxml.names import read_tree_event
 from roaml.smc.end import End
 from roaml.smc.record import SELECTED, SHORTEST, VERDICTS, TraceVerdict
@@ -24,7 +24,7 @@ from roaml.views.waiting import Wait, help_line, waits
 
 FIRST, LAST = 30, 50
 """The numbers of lines that are shown at the beginning and at the end. The lines between them are folded."""
-_NUMBER = re.compile(r"-?\d+(\.\d+)?")
+_NUMBER = regex(r"-?\d+(\.\d+)?")
 
 PlaceOf = Callable[[Origin], str]
 """File and line of an origin, as text for users."""

@@ -11,9 +11,10 @@ from __future__ import annotations
 import re
 import sys
 
+from roaml.regex import regex
 from roaml.text import Decoded, Span
 
-REFERENCE = re.compile(r"&(?:#([0-9]{1,7})|#[xX]([0-9a-fA-F]{1,6})|([A-Za-z_][\w.-]*));")
+REFERENCE = regex(r"&(?:#([0-9]{1,7})|#[xX]([0-9a-fA-F]{1,6})|([A-Za-z_][\w.-]*));")
 PREDEFINED = {"lt": "<", "gt": ">", "amp": "&", "quot": '"', "apos": "'"}
 
 
@@ -27,7 +28,7 @@ def resolve(match: re.Match[str]) -> str:
     return chr(code) if is_character(code) else match[0]
 
 
-FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+FORBIDDEN = regex("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 """A character that XML 1.0 does not allow (production 2)."""
 
 

@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
-import functools
 import re
+
+from roaml.regex import regex
 
 SPACE = " \t\r\n"
 
@@ -25,11 +26,11 @@ class _Pattern:
     use, because it takes long and most models do not need it."""
 
     def __init__(self, form: str) -> None:
-        self._ascii = re.compile(form.format(_ASCII_LOCAL_NAME))
-        self._all = functools.cache(lambda: re.compile(form.format(_LOCAL_NAME)))
+        self._ascii = regex(form.format(_ASCII_LOCAL_NAME))
+        self._all = regex(form.format(_LOCAL_NAME))
 
     def match(self, text: str) -> re.Match[str] | None:
-        return self._ascii.match(text) or (None if text.isascii() else self._all().match(text))
+        return self._ascii.match(text) or (None if text.isascii() else self._all.match(text))
 
 
 _NAME = _Pattern(r"{0}(?::{0})?\Z")

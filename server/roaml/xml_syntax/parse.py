@@ -16,6 +16,7 @@ import codecs
 import re
 
 from roaml.diagnostics import Finding, Fix, Related
+from roaml.regex import regex
 from roaml.suggest import are_similar
 from roaml.text import Span, TextEdit, span_of
 from roaml.xml_syntax.escapes import FORBIDDEN, PREDEFINED, REFERENCE, is_character, unescape
@@ -33,31 +34,31 @@ _MAX_SKIPPED_DEPTH = 10_000
 
 # A tag without errors whose names are ASCII. Other tags are read with the general patterns, which are slower.
 _SPACE = f"[{SPACE}]"
-_SOUND_TAG = re.compile(
+_SOUND_TAG = regex(
     f"<({ASCII_NAME})((?:{_SPACE}+{ASCII_NAME}{_SPACE}*={_SPACE}*(?:\"[^\"<]*\"|'[^'<]*'))*){_SPACE}*(/)?>"
 )
-_SOUND_ATTRIBUTE = re.compile(r"([^\s=]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
+_SOUND_ATTRIBUTE = regex(r"([^\s=]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 
 # The general patterns. They also match invalid names, white space and values, which are then reported.
 _NAME = r"[^\s<>/=\"'&!?;,()\[\]{}]+"
-_TAG_OPEN = re.compile(rf"<((?=[^\W\d]|:){_NAME})")
-_END_TAG = re.compile(rf"</(\s*)({_NAME})?\s*(>)?")
-_END_TAG_JUNK = re.compile(r"[^<>\r\n]*>")
-_ATTRIBUTE = re.compile(rf"\s*({_NAME})(?:(\s*=\s*)(?:\"([^\"<]*)\"|'([^'<]*)')?)?")
-_TAG_END = re.compile(r"\s*(/?>)")
-_JUNK = re.compile(r"\s*([^\s<>/]+|/(?!>))")
-_TAG_SPACE = re.compile(r"\s*")
-_ODD_SPACE = re.compile(rf"[^\S{SPACE}]+")
-_LESS = re.compile("<")
-_AMPERSAND = re.compile("&")
+_TAG_OPEN = regex(rf"<((?=[^\W\d]|:){_NAME})")
+_END_TAG = regex(rf"</(\s*)({_NAME})?\s*(>)?")
+_END_TAG_JUNK = regex(r"[^<>\r\n]*>")
+_ATTRIBUTE = regex(rf"\s*({_NAME})(?:(\s*=\s*)(?:\"([^\"<]*)\"|'([^'<]*)')?)?")
+_TAG_END = regex(r"\s*(/?>)")
+_JUNK = regex(r"\s*([^\s<>/]+|/(?!>))")
+_TAG_SPACE = regex(r"\s*")
+_ODD_SPACE = regex(rf"[^\S{SPACE}]+")
+_LESS = regex("<")
+_AMPERSAND = regex("&")
 _MAX_ODD_VALUE_LENGTH = 5000
-_UNQUOTED = re.compile(r"[^\s<>/\"']*")
-_SWALLOWED = re.compile(rf"\s{_NAME}\s*=\s*\Z")
-_NEXT_ATTRIBUTE = re.compile(rf"{_NAME}\s*=")
-_AFTER_VALUE = re.compile(r"[\s/>?]|\Z")
-_DOCTYPE_MARK = re.compile(r"<!--|<\?|[\[\]>\"']")
+_UNQUOTED = regex(r"[^\s<>/\"']*")
+_SWALLOWED = regex(rf"\s{_NAME}\s*=\s*\Z")
+_NEXT_ATTRIBUTE = regex(rf"{_NAME}\s*=")
+_AFTER_VALUE = regex(r"[\s/>?]|\Z")
+_DOCTYPE_MARK = regex(r"<!--|<\?|[\[\]>\"']")
 _DOCTYPE_CLOSERS = {"<!--": "-->", "<?": "?>", '"': '"', "'": "'"}
-_XML_DECLARATION = re.compile(
+_XML_DECLARATION = regex(
     rf"""xml{_SPACE}+version{_SPACE}*={_SPACE}*(["'])1\.[0-9]+\1
     (?:{_SPACE}+encoding{_SPACE}*={_SPACE}*(["'])(?P<encoding>[A-Za-z][A-Za-z0-9._-]*)\2)?
     (?:{_SPACE}+standalone{_SPACE}*={_SPACE}*(["'])(?:yes|no)\4)?{_SPACE}*""".replace("\n    ", "")

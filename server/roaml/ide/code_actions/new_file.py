@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 
 from roaml.expr.types import BASE_TYPES, UNKNOWN
@@ -11,12 +10,13 @@ from roaml.expr.zero import zero_text
 from roaml.model.name_forms import variable_problem
 from roaml.project.analysis import Analysis
 from roaml.project.paths import full, seen_from, split_name
+from roaml.regex import regex
 from roaml.roles import Direction
 from roaml.scxml.names import safe_name
 from roaml.text import SourceFile
 
 _DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>\n'
-_CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
+_CAMEL = regex(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 
 def stem_of(path: str) -> str:

@@ -21,9 +21,10 @@ from roaml.model.values.analyse import DataChannel, data_place
 from roaml.model.values.domain import Constant as ConstantValue
 from roaml.model.values.domain import ValueSet, joined
 from roaml.model.values.evaluate import literal
+from roaml.regex import regex
 from roaml.text import Decoded
 
-_COMPARED = re.compile(r"((?:[A-Za-z_]\w*\.)*)([A-Za-z_]\w*)\s*[=!]==?\s*\w*\Z", re.ASCII)
+_COMPARED = regex(r"((?:[A-Za-z_]\w*\.)*)([A-Za-z_]\w*)\s*[=!]==?\s*\w*\Z", re.ASCII)
 
 
 def compared_values(request: Request, start: int, scope: Mapping[str, Type]) -> Iterator[CompletionItem]:

@@ -39,13 +39,14 @@ from roaml.ide.completion.struct_keys import struct_keys
 from roaml.ide.names.occurrence import variable
 from roaml.model.syntax import PortRead
 from roaml.model.value_types import STATUS, bindings, find_handle, interface_part, port_type
+from roaml.regex import regex
 from roaml.roles import SymbolKind, ValuePart
 from roaml.scxml.names import STATUSES
 from roaml.text import Decoded, Span
 from roaml.xml_syntax import Element
 
-_NAME = re.compile(r"[A-Za-z_$][\w$]*\Z|\Z", re.ASCII)
-_NAME_AFTER = re.compile(r"[\w$]*", re.ASCII)
+_NAME = regex(r"[A-Za-z_$][\w$]*\Z|\Z", re.ASCII)
+_NAME_AFTER = regex(r"[\w$]*", re.ASCII)
 _CLOSERS = {"]": "[", ")": "("}
 
 

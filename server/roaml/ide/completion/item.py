@@ -9,6 +9,7 @@ from collections.abc import Iterable
 
 from roaml.diagnostics import Symbol
 from roaml.record import Record
+from roaml.regex import regex
 from roaml.text import Span
 
 
@@ -82,7 +83,7 @@ def escaped(text: str) -> str:
     return re.sub(r"[\\$}]", r"\\\g<0>", text)
 
 
-_STOP = re.compile(r"\\([\\$}])|\$\d+|\$\{\d+\|((?:[^,|\\]|\\.)*)(?:,(?:[^|\\]|\\.)*)?\|\}|\$\{\d+:((?:[^}\\]|\\.)*)\}")
+_STOP = regex(r"\\([\\$}])|\$\d+|\$\{\d+\|((?:[^,|\\]|\\.)*)(?:,(?:[^|\\]|\\.)*)?\|\}|\$\{\d+:((?:[^}\\]|\\.)*)\}")
 
 
 def plain(snippet: str) -> str:

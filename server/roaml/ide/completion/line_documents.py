@@ -16,15 +16,16 @@ from roaml.model.tree import nodes
 from roaml.project.analysis import Analysis
 from roaml.project.paths import name_of
 from roaml.project.settings import SETTING_NAMES, SEVERITIES, VALUES_OF_SETTINGS
+from roaml.regex import regex
 from roaml.roles import SymbolKind
 from roaml.rules import RULES
 from roaml.text import Span
 
-_IN_SUPPRESSION = re.compile(r"as2fm:\s*ignore\s*\[[^\]<>]*\Z")
-_WORD_BEFORE = re.compile(r"[\w/-]*\Z", re.ASCII)
-_WORD_AFTER = re.compile(r"[\w/-]*", re.ASCII)
-_KEY = re.compile(r"\s*([\w-]*)\Z", re.ASCII)
-_VALUE = re.compile(r"^\s*([\w-]+)\s*=[^=]*\Z", re.ASCII)
+_IN_SUPPRESSION = regex(r"as2fm:\s*ignore\s*\[[^\]<>]*\Z")
+_WORD_BEFORE = regex(r"[\w/-]*\Z", re.ASCII)
+_WORD_AFTER = regex(r"[\w/-]*", re.ASCII)
+_KEY = regex(r"\s*([\w-]*)\Z", re.ASCII)
+_VALUE = regex(r"^\s*([\w-]+)\s*=[^=]*\Z", re.ASCII)
 _CODE_SETTINGS = ("select", "ignore", "severity")
 
 

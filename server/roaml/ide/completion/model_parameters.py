@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Container, Iterator
 
 from roaml.diagnostics import Symbol
@@ -11,11 +10,12 @@ from roaml.ide.completion.item import CompletionItem, ItemKind, Rank
 from roaml.ide.completion.request import CompletionSubject, Request
 from roaml.ide.describe.parameters import declared_in
 from roaml.project.paths import resolve
+from roaml.regex import regex
 from roaml.roles import SymbolKind
 from roaml.text import Span
 
-_SUBSTITUTION = re.compile(r"\$\(var\s+(\w*)\Z")
-_NAME = re.compile(r"\w*")
+_SUBSTITUTION = regex(r"\$\(var\s+(\w*)\Z")
+_NAME = regex(r"\w*")
 
 
 def parameters_in_scope(request: Request, hidden: Container[str] = ()) -> Iterator[CompletionItem]:

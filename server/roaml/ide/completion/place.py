@@ -13,12 +13,13 @@ from typing import TypeAlias
 from roaml.ide.on_type import open_element
 from roaml.ide.syntax import Typed, XmlFile, path_at
 from roaml.record import Record
+from roaml.regex import regex
 from roaml.text import Span
 from roaml.xml_syntax import Attribute, CData, Comment, Document, Element, Instruction, Text
 
-_WORD_BEFORE = re.compile(r"[\w:.-]*\Z")
-_WORD_AFTER = re.compile(r"[\w:.-]*")
-_TAG = re.compile(r"<(/?)([\w:.-]*)\Z")
+_WORD_BEFORE = regex(r"[\w:.-]*\Z")
+_WORD_AFTER = regex(r"[\w:.-]*")
+_TAG = regex(r"<(/?)([\w:.-]*)\Z")
 
 
 class StartTag(Record, frozen=True, eq=False):

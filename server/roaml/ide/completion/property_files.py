@@ -22,11 +22,12 @@ from roaml.model.system import Channel, System
 from roaml.model.tree_paths import instance_of, label_of, short_paths
 from roaml.observers.properties import Pattern, ScopeKind
 from roaml.observers.sentences import Times, pattern_sentence
+from roaml.regex import regex
 from roaml.roles import SymbolKind
 from roaml.text import Span
 from roaml.xml_syntax import Element
 
-_COMPARED = re.compile(r"([A-Za-z_]\w*)\s*(?:[=!]==?|&lt;=?|&gt;=?|>=?)\s*\Z", re.ASCII)
+_COMPARED = regex(r"([A-Za-z_]\w*)\s*(?:[=!]==?|&lt;=?|&gt;=?|>=?)\s*\Z", re.ASCII)
 _FORMULA_OPERATORS = {
     "H": "at all times until now",
     "O": "at some time until now",

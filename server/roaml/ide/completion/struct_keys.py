@@ -9,11 +9,12 @@ from collections.abc import Iterator
 from roaml.expr.types import Array, Struct, Type
 from roaml.expr.zero import zero_text
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, escaped
+from roaml.regex import regex
 from roaml.text import Span
 
-_TOKEN = re.compile(r"""(?P<text>'[^']*'|"[^"]*")|(?P<open>[\[{(])|(?P<close>[\]})])|(?P<sign>[:,])|[^\s'"]""")
-_KEY_BEFORE = re.compile(r"""[{,]\s*(?P<key>['"]?\w*)\Z""", re.ASCII)
-_KEY_AFTER = re.compile(r"""['"]?\w*['"]?(?P<colon>\s*:)?""", re.ASCII)
+_TOKEN = regex(r"""(?P<text>'[^']*'|"[^"]*")|(?P<open>[\[{(])|(?P<close>[\]})])|(?P<sign>[:,])|[^\s'"]""")
+_KEY_BEFORE = regex(r"""[{,]\s*(?P<key>['"]?\w*)\Z""", re.ASCII)
+_KEY_AFTER = regex(r"""['"]?\w*['"]?(?P<colon>\s*:)?""", re.ASCII)
 
 
 def struct_keys(text: str, start: int, offset: int, type_: Type | None) -> tuple[Span, list[CompletionItem]] | None:

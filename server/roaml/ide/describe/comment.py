@@ -6,10 +6,11 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from roaml.regex import regex
 from roaml.xml_syntax import Comment, Document, Element, Node, Text
 
-_TYPE = re.compile(r"[,;]?\s*\bTYPE\s+\w+\s*:\s*[\w\[\]]+")
-_LICENCE = re.compile(r"SPDX-|Copyright|Licen[cs]ed under", re.IGNORECASE)
+_TYPE = regex(r"[,;]?\s*\bTYPE\s+\w+\s*:\s*[\w\[\]]+")
+_LICENCE = regex(r"SPDX-|Copyright|Licen[cs]ed under", re.IGNORECASE)
 
 
 def remark(document: Document, element: Element) -> str:

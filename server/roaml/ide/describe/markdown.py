@@ -10,23 +10,25 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
+from roaml.regex import regex
+
 _MAX_NAMES = 6
 """The maximum number of names in a list; further names are counted."""
 
-_TICKS = re.compile(r"`+")
-_FENCE = re.compile(r"^(`{3,})[^`\n]*\n(.*?)\n\1$", re.MULTILINE | re.DOTALL)
-_SPAN = re.compile(r"(?<![\\`])(`+)(?!`)( ?)(.+?)\2(?<!`)\1(?!`)", re.DOTALL)
-_LINK = re.compile(r"\[((?:\\.|[^\]\\\n])*)\]\([^)\n]*\)")
-_EMPHASIS = re.compile(r"(?<![\\*\w])\*(?=[^\s*])((?:\\.|[^*\\\n])+)(?<!\s)\*(?![*\w])")
-_RULE = re.compile(r"^---$", re.MULTILINE)
-_NAME_MARKS = re.compile(r"([\\*_`!\[\]])")
+_TICKS = regex(r"`+")
+_FENCE = regex(r"^(`{3,})[^`\n]*\n(.*?)\n\1$", re.MULTILINE | re.DOTALL)
+_SPAN = regex(r"(?<![\\`])(`+)(?!`)( ?)(.+?)\2(?<!`)\1(?!`)", re.DOTALL)
+_LINK = regex(r"\[((?:\\.|[^\]\\\n])*)\]\([^)\n]*\)")
+_EMPHASIS = regex(r"(?<![\\*\w])\*(?=[^\s*])((?:\\.|[^*\\\n])+)(?<!\s)\*(?![*\w])")
+_RULE = regex(r"^---$", re.MULTILINE)
+_NAME_MARKS = regex(r"([\\*_`!\[\]])")
 _ESCAPE = r"\\\1"
-_ESCAPED = re.compile(r"\\([\\<*_`#~!\[\]])")
-_ENTITY = re.compile(r"&(?=#?\w+;)")
+_ESCAPED = regex(r"\\([\\<*_`#~!\[\]])")
+_ENTITY = regex(r"&(?=#?\w+;)")
 _ENTITIES = (("&lt;", "<"), ("&amp;", "&"))
-_USERS_CODE = re.compile(r"(?<![\\`])(`+)(?!`)(.+?)(?<!`)\1(?!`)")
-_USERS_MARKS = re.compile(r"\\(?=[!-/:-@\[-`{-~])|`|!(?=\[)|\](?=[(\[:])")
-_USERS_BLOCK = re.compile(r"^(?=#|~~~)")
+_USERS_CODE = regex(r"(?<![\\`])(`+)(?!`)(.+?)(?<!`)\1(?!`)")
+_USERS_MARKS = regex(r"\\(?=[!-/:-@\[-`{-~])|`|!(?=\[)|\](?=[(\[:])")
+_USERS_BLOCK = regex(r"^(?=#|~~~)")
 
 
 def code(text: str, language: str = "") -> str:

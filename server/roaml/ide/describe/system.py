@@ -4,7 +4,6 @@ variables, trees and structs."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Symbol
@@ -22,10 +21,11 @@ from roaml.model.structs import StructDeclaration, resolve_structs
 from roaml.model.system import CLOCK_TOPIC, BoundPort, Channel, ChannelEndpoint, System, SystemAutomaton
 from roaml.model.tree import nodes
 from roaml.project.analysis import Analysis
+from roaml.regex import regex
 from roaml.roles import Direction, SymbolKind
 from roaml.scxml.names import BLACKBOARD_ANSWER, BLACKBOARD_WRITE_PREFIX, sanitise
 
-_NODE = re.compile(r"bt_(\d{1,9})_")
+_NODE = regex(r"bt_(\d{1,9})_")
 
 
 def node_of(system: System, variable: str) -> SystemAutomaton | None:

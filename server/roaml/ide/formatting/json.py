@@ -7,16 +7,16 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from itertools import accumulate, pairwise
 
 from roaml.ide.formatting.layout import FileLayout, Spacing, breaks, new_line
 from roaml.record import replace
+from roaml.regex import regex
 from roaml.text import Span
 
-_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[\[\]{},:]|[^\s\[\]{},:"]+')
-_FIRST_INDENT = re.compile(r"[\n\r]([ ]+|\t+)\S")
+_TOKEN = regex(r'"(?:[^"\\]|\\.)*"|[\[\]{},:]|[^\s\[\]{},:"]+')
+_FIRST_INDENT = regex(r"[\n\r]([ ]+|\t+)\S")
 _WIDTHS = (2, 4)
 
 

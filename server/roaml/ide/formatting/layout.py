@@ -7,14 +7,14 @@ Gaps are written with `\\n`; `edits` converts them to the line ends of the file.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from roaml.record import Record
+from roaml.regex import regex
 from roaml.text import Span, TextEdit
 
-_LINE_END = re.compile(r"\r\n|\n|\r")
+_LINE_END = regex(r"\r\n|\n|\r")
 
 
 class FileLayout(Record, frozen=True):

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 
 from roaml.diagnostics import Symbol
@@ -42,12 +41,13 @@ from roaml.model.machine import (
 from roaml.model.syntax import Expression, Name, PortRead, TypeRef, Value
 from roaml.model.value_types import CHANNEL_KINDS, INTERFACE_KINDS, Environment, bindings, find_handle, interface_part
 from roaml.record import Record
+from roaml.regex import regex
 from roaml.roles import ProtocolPart, SymbolKind, ValuePart
 from roaml.scxml.names import STATUSES, sanitise
 from roaml.text import Span
 
 _EVENT_VARIABLES = frozenset(binding.name for element in HL_SCXML.elements.values() for binding in element.binds)
-_WORD = re.compile(r"\S+")
+_WORD = regex(r"\S+")
 
 
 def interface_symbol(owner: str, kind: SymbolKind, name: str) -> Symbol:

@@ -22,12 +22,13 @@ from roaml.model.machine import Declaration, Machine
 from roaml.model.name_forms import EVENT, VARIABLE, is_reserved, variable_problem
 from roaml.model.vocabulary import EVENT_VARIABLES
 from roaml.project.analysis import Analysis
+from roaml.regex import regex
 from roaml.roles import SymbolKind
 from roaml.scxml.names import STATUSES, is_reserved_name, is_synchronising, sanitise
 
-_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*\Z")
-_INTERFACE = re.compile(r"/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*\Z", re.ASCII)
-_PROPERTY = re.compile(r"[\w.-]+\Z")
+_WORD = regex(r"[A-Za-z_][A-Za-z0-9_.-]*\Z")
+_INTERFACE = regex(r"/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*\Z", re.ASCII)
+_PROPERTY = regex(r"[\w.-]+\Z")
 _INTERFACES = (SymbolKind.TOPIC, SymbolKind.SERVICE, SymbolKind.ACTION)
 _JOINED = (SymbolKind.VARIABLE, SymbolKind.PARAMETER, SymbolKind.MEMBER, SymbolKind.EVENT)
 """Kinds of symbols whose names the translation joins with other names by `__`."""

@@ -17,6 +17,7 @@ from typing import NamedTuple, TypeAlias
 from roaml.libraries import BEHAVIORTREE_CPP, library
 from roaml.libraries.version import NEWEST_VERSION, Version, first_patch
 from roaml.record import Record, field
+from roaml.regex import regex
 from roaml.text import Location, Span
 
 FILES = ("behaviortree_cpp.txt", "nav2.txt", "leaves.txt")
@@ -270,7 +271,7 @@ class Programs(Mapping[str, NodeProgram]):
         return self._compiled[place]
 
 
-_CLASS = re.compile(
+_CLASS = regex(
     r'^(?:@before\("(?P<before>[0-9.]+)"\)\n)?(?P<text>class (?P<name>\w+).*\n(?:(?:[ ].*)?\n)*)', re.MULTILINE
 )
 """The definition of a program in a file. The decorator `before` restricts it to older versions."""

@@ -6,9 +6,10 @@ from __future__ import annotations
 import re
 
 from roaml.lower.programs.entries import EntryKind
+from roaml.regex import regex
 
-_INTEGER = re.compile(r"\s*[+-]?[0-9]+", re.ASCII)
-_REAL = re.compile(r"\s*[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?", re.ASCII)
+_INTEGER = regex(r"\s*[+-]?[0-9]+", re.ASCII)
+_REAL = regex(r"\s*[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?", re.ASCII)
 
 
 def number_in(text: str, *, is_whole: bool) -> int | float | None:

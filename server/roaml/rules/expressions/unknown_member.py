@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
@@ -12,12 +11,13 @@ from roaml.expr.types import Array, Struct, StructKind, unwrap
 from roaml.expr.zero import zero_text
 from roaml.model.initial import ExtraMember, MissingMembers
 from roaml.model.value_types import TypedValue
+from roaml.regex import regex
 from roaml.rules.rule import MachineContext, Rule, close_names, listing, replacements
 from roaml.rules.support.fields import is_ros
 from roaml.suggest import alternatives
 from roaml.text import Span, TextEdit
 
-QUOTE = re.compile(r"['\"]|&(?:quot|apos|#[xX]?[0-9a-fA-F]+);")
+QUOTE = regex(r"['\"]|&(?:quot|apos|#[xX]?[0-9a-fA-F]+);")
 
 
 def check(context: MachineContext) -> Iterator[Finding]:

@@ -10,6 +10,7 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.model.expand import PortConstant
 from roaml.model.machine import Declaration
 from roaml.model.syntax import Name, PortRead
+from roaml.regex import regex
 from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, replacements
 from roaml.text import Span, TextEdit
@@ -18,7 +19,7 @@ SLOWEST = 1e-9
 """The lowest rate of a timer, in Hz, included."""
 FASTEST = 1e9
 """The highest rate of a timer, in Hz, included."""
-ALMOST = re.compile(r"(\d+)(?:[.,](\d+))?\s*(?:hz)?\Z", re.IGNORECASE | re.ASCII)
+ALMOST = regex(r"(\d+)(?:[.,](\d+))?\s*(?:hz)?\Z", re.IGNORECASE | re.ASCII)
 """A rate that may be written with a decimal comma or the unit Hz."""
 
 

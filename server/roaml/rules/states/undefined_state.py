@@ -10,6 +10,7 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import after
 from roaml.model.machine import Chart, Dialect
 from roaml.model.syntax import Name
+from roaml.regex import regex
 from roaml.rules.rule import MachineContext, Rule, close_names, replacements
 from roaml.rules.support import misspelled
 from roaml.rules.support.states import references
@@ -17,8 +18,8 @@ from roaml.suggest import alternatives
 from roaml.xml_syntax import Document, Element
 
 STATES = ("state", "parallel", "final", "history")
-VALID = re.compile(r"[A-Za-z_][\w.-]*\Z", re.ASCII)
-WORD = re.compile(r"\S+")
+VALID = regex(r"[A-Za-z_][\w.-]*\Z", re.ASCII)
+WORD = regex(r"\S+")
 
 
 def check(context: MachineContext) -> Iterator[Finding]:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
@@ -13,10 +12,11 @@ from roaml.model.machine import Port
 from roaml.model.syntax import Name, TypeRef
 from roaml.model.system import CHILDREN_COUNT
 from roaml.model.vocabulary import FOREIGN_TYPES
+from roaml.regex import regex
 from roaml.roles import Direction
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
 
-ATTRIBUTE = re.compile(r"[^\W\d][\w.-]*\Z")
+ATTRIBUTE = regex(r"[^\W\d][\w.-]*\Z")
 """The pattern of port names: ports are attributes in the tree."""
 
 

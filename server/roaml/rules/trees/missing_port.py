@@ -15,6 +15,7 @@ from roaml.libraries import LIBRARIES, Node, Port, library
 from roaml.model.outline import MachineOutline, PortOutline
 from roaml.model.system import CHILDREN_COUNT, optional_ports
 from roaml.model.tree import TreeNode, nodes
+from roaml.regex import regex
 from roaml.roles import Direction, NodeKind, SymbolKind
 from roaml.rules.rule import Rule, TreeContext, close_names, listing
 from roaml.rules.support.forest import forest_of
@@ -105,7 +106,7 @@ def _reference(name: str, type_: str) -> str:
 # ------------------------------------------------------------ trees without a system
 
 
-_OPTIONAL = re.compile(r"\boptional|\bif (?:it is |this is )?(?:not|un)|\bdefault|\bempty\b", re.I)
+_OPTIONAL = regex(r"\boptional|\bif (?:it is |this is )?(?:not|un)|\bdefault|\bempty\b", re.I)
 """Matches descriptions of ports that need not be set, although the model gives them no default."""
 
 

@@ -3,16 +3,16 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.model.tree import nodes
+from roaml.regex import regex
 from roaml.rules.rule import Rule, TreeContext
 from roaml.scxml.names import safe_name
 from roaml.text import TextEdit
 
-IDENTIFIER = re.compile(r"[A-Za-z0-9_.-]+\Z")
+IDENTIFIER = regex(r"[A-Za-z0-9_.-]+\Z")
 
 
 def check(context: TreeContext) -> Iterator[Finding]:

@@ -30,6 +30,7 @@ from roaml.model.tree import (
     nodes,
 )
 from roaml.record import Record
+from roaml.regex import regex
 from roaml.roles import Direction, NodeKind, SymbolKind
 from roaml.rules.rule import Rule, TreeContext, replacements
 from roaml.rules.support.entries import names_of
@@ -37,8 +38,8 @@ from roaml.rules.support.forest import forest_of
 from roaml.rules.support.instances import instances
 from roaml.text import Decoded, Span, TextEdit
 
-_NAME = re.compile(r"[A-Za-z_][\w.-]*\Z", re.ASCII)
-_DOLLAR = re.compile(r"[$#%]\{(@?[A-Za-z_][\w.-]*)\}\Z", re.ASCII)
+_NAME = regex(r"[A-Za-z_][\w.-]*\Z", re.ASCII)
+_DOLLAR = regex(r"[$#%]\{(@?[A-Za-z_][\w.-]*)\}\Z", re.ASCII)
 _SYSTEM_STATUSES = ("1", "2", "3")
 """The numbers that trees of systems may use for statuses."""
 
@@ -288,7 +289,7 @@ def _alone(context: TreeContext, forest: Forest) -> Iterator[Finding]:
                 yield RULE.at(default.value_span, message, severity=Severity.WARNING)
 
 
-_CODE = re.compile(r".*[(:<]|[\d.]+f\Z", re.DOTALL)
+_CODE = regex(r".*[(:<]|[\d.]+f\Z", re.DOTALL)
 """Matches defaults that are C++ expressions. Models contain these as descriptions for readers; they are not values."""
 
 

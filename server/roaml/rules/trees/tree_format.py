@@ -12,6 +12,7 @@ from roaml.edit.elements import removal, rename_tag
 from roaml.forest.forest import CPP
 from roaml.language import BEHAVIOR_TREE
 from roaml.model.tree import TreeNode, nodes
+from roaml.regex import regex
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support import misspelled
 from roaml.text import Edit, Span, TextEdit, computed
@@ -20,7 +21,7 @@ from roaml.xml_syntax import Attribute, Element
 CURRENT = "4"
 _YES = ("1", "true", "True", "TRUE")
 _SHARING = ("__shared_blackboard", "__autoremap")
-_NAME = re.compile(r"[A-Za-z_]\w*\Z", re.ASCII)
+_NAME = regex(r"[A-Za-z_]\w*\Z", re.ASCII)
 _PARALLEL = {"success_threshold": "success_count", "failure_threshold": "failure_count", "threshold": "success_count"}
 
 

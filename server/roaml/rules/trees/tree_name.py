@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
@@ -13,11 +12,12 @@ from roaml.libraries.scripts import AFTERWARDS, CONDITIONS
 from roaml.libraries.version import NAMES_CHECKED_SINCE, NEWEST_VERSION, Version
 from roaml.model.syntax import Name
 from roaml.model.tree import Tree, nodes
+from roaml.regex import regex
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.forest import forest_of
 
-_FORBIDDEN = re.compile(r"[\x00-\x20\x7f<>&\"'/\\:*?|.]")
-_CONTROL = re.compile(r"[\x00-\x1f\x7f]")
+_FORBIDDEN = regex(r"[\x00-\x20\x7f<>&\"'/\\:*?|.]")
+_CONTROL = regex(r"[\x00-\x1f\x7f]")
 _RESERVED_PORTS = ("name", "ID", "_autoremap", *CONDITIONS, *AFTERWARDS)
 
 

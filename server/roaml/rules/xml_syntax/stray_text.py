@@ -3,15 +3,15 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.language.validate import StrayText
+from roaml.regex import regex
 from roaml.rules.rule import FileContext, Rule
 from roaml.text import TextEdit
 
-DASHES = re.compile("-(?=-)")
+DASHES = regex("-(?=-)")
 """Each hyphen before another hyphen; a comment may not contain `--`."""
 
 
