@@ -28,7 +28,7 @@ from roaml.project.analysis.machines import NO_STRUCTS, Machines, Structs
 from roaml.project.analysis.sources import SourceFiles
 from roaml.project.analysis.systems import Systems
 from roaml.project.analysis.tree_files import TreeFiles
-from roaml.project.analysis.values import Values
+from roaml.project.analysis.values import ReachedValues
 from roaml.project.expanded import Expanded
 from roaml.project.files import Files
 from roaml.project.memo import Memo
@@ -83,7 +83,7 @@ class Analysis:
         self._open_files(sources, interfaces)
         self._open_trees(tree_files, families)
         self._open_systems(self._systems, machines, gaps, linking)
-        values = Values(sources, interfaces, self._systems, linking)
+        values = ReachedValues(sources, interfaces, self._systems, linking)
         self.arriving_at = values.arriving_at
         self.values_in = values.values_in
         self.local_values = values.local_values

@@ -29,7 +29,7 @@ Rounds: TypeAlias = "tuple[Arriving, ...]"
 """What can arrive at a machine in each round."""
 
 
-class Values:
+class ReachedValues:
     """The values in machines, and what can arrive at them."""
 
     def __init__(self, sources: SourceFiles, interfaces: Interfaces, systems: Systems, linking: Linking) -> None:
