@@ -93,8 +93,8 @@ def test_files(command: Command, tmp_path: Path) -> None:
     value = json.loads(Path(names["json"]).read_text(encoding="utf-8"))
     assert (value["verdict"], len(value["steps"])) == ("passed", 481)
     assert value["steps"][-1]["changes"] == [
-        {"variable": "topic_block__placed_msg.valid", "value": True},
-        {"variable": "topic_block__placed_msg__ros_fields__data", "value": True},
+        {"variable": "topic_block__placed_msg.valid", "name": "/block/placed: valid", "value": True},
+        {"variable": "topic_block__placed_msg__ros_fields__data", "name": "/block/placed.data", "value": True},
         {"variable": "holding", "automaton": "Arm", "value": False},
     ]
     assert Path(names["mermaid"]).read_text(encoding="utf-8").startswith("sequenceDiagram\n")

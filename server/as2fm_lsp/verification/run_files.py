@@ -16,6 +16,8 @@ from roaml.simulation import Session
 from roaml.simulation.table import rows
 from roaml.timeline import Axis, Timeline, View, draw_names, draw_timeline, position_of
 from roaml.verification.target import VerificationTarget
+from roaml.views.actors import names_of
+from roaml.views.shared_names import shared_names
 
 
 def csv_lines(session: Session, first: int = 0) -> Iterator[str]:
@@ -53,12 +55,14 @@ def json_text(session: Session, target: VerificationTarget) -> str:
     """The steps up to the position of the session as JSON, with the property, seed, trace, verdict and end of the
     run."""
     saved, end = session.save(), session.end
+    automata = session.automata_of_model
+    shown = shared_names(session.start, names_of(automata))
     value = {
         "property": saved.property,
         "trace": saved.trace,
         "seed": saved.seed,
         "by_hand": session.is_by_hand,
-        "steps": [step_row(target, session.automata, step) for step in session.steps[: session.position]],
+        "steps": [step_row(target, automata, shown, step) for step in session.steps[: session.position]],
         "verdict": session.verdict.value,
         "end": None if end is None else end.key,
     }

@@ -2,8 +2,8 @@
 """Traces as files: CSV for plotting, and JSON with the places from which the steps come.
 
 CSV has a line for each state, including the first one, and columns for its number, the time in s if the model has a
-clock, the reason why the trace has ended (in its last line), and each global variable; an array has a column for each
-of its elements; true is 1, false 0.
+clock, the reason why the trace has ended (in its last line), and each global variable, with its name for users
+(`roaml.views.shared_names`); an array has a column for each of its elements; true is 1, false 0.
 """
 
 from __future__ import annotations
@@ -11,19 +11,22 @@ from __future__ import annotations
 import csv
 import json
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from as2fm_lsp.outputs import OutputFiles
+from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
 from roaml.project.paths import seen_from
 from roaml.regex import regex
 from roaml.simulation.table import cells_of, suffixes_of
 from roaml.smc.end import End
-from roaml.smc.record import VERDICTS, Plain, Recorder, Recording, TraceStep
+from roaml.smc.record import VERDICTS, Plain, Recorder, Recording, TraceStep, VariableChange
 from roaml.smc.run import Answer
 from roaml.smc.tally import StoredTrace
 from roaml.verification.stuck import time_of
 from roaml.verification.target import VerificationTarget
+from roaml.views.actors import names_of
+from roaml.views.shared_names import shared_names
 from roaml.views.waiting import waits
 
 DEFAULT_LIMIT = 10
@@ -79,8 +82,9 @@ def csv_lines(recorder: Recorder, trace: int, clock: tuple[str, str] | None = No
 
     start = recorder.initial(storages, trace)
     header = ["step", *(() if places is None else ("time",)), "end"]
+    shown = shared_names(names, names_of(recorder.automata))
     for name, value in zip(names, start, strict=True):
-        header += (name + suffix for suffix in suffixes_of(value))
+        header += (shown[name] + suffix for suffix in suffixes_of(value))
     yield csv_line(header)
     recording = Recording(trace)
     number, values = 0, start
@@ -93,15 +97,15 @@ def csv_lines(recorder: Recorder, trace: int, clock: tuple[str, str] | None = No
 def json_lines(target: VerificationTarget, recorder: Recorder, trace: int) -> Iterator[str]:
     """The text of a JSON file with a trace, in parts. Each step is on one line."""
     recording = Recording(trace)
-    automata = [instance.automaton.name for instance in recorder.legend.layout.instances]
     start = dict(zip((s.name for s in recorder.shared), recorder.initial(recorder.shared, trace), strict=True))
     yield "{\n"
     name = _json(recorder.compiled_property.question.name)
     yield f' "property": {name},\n "trace": {trace},\n "seed": {recorder.seed},\n'
     yield f' "initial": {_json(start)},\n "steps": ['
+    shown = shared_names(start, names_of(recorder.automata))
     comma = "\n  "
     for step in recorder.walk(recording):
-        yield comma + _json(step_row(target, automata, step))
+        yield comma + _json(step_row(target, recorder.automata, shown, step))
         comma = ",\n  "
     verdict = VERDICTS[recording.verdict].value
     yield f'\n ],\n "verdict": {_json(verdict)},\n "end": {_json(end_of(recording))}'
@@ -120,11 +124,14 @@ def end_of(recording: Recording) -> str:
     return "fault" if recording.problem is not None else recording.end.key
 
 
-def step_row(target: VerificationTarget, automata: Sequence[str], step: TraceStep) -> dict[str, object]:
-    """A step as a value for JSON.
+def step_row(
+    target: VerificationTarget, automata: Sequence[Automaton], shown: Mapping[str, str], step: TraceStep
+) -> dict[str, object]:
+    """A step as a value for JSON. A variable has its name in JANI and, if it is another, its name for users.
 
     Args:
-        automata: the name of the automaton of each instance.
+        automata: the automaton of each instance.
+        shown: the names of the shared variables for users (`shared_names`).
     """
     return {
         "step": step.number,
@@ -139,15 +146,18 @@ def step_row(target: VerificationTarget, automata: Sequence[str], step: TraceSte
             }
             for part in step.parts
         ],
-        "changes": [
-            {
-                "variable": change.variable.name,
-                **({} if change.variable.instance < 0 else {"automaton": automata[change.variable.instance]}),
-                "value": change.after,
-            }
-            for change in step.changes
-        ],
+        "changes": [_change(change, automata, shown) for change in step.changes],
     }
+
+
+def _change(change: VariableChange, automata: Sequence[Automaton], shown: Mapping[str, str]) -> dict[str, object]:
+    instance, variable = change.variable
+    row: dict[str, object] = {"variable": variable}
+    if instance >= 0:
+        row["automaton"] = automata[instance].name
+    elif shown.get(variable, variable) != variable:
+        row["name"] = shown[variable]
+    return {**row, "value": change.after}
 
 
 def _place(target: VerificationTarget, origin: Origin | None) -> dict[str, object]:

@@ -9,12 +9,14 @@ array has a column for each of its elements; true is 1, false 0.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TypeAlias
 
 from roaml.simulation.session import Session
 from roaml.simulation.state import SystemState
 from roaml.smc.record import Plain
+from roaml.views.actors import names_of
+from roaml.views.shared_names import shared_names
 
 Cell: TypeAlias = int | float | str
 
@@ -22,6 +24,7 @@ Cell: TypeAlias = int | float | str
 def rows(session: Session, first: int = 0) -> Iterator[dict[str, Cell]]:
     """The rows of the states from step `first` to the position of the session, both included: column -> cell. The
     session moves to `first`, and from there back to its position."""
+    shown = shared_names(session.start, names_of(session.automata_of_model))
     for position in range(first, session.position + 1):
         session.jump(position)
         state = session.state()
@@ -29,7 +32,7 @@ def rows(session: Session, first: int = 0) -> Iterator[dict[str, Cell]]:
         if state.time is not None:
             row["time"] = state.time
         row["action"] = session.steps[position - 1].action or "" if position else ""
-        row.update(_state_cells(session, state))
+        row.update(_state_cells(session, state, shown))
         yield row
 
 
@@ -62,7 +65,7 @@ def suffixes_of(value: Plain) -> Iterator[str]:
         yield ""
 
 
-def _state_cells(session: Session, state: SystemState) -> Iterator[tuple[str, Cell]]:
+def _state_cells(session: Session, state: SystemState, shown: Mapping[str, str]) -> Iterator[tuple[str, Cell]]:
     for machine in state.machines:
         yield f"{machine.identifier}.state", machine.state
         phrases = session.phrases(machine.automaton)
@@ -70,8 +73,10 @@ def _state_cells(session: Session, state: SystemState) -> Iterator[tuple[str, Ce
             yield from _cells(f"{machine.identifier}.{phrases.get(name, name)}", value)
     for node in state.nodes:
         yield f"bt_{node.number}", node.status.value
-    for name, value in {**state.blackboard, **state.shared}.items():
+    for name, value in state.blackboard.items():
         yield from _cells(name, value)
+    for name, value in state.shared.items():
+        yield from _cells(shown[name], value)
 
 
 def _cells(name: str, value: Plain) -> Iterator[tuple[str, int | float]]:

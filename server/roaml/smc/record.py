@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple, TypeAlias
 
 from roaml.exhaustive import Vocabulary
-from roaml.jani.model import Destination, Edge, System
+from roaml.jani.model import Automaton, Destination, Edge, System
 from roaml.jani.types import Type, element_of, is_text
 from roaml.record import Record
 from roaml.smc.batch import TraceProblem
@@ -198,6 +198,11 @@ class Recorder:
     def shared(self) -> list[Storage]:
         """The variables of the model."""
         return list(self.legend.layout.shared)
+
+    @property
+    def automata(self) -> tuple[Automaton, ...]:
+        """The automaton of each instance."""
+        return tuple(instance.automaton for instance in self.legend.layout.instances)
 
     def values(self, storages: Sequence[Storage]) -> list[Plain]:
         """The values of the variables in the current state."""

@@ -11,23 +11,18 @@ import enum
 from collections.abc import Iterator
 
 from roaml.record import Record, field
-from roaml.scxml.events import EventRole
 from roaml.scxml.names import (
     ACTION_HANDLER_PREFIX,
     BLACKBOARD,
-    BLACKBOARD_ANSWER,
     CLOCK,
     NODE_AUTOMATON,
     SERVICE_HANDLER_PREFIX,
     STATUS_NAMES,
-    InterfaceEventKind,
     TreeEventKind,
     is_length,
     is_timer,
-    read_interface_event,
     read_tree_event,
     received_by,
-    role_of,
     sent_by,
 )
 from roaml.simulation.session import Session
@@ -35,6 +30,7 @@ from roaml.simulation.words import who
 from roaml.smc.record import TraceStep
 from roaml.views.event_words import interface_name
 from roaml.views.events import EventReader
+from roaml.views.shared_names import field_name
 
 IDLE = "IDLE"
 
@@ -151,15 +147,10 @@ class Timeline:
 
     def _field_names(self) -> Iterator[tuple[str, str]]:
         """The variables with the fields of messages, and their names for users, such as `/arm/command.data`."""
-        for event, variable, field_name in self._events.fields():
-            path = field_name.replace("__", ".")
-            interface = read_interface_event(event, self._automata)
-            if interface is None:
-                if role_of(event) is EventRole.PLAIN and event != BLACKBOARD_ANSWER and read_tree_event(event) is None:
-                    yield variable, f"{self._events.name(event)}.{path}"
-            elif interface.kind not in (InterfaceEventKind.THREAD_START, InterfaceEventKind.THREAD_FREE):
-                part = "" if interface.kind is InterfaceEventKind.MESSAGE else f" {interface.kind.value}"
-                yield variable, f"{interface_name(event, self._automata)}{part}.{path}"
+        names = dict.fromkeys(self._automata, "")
+        for event, variable, part in self._events.fields():
+            if name := field_name(event, part, names):
+                yield variable, name
 
     def _add(self, instance: int, lane: Lane) -> None:
         self._lane_of[instance] = len(self.lanes)
