@@ -4,11 +4,7 @@ estimated from traces, for every conformance system of few enough states."""
 
 from __future__ import annotations
 
-import json
-import resource
-import subprocess
 import sys
-import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,8 +17,6 @@ if TYPE_CHECKING:
 
 MAX_STATES = 2_000_000
 """Of the search for one property. Systems with more states, infinitely many for example, are left out of `SYSTEMS`."""
-MAX_BYTES, MAX_SECONDS = 6 << 30, 600
-"""Limits of Storm for one property."""
 PROPERTIES = 8
 SYSTEMS = (
     "ros_example/main.xml",
@@ -75,32 +69,12 @@ def _row(path: Path, max_states: int) -> Row:
 
 def _limited(model: api.Model, name: str) -> Exact | None:
     """Storm's answer, from a process of its own."""
-    from storm import Exact  # noqa: PLC0415
+    from storm import RefusedError, StormLimits, TooLargeError, exact_within  # noqa: PLC0415
 
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "model.jani"
-        file.write_text("".join(api.write_jani(model)), encoding="utf-8")
-        command = [sys.executable, "-c", _STORM, str(Path(__file__).resolve().parents[1] / "translate"), file, name]
-        limits = (MAX_BYTES, MAX_BYTES)
-        try:
-            ended = subprocess.run(
-                command,
-                capture_output=True,
-                check=False,
-                text=True,
-                timeout=MAX_SECONDS,
-                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, limits),
-            )
-        except subprocess.TimeoutExpired:
-            return None
-    return Exact(*json.loads(ended.stdout.splitlines()[-1])) if ended.returncode == 0 else None
+    try:
+        return exact_within(model, name, StormLimits())
+    except (TooLargeError, RefusedError):
+        return None
 
 
-_STORM = """
-import json, sys
-sys.path.append(sys.argv[1])
-from storm import exact
-from roaml import api
-print(json.dumps(exact(api.read_jani(sys.argv[2])[0], sys.argv[3])))
-"""
 BENCHMARKS: dict[str, Benchmark] = {"observers": observers}

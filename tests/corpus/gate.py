@@ -5,19 +5,32 @@ Python, and with the values that are known. Internal errors, refusals of systems
 printed, and the exit status is then 1.
 
 The systems are the examples, generated ones of several sizes, and those beside the project, if they are present: the
-conformance models and the museum guide.
+conformance models and the museum guide; with --networks also random networks in JANI, which have only the step `storm`.
+
+The step `storm` compares the minimum and the maximum of each property for the reaction times `any`, `instant`, and one
+and two steps of the clock. What is too large for it, or is refused by Storm, is printed and counted. All conformance
+models within 10 minutes and 16 GB for each property, and 300 networks:
+
+  run.py --step storm --storm-seconds 600 --storm-memory 16 --max-states 5000000 --networks 300 --resume FILE
 """
 
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
+import os
+import re
+import shutil
 import subprocess
+import sys
 import tempfile
 import time
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from dap_client import Client
 
@@ -27,6 +40,12 @@ from both_kernels import difference
 from corpus.generated import generate
 from corpus.parts import compose
 from roaml import api
+from roaml.durations import ANY_TIME, AT_ONCE, ReactionTime
+from roaml.jani.reaction import reacting
+from roaml.smc import kernel
+
+if TYPE_CHECKING:
+    from storm import Exact
 
 ROOT = Path(__file__).resolve().parents[2]
 REAL = ROOT.parent / "shared" / "real"
@@ -39,13 +58,19 @@ TRUE_MISTAKES = (
 COMPOSED = 6
 """The number of systems of independent parts."""
 TOLERANCE = 1e-6
+MAX_SECONDS = 1800
+"""The time in s after which a command counts as one that does not end."""
+IS_PLAIN = (kernel.__file__ or "").endswith(".py")
+"""Whether the library runs as plain Python, which takes 50 times as long."""
+SCHEDULERS = "lss"
+"""The method that tries hundreds of schedulers with many traces each, so its traces are short, of one property."""
 METHODS: Mapping[str, tuple[str, ...]] = {
     "default": (),
     "fixed": ("--method", "fixed", "--max-traces", "20"),
     "adaptive": ("--method", "adaptive", "--epsilon", "0.2"),
     "okamoto": ("--method", "okamoto", "--epsilon", "0.2"),
     "separate": ("--method", "fixed", "--max-traces", "20", "--separate"),
-    "lss": ("--scheduler", "lss", "--max-traces", "20", "--epsilon", "0.2"),
+    SCHEDULERS: ("--scheduler", "lss", "--method", "fixed", "--max-traces", "20"),
     "exhaustive": ("--exhaustive",),
     "all states": ("--exhaustive", "--no-reductions"),
 }
@@ -59,6 +84,10 @@ class System:
         values: the known values of properties.
         mistakes: the places at which a check must report errors; a system with errors is only checked and drawn.
         is_large: whether its traces are cut early and few states are explored.
+        judged: how often Storm agrees (`equal`), does not (`different`), reaches a limit (`too large`), or gives no
+            answer (`refused`).
+        left_out: what was not compared, and why.
+        seconds: step -> its elapsed time in s.
     """
 
     def __init__(
@@ -72,6 +101,9 @@ class System:
     ) -> None:
         self.name, self.main, self.values, self.mistakes = name, main, values or {}, mistakes
         self.is_large = is_large
+        self.judged: Counter[str] = Counter()
+        self.left_out: list[str] = []
+        self.seconds: dict[str, float] = {}
 
     @property
     def paths(self) -> tuple[str, ...]:
@@ -79,10 +111,75 @@ class System:
         is_conformance = conformance.ROOT in self.main.parents
         return ("--ros-path", str(conformance.INTERFACES)) if is_conformance else ()
 
-    @property
-    def limits(self) -> tuple[str, ...]:
-        steps, states = ("3000", "2000") if self.is_large else ("50000", "50000")
-        return ("--max-steps", steps, "--max-states", states)
+    def limits(self, method: str) -> Iterator[str]:
+        """The options that keep a method short."""
+        steps = 300 if method == SCHEDULERS else 2_000 if self.is_large else 20_000
+        states = 2_000 if self.is_large else 30_000
+        if IS_PLAIN:
+            steps, states = steps // 20, states // 20
+        if "--exhaustive" in METHODS[method]:
+            yield from ("--max-states", str(states))
+            return
+        yield from ("--max-steps", str(steps), "--confidence", "0.9999")
+        if method == "default":
+            yield from ("--max-states", str(states), *(("--max-traces", "20") if self.is_large or IS_PLAIN else ()))
+        else:
+            yield from ("--jobs", "1")
+        if method == SCHEDULERS:
+            yield from ("--property", self.names[0])
+
+    @cached_property
+    def names(self) -> list[str]:
+        """The names of the properties that have a probability."""
+        checker = api.verifier(self.subject(ANY_TIME)).checker
+        return [p.question.name for p in checker.compiled_properties if not p.question.is_reward]
+
+    def subject(self, time: ReactionTime) -> api.LoadedSystem | api.Model:
+        """The system with a reaction time."""
+        return api.load(str(self.main), self.paths[1:], overrides=api.Overrides(reaction_time=time))
+
+    @cached_property
+    def times(self) -> list[ReactionTime]:
+        """`any`, `instant`, and one and two steps of the clock; `any` alone if the system has no clock."""
+        subject = self.subject(ANY_TIME)
+        model = subject if isinstance(subject, api.Model) else api.to_jani(subject, [])
+        if model.metadata is None or model.metadata.clock is None:
+            return [ANY_TIME]
+        step = model.metadata.clock.step
+        return [ANY_TIME, ReactionTime(2 * step), ReactionTime(step), AT_ONCE]
+
+
+class RandomNetwork(System):
+    """A random network with a clock (`clocked_networks`)."""
+
+    def __init__(self, number: int, model: api.Model) -> None:
+        super().__init__(f"network {number}", Path())
+        self.model = model
+
+    def subject(self, time: ReactionTime) -> api.Model:
+        return reacting(self.model, time)
+
+
+def networks(count: int) -> Iterator[RandomNetwork]:
+    """The same networks each time, in which guards of an automaton read only its own variables, as in systems."""
+    if not count:
+        return
+    from clocked_networks import clocked  # noqa: PLC0415 - imports hypothesis
+    from hypothesis import HealthCheck, Phase, given, seed, settings  # noqa: PLC0415
+    from test_reaction_time import is_local  # noqa: PLC0415 - a module of the same folder
+
+    models: list[api.Model] = []
+
+    @seed(1)
+    @settings(max_examples=3 * count, database=None, deadline=None, phases=[Phase.generate],
+              suppress_health_check=list(HealthCheck))  # fmt: skip
+    @given(clocked())
+    def collect(model: api.Model) -> None:
+        if is_local(model):
+            models.append(model)
+
+    collect()
+    yield from (RandomNetwork(number, model) for number, model in enumerate(models[:count]))
 
 
 def systems(folder: Path, sizes: Mapping[int, int]) -> Iterator[System]:
@@ -120,7 +217,12 @@ def composed(folder: Path, seeds: Iterable[int]) -> Iterator[System]:
 
 def run(*arguments: str, accepted: tuple[int, ...] = (0,)) -> tuple[str, str]:
     """Run a command; return its standard output and what is wrong with it, "" if nothing is."""
-    done = subprocess.run([*prefork.command(), *arguments], capture_output=True, text=True, check=False)
+    try:
+        done = subprocess.run(
+            [*prefork.command(), *arguments], capture_output=True, text=True, check=False, timeout=MAX_SECONDS
+        )
+    except subprocess.TimeoutExpired:
+        return "", f"does not end within {MAX_SECONDS} s"
     if done.returncode in accepted and "Traceback" not in done.stderr and "internal error" not in done.stderr:
         return done.stdout, ""
     last = (done.stderr or done.stdout).strip().splitlines()[-3:]
@@ -154,12 +256,7 @@ def verify(system: System, names: tuple[str, ...] = tuple(METHODS)) -> Iterator[
         name: [("by construction", value, value)] for name, value in system.values.items()
     }
     for name in names:
-        options = METHODS[name]
-        arguments = [*options, *system.limits]
-        if "--exhaustive" not in options:
-            arguments = [*arguments[: arguments.index("--max-states")], "--confidence", "0.9999"]
-        if system.is_large and not options:
-            arguments += ["--max-traces", "20"]
+        arguments = [*METHODS[name], *system.limits(name)]
         out, problem = run("verify", str(system.main), *system.paths, "--format", "json", *arguments, accepted=(0, 1))
         if problem:
             yield f"{name}: {problem}"
@@ -218,8 +315,7 @@ def debug(system: System) -> Iterator[str]:
 
 def kernels(system: System) -> Iterator[str]:
     """The compiled kernel and the same code as plain Python generate the same traces."""
-    loaded = api.load(str(system.main), [str(conformance.INTERFACES)] if system.paths else [])
-    checker = api.verifier(loaded).checker
+    checker = api.verifier(system.subject(ANY_TIME)).checker
     for property_ in checker.compiled_properties[:2]:
         for scheduler in (0, 3):
             found = difference(checker, property_, 1, 2, 150, scheduler)
@@ -228,23 +324,55 @@ def kernels(system: System) -> Iterator[str]:
 
 
 def storm(system: System) -> Iterator[str]:
-    """Storm, the search and traces agree where Storm can build the states."""
-    if system.is_large:
-        return
-    from fixed_point import NotExactError  # noqa: PLC0415 - a module beside that of the next import
-    from three_answers import answers  # noqa: PLC0415 - imports Storm
+    """Storm, the search and traces agree for each reaction time; a shorter one does not widen the range of values."""
+    for name in system.names:
+        before: tuple[float, float] | None = None
+        for reaction in system.times:
+            found, values = _judged(system, name, reaction)
+            yield from (f"{name}, reaction time {reaction.text}: {problem}" for problem in found)
+            if before and values and (values[0] < before[0] - TOLERANCE or values[1] > before[1] + TOLERANCE):
+                yield f"{name}: {values} for the reaction time {reaction.text}, {before} for a longer one"
+            before = values or before
 
-    loaded = api.load(str(system.main))
-    for name in _names(loaded):
+
+class JudgeLimits(NamedTuple):
+    """Limits of the step `storm` for one property and reaction time: CPU time of Storm in s, memory in GB, and states
+    of the search."""
+
+    seconds: int = 5
+    memory: int = 4
+    states: int = 20_000
+
+
+def _judged(system: System, name: str, time: ReactionTime) -> tuple[list[str], tuple[float, float] | None]:
+    """The differences, and the minimum and maximum of the search, if it has an answer."""
+    from storm import RefusedError, StormLimits, TooLargeError, exact_within  # noqa: PLC0415 - imports Storm
+    from three_answers import answers  # noqa: PLC0415
+
+    limits, verdict = JUDGE[0], "equal"
+
+    def storms_answer(model: api.Model, property_: str) -> Exact | None:
+        nonlocal verdict
         try:
-            found = list(answers(loaded, name, 20_000).differences())
-        except (RuntimeError, NotExactError):
-            continue  # Storm refuses this form of property, or its integers cannot represent the real variables
-        yield from (f"{name}: {difference_}" for difference_ in found)
+            return exact_within(model, property_, StormLimits(limits.seconds, limits.memory << 30))
+        except TooLargeError:
+            verdict = f"too large for Storm ({limits.seconds} s, {limits.memory} GB)"
+        except RefusedError as error:
+            verdict = f"refused: {error}"
+        return None
 
-
-def _names(loaded: Any) -> list[str]:
-    return [p.question.name for p in api.verifier(loaded).checker.compiled_properties if not p.question.is_reward]
+    answer = answers(system.subject(time), name, limits.states, storms_answer)
+    found = list(answer.differences())
+    if found:
+        verdict = "different"
+    elif answer.undecided.startswith("stopped"):
+        verdict = f"too large: {answer.undecided}"
+    elif answer.storm is not None and answer.searched is None:
+        verdict = f"refused: no values: {answer.undecided}"
+    system.judged[re.split(r" for|:", verdict)[0]] += 1
+    if verdict not in ("equal", "different"):
+        system.left_out.append(f"{name}, reaction time {time.text}: {verdict}")
+    return found, answer.searched
 
 
 Step = Callable[[System], Iterator[str]]
@@ -258,17 +386,24 @@ STEPS: Mapping[str, Step] = {
     "kernels": kernels,
     "storm": storm,
 }
+JUDGE = [JudgeLimits()]
+"""The limits of the step `storm`, which the command line replaces."""
 
 
 def problems(system: System, steps: Mapping[str, Step] = STEPS) -> Iterator[str]:
-    """What fails for a system; a system with mistakes is only checked and drawn."""
+    """What fails for a system. A system with mistakes is only checked and drawn; a network has only the last step."""
     for name, step in steps.items():
-        if not system.mistakes or name in ("check", "draw"):
-            try:
-                found = list(step(system))
-            except Exception as error:  # whatever a step raises is what the gate looks for
-                found = [f"{type(error).__name__}: {error}"]
-            yield from (f"{system.name}: {name}: {problem}" for problem in found)
+        if system.mistakes and name not in ("check", "draw"):
+            continue
+        if isinstance(system, RandomNetwork) and name not in ("kernels", "storm"):
+            continue
+        begun = time.monotonic()
+        try:
+            found = list(step(system))
+        except Exception as error:  # whatever a step raises is what the gate looks for
+            found = [f"{type(error).__name__}: {error}"]
+        system.seconds[name] = round(time.monotonic() - begun, 1)
+        yield from (f"{system.name}: {name}: {problem}" for problem in found)
 
 
 def main() -> int:
@@ -277,18 +412,55 @@ def main() -> int:
     )
     parser.add_argument("--only", default="", metavar="TEXT", help="only systems whose name contains this")
     parser.add_argument("--step", action="append", choices=list(STEPS), help="only this step; may be repeated")
+    parser.add_argument("--plain", action="store_true", help="with the compiled modules as plain Python")
+    parser.add_argument("--resume", type=Path, metavar="FILE", help="leave out systems that passed before; record more")
+    parser.add_argument("--networks", type=int, default=0, metavar="N", help="also N random networks, for step storm")
+    default = JudgeLimits()
+    parser.add_argument("--storm-seconds", type=int, default=default.seconds, metavar="N", help="CPU time of Storm")
+    parser.add_argument("--storm-memory", type=int, default=default.memory, metavar="GB", help="memory of Storm")
+    parser.add_argument("--max-states", type=int, default=default.states, metavar="N", help="of searches beside Storm")
     options = parser.parse_args()
+    if options.plain and not IS_PLAIN:
+        return _run_plain()
+    JUDGE[0] = JudgeLimits(options.storm_seconds, options.storm_memory, options.max_states)
     steps = {name: step for name, step in STEPS.items() if not options.step or name in options.step}
-    failures = tried = 0
     with tempfile.TemporaryDirectory() as folder:
-        for system in systems(Path(folder), {1: 1, 2: 2, 3: 3, 4: 30, 5: 60}):
-            if options.only not in system.name:
-                continue
-            begun = time.monotonic()
-            found = list(problems(system, steps))
-            tried, failures = tried + 1, failures + len(found)
-            print(f"{'FAILED' if found else 'passed'} {system.name} ({time.monotonic() - begun:.1f} s)", flush=True)
-            for problem in found:
-                print(f"  {problem}", flush=True)
-    print(f"{tried} systems, {failures} problems")
-    return 1 if failures or not tried else 0
+        chosen = itertools.chain(systems(Path(folder), {1: 1, 2: 2, 3: 3, 4: 30, 5: 60}), networks(options.networks))
+        return _run([system for system in chosen if options.only in system.name], steps, options.resume)
+
+
+def _run(chosen: list[System], steps: Mapping[str, Step], record: Path | None) -> int:
+    """Print what fails; return the exit status."""
+    lines = record.read_text(encoding="utf-8").splitlines() if record and record.exists() else []
+    passed = {(row["system"], tuple(row["steps"])): row for row in map(json.loads, lines) if not row["problems"]}
+    failures, judged, begun = 0, Counter[str](), time.monotonic()
+    for system in chosen:
+        if row := passed.get((system.name, tuple(steps))):
+            judged.update(row["judged"])
+            print(f"passed before: {system.name}", flush=True)
+            continue
+        since = time.monotonic()
+        found = list(problems(system, steps))
+        failures += len(found)
+        judged.update(system.judged)
+        print(f"{'FAILED' if found else 'passed'} {system.name} ({time.monotonic() - since:.1f} s)", flush=True)
+        for text in (*found, *(f"left out: {text}" for text in system.left_out)):
+            print(f"  {text}", flush=True)
+        row = {"system": system.name, "steps": list(steps), "problems": found, "judged": system.judged}
+        if record:
+            with record.open("a", encoding="utf-8") as file:
+                file.write(json.dumps({**row, "left out": system.left_out, "seconds": system.seconds}) + "\n")
+    counts = ", ".join(f"{count} {verdict}" for verdict, count in sorted(judged.items()))
+    print(
+        f"{len(chosen)} systems, {failures} problems, {time.monotonic() - begun:.0f} s; Storm: {counts or 'not asked'}"
+    )
+    return 1 if failures or not chosen else 0
+
+
+def _run_plain() -> int:
+    """Run this program again, with a copy of the library that contains no compiled modules."""
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder, "server")
+        shutil.copytree(ROOT / "server", copy, ignore=shutil.ignore_patterns("*.so", "*.pyd", "__pycache__"))
+        environment = {**os.environ, "PYTHONPATH": str(copy)}
+        return subprocess.run([sys.executable, *sys.argv], env=environment, check=False).returncode

@@ -5,7 +5,7 @@
 import sys
 from pathlib import Path
 
-for folder in ("", "debug", "smc", "translate"):
+for folder in ("", "debug", "explicit", "smc", "translate"):
     sys.path.insert(0, str(Path(__file__).resolve().parents[1] / folder))
 
 from corpus.gate import main  # noqa: E402

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from storm import Exact, exact
 
 from roaml import api
+from roaml.record import replace
 
 TOLERANCE = 1e-5
 SAMPLING = api.Options(method=api.EstimationMethod.FIXED, max_traces=200, max_steps=20_000, seed=1, confidence=0.9999)
@@ -54,7 +55,7 @@ class Answers:
 
 
 def answers(
-    source: api.LoadedSystem,
+    source: api.LoadedSystem | api.Model,
     name: str,
     max_states: int,
     storms_answer: Callable[[api.Model, str], Exact | None] = exact,
@@ -70,7 +71,7 @@ def answers(
     assert sampled.answer is not None, sampled.outcome
     undecided = result.outcome.reason if isinstance(result.outcome, api.Undecided) else ""
     exact = result.exact
-    storm = None if undecided.startswith("stopped") else storms_answer(api.to_jani(source, [name]), name)
+    storm = None if undecided.startswith("stopped") else storms_answer(_model(source, name), name)
     return Answers(
         None if storm is None else (storm.least, storm.greatest),
         0 if storm is None else storm.states,
@@ -80,3 +81,9 @@ def answers(
         sampled.answer.bounds,
         sampled.answer.tally.undecided,
     )
+
+
+def _model(source: api.LoadedSystem | api.Model, name: str) -> api.Model:
+    if not isinstance(source, api.Model):
+        return api.to_jani(source, [name])
+    return replace(source, properties=tuple(p for p in source.properties if p.name == name))
