@@ -210,6 +210,7 @@ class _Verification:
         self.limits = verifier.options
         self.outputs = outputs_of(options, self.target.files)
         self.stuck_result: stuck.StuckResult | None = None
+        self.partings: dict[str, str] = {}
         self.state = None if options.resume is None else SavedState(options.resume, self.limits)
         self.results: list[Result] = []
         self.faults: list[FaultError] = []
@@ -575,7 +576,9 @@ class _Verification:
         stories: list[Story] = []
         for result in self.results:
             if isinstance(result.outcome, Computed):
-                stories += self._shortest(result, result.outcome.exact)
+                for story in self._shortest(result, result.outcome.exact):
+                    self._compare(result, story)
+                    stories.append(story)
                 continue
             traces = result.traces
             if result.answer is None or traces is None:
@@ -593,8 +596,18 @@ class _Verification:
                     print_text(f"{result.name}: there is no trace in which it {verb}\n", stream=sys.stderr)
                 else:
                     stories.append(traces.story(seen.trace))
+                    self._compare(result, stories[-1])
         for file in self.options.explain:
             self._write_stories(stories, file)
+
+    def _compare(self, result: Result, story: Story) -> None:
+        """Keep where a trace parts from the nearest one with the opposite verdict."""
+        from roaml.verification.nearest import nearest  # noqa: PLC0415
+        from roaml.views.parting import parting_text  # noqa: PLC0415
+
+        near = nearest(result, story, self.target.clock)
+        if near is not None:
+            self.partings[story.property] = parting_text(near.parting, near.story, self._place)
 
     def _shortest(self, result: Result, exact: Exact) -> Iterator[Story]:
         """The explanation of the shortest trace that contradicts an expectation."""
@@ -622,7 +635,8 @@ class _Verification:
         shown_at: dict[object, str] = {}
         for story in stories:
             chain = stuck.chain_of(waits_of(story))
-            texts.append(story_text(story, self._place, shown_at.get(chain, "") if chain else ""))
+            text = story_text(story, self._place, shown_at.get(chain, "") if chain else "")
+            texts.append(text + self.partings.get(story.property, ""))
             shown_at.setdefault(chain, f"above, at the end of the trace of `{story.property}`")
         text = "\n".join(texts)
         return text + explained(text, self.target.model, self._place)

@@ -98,6 +98,7 @@ if TYPE_CHECKING:
     from roaml.verification.expectations import Expectation, RangeError, Verdict
     from roaml.verification.explorations import Explorations
     from roaml.verification.growth import GrowingVariable
+    from roaml.verification.nearest import Nearest, nearest
     from roaml.verification.refusal import Refusal
     from roaml.verification.results import (
         Computed,
@@ -120,6 +121,7 @@ if TYPE_CHECKING:
     from roaml.verification.stuck import Stuck, StuckLevel, StuckResult
     from roaml.verification.target import LineColumn, VerificationTarget
     from roaml.verification.verifier import NoThresholdError, Verifier
+    from roaml.views.parting import Parting, parting, read_trace
     from roaml.views.story import StoryLine
     from roaml.views.waiting import Wait
 else:
@@ -196,6 +198,7 @@ else:
         "roaml.smc.story": ("Story",),
         "roaml.verification.counterexample": ("Counterexample", "counterexample"),
         "roaml.verification.expectations": ("Expectation", "RangeError", "Verdict"),
+        "roaml.verification.nearest": ("Nearest", "nearest"),
         "roaml.verification.explorations": ("Explorations",),
         "roaml.verification.refusal": ("Refusal",),
         "roaml.verification.results": (
@@ -219,6 +222,7 @@ else:
         "roaml.verification.stuck": ("StuckResult", "Stuck", "StuckLevel"),
         "roaml.verification.target": ("LineColumn", "VerificationTarget"),
         "roaml.verification.verifier": ("NoThresholdError", "Verifier"),
+        "roaml.views.parting": ("Parting", "parting", "read_trace"),
         "roaml.views.story": ("StoryLine",),
         "roaml.views.waiting": ("Wait",),
     }
@@ -291,6 +295,7 @@ __all__ = [
     "Model",
     "ModelChecker",
     "ModelError",
+    "Nearest",
     "Network",
     "NoThresholdError",
     "NodeState",
@@ -301,6 +306,7 @@ __all__ = [
     "Outcome",
     "Overrides",
     "ParameterError",
+    "Parting",
     "PathError",
     "PointKind",
     "Pool",
@@ -374,10 +380,13 @@ __all__ = [
     "load",
     "loaded",
     "migrate",
+    "nearest",
+    "parting",
     "propose_mocks",
     "proposed_text",
     "read_jani",
     "read_mocks",
+    "read_trace",
     "session",
     "source_map",
     "target",

@@ -132,8 +132,7 @@ def heading(story: Story) -> str:
     verdict = VERDICTS[story.recording.verdict]
     outcome = "went wrong" if verdict is TraceVerdict.FAULT else verdict.value
     steps = f"{len(story.steps):,} {'step' if len(story.steps) == 1 else 'steps'}"
-    number = story.recording.trace
-    trace = {SHORTEST: "the shortest trace", SELECTED: "a trace"}.get(number, f"trace {number}")
+    trace = trace_name(story)
     text = f"{story.property} {outcome} in {trace} after {steps}"
     if story.recording.end is End.STUCK:
         text = f"{story.property}: {trace} gets stuck after {steps}"
@@ -147,6 +146,12 @@ def heading(story: Story) -> str:
     read = [name for name in story.variables if not reads_observer(name, automata) and not _is_status(name)]
     variables = message_phrases(read, automata)
     return text + (f" (it reads {', '.join(variables)})" if variables else "")
+
+
+def trace_name(story: Story) -> str:
+    """The name of a trace in a sentence, such as `trace 20`."""
+    number = story.recording.trace
+    return {SHORTEST: "the shortest trace", SELECTED: "a trace"}.get(number, f"trace {number}")
 
 
 def _is_status(name: str) -> bool:

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where two traces of a model part: the first turn of an automaton that differs.
+
+The turns of each automaton are compared in their order (`roaml.views.turns`), without their times and without the order
+between different automata, which may be a choice of the scheduler and have no effect. What the translation has added
+is not compared.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from roaml.jani.node import Origin
+from roaml.record import Record, replace
+from roaml.smc.record import VERDICTS
+from roaml.smc.story import Story
+from roaml.views.story import trace_name
+from roaml.views.turn_words import details, what
+from roaml.views.turns import Turn, turns
+
+PlaceOf = Callable[[Origin], str]
+
+
+class Parting(Record, frozen=True):
+    """The first difference between two traces.
+
+    Attributes:
+        common: the number of turns before it in the first trace, which the second one contains as well.
+        here, there: the first turn that differs, of the same automaton; `None` if the automaton takes no further turn
+            in the second trace.
+    """
+
+    common: int
+    here: Turn
+    there: Turn | None
+
+
+class ReadTrace(Record, frozen=True):
+    """A trace whose turns have been read.
+
+    Attributes:
+        turns: all turns of machines and nodes, in the order in which they begin.
+        lanes: the indexes of the turns of each automaton, by the number of its instance.
+        keys: what is compared of each turn.
+    """
+
+    story: Story
+    turns: tuple[Turn, ...]
+    lanes: Mapping[int, Sequence[int]]
+    keys: tuple[object, ...]
+
+
+def read_trace(story: Story) -> ReadTrace:
+    """All turns of a trace, not only those that are relevant for its property."""
+    every = tuple(range(len(story.steps)))
+    all_turns = tuple(turns(replace(story, relevant=every, is_whole=True)))
+    lanes: dict[int, list[int]] = {}
+    for index, turn in enumerate(all_turns):
+        lanes.setdefault(turn.instance, []).append(index)
+    return ReadTrace(story, all_turns, lanes, tuple((what(turn), *details(turn)) for turn in all_turns))
+
+
+def parting(first: ReadTrace, second: ReadTrace) -> Parting | None:
+    """The first difference of two traces of a model; `None` if each automaton does the same in both."""
+    places = (_difference(first, second, instance) for instance in first.lanes)
+    found = [place for place in places if place is not None]
+    # An automaton that takes no further turn in a trace may only have had no time for it.
+    index, other = min(found, key=lambda place: (place[1] is None, place[0]), default=(None, None))
+    if index is None:
+        return None
+    return Parting(index, first.turns[index], None if other is None else second.turns[other])
+
+
+def _difference(first: ReadTrace, second: ReadTrace, instance: int) -> tuple[int, int | None] | None:
+    """The indexes of the first turns of an automaton that differ."""
+    here, there = first.lanes[instance], second.lanes.get(instance, ())
+    for number, index in enumerate(here):
+        if number == len(there):
+            return index, None
+        if first.keys[index] != second.keys[there[number]]:
+            return index, there[number]
+    return None
+
+
+def parting_text(difference: Parting, other: Story, place_of: PlaceOf) -> str:
+    """The first difference between a trace and another one, as indented lines of text.
+
+    Args:
+        other: the second trace.
+        place_of: file and line of an origin.
+    """
+    turn, count = difference.here, difference.common
+    at = "" if turn.time is None else f" at {turn.time:.3f} s"
+    same = f"the first {count:,} {'turn is' if count == 1 else 'turns are'} the same"
+    there = "takes no further turn" if difference.there is None else _turn(difference.there, place_of)
+    return (
+        f"  {trace_name(other)} {VERDICTS[other.recording.verdict].value}: {same}, then {turn.who}{at}\n"
+        f"    here   {_turn(turn, place_of)}\n"
+        f"    there  {there}\n"
+    )
+
+
+def _turn(turn: Turn, place_of: PlaceOf) -> str:
+    effects = ", ".join(details(turn))
+    place = "" if turn.origin is None else place_of(turn.origin)
+    return f"{what(turn)}{f' and {effects}' if effects else ''}{f' ({place})' if place else ''}"
