@@ -243,5 +243,5 @@ def test_nodes_have_the_numbers_of_the_picture(tmp_path: Path, main: str) -> Non
     assert sorted(statuses[number] for number in statuses.keys() - drawn.keys()) == sorted(subtrees)
     assert session.is_decided
     outcome = measure(tree.mocked, tree.target, Options(max_traces=1000))
-    assert outcome.unfinished == 0
+    assert outcome.unfinished.value == 0
     assert outcome.success.value == pytest.approx(0.25 / (1 + main.count("Leaf")), abs=0.06)

@@ -39,5 +39,5 @@ def add_reaction_time(parser: argparse.ArgumentParser) -> None:
         type=reaction_time_of,
         metavar="TIME",
         help="how long machines may wait before they take a possible step: any, instant, or a duration such as "
-        "'20 ms'; overrides reaction_time of <max_time> in MAIN.xml (any)",
+        "'20 ms'; overrides reaction_time of <max_time> in MAIN.xml (any; for a tree with mocks: instant)",
     )

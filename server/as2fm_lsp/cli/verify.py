@@ -156,6 +156,7 @@ def _run_tree(
     interrupts: Interrupts,
 ) -> int:
     """Verify a tree without a system, with mocks (docs/spec/mocks.md)."""
+    from roaml.experiments.exact_trees import measure_exactly  # noqa: PLC0415
     from roaml.verification.tree_outcome import (  # noqa: PLC0415 - systems start faster without it
         TRACES,
         measure,
@@ -169,17 +170,30 @@ def _run_tree(
     try:
         with StatusLine() as status:
             status.stage("reading and translating")
-            counts = not options.exhaustive
             declared = declarations_in(options)
             settings = with_reaction_time(settings, options)
             tree = load_mocked_tree(
-                options.main, declared, options.max_time, settings, MESSAGES, counts=counts, texts=options.texts
+                options.main, declared, options.max_time, settings, MESSAGES, counts=True, texts=options.texts
             )
+            status.stage("exploring the states")
+            outcome = None
+            if options.exhaustive or not asks_for_traces(options):
+                outcome = measure_exactly(tree.mocked, tree.target, state_limits_in(options))
             status.stage("compiling")
             names = options.property or [SUCCEEDS]
-            verifier = api.verifier(tree.target, names, limits, expectations, only_uniform=True)
-            status.stage("making traces")
-            outcome = None if options.exhaustive else measure(tree.mocked, tree.target, limits)
+            verifier = api.verifier(
+                tree.target,
+                names,
+                limits,
+                expectations,
+                only_uniform=True,
+                exact_if_small=outcome is not None and not options.exhaustive,
+                example_traces=EXAMPLE_TRACES,
+                limits=state_limits_in(options),
+            )
+            if outcome is None and not options.exhaustive:
+                status.stage("making traces")
+                outcome = measure(tree.mocked, tree.target, limits)
     except MockError as error:
         raise UsageError(str(error)) from None
     except api.ModelError as error:
@@ -460,14 +474,24 @@ class _Verification:
 
         assert self.tree is not None
         mocked, outcome = self.tree
-        if outcome is not None:
+        if outcome is None:
+            text += tree_report.NOT_MEASURED
+        else:
             text += tree_report.as_text(mocked, outcome, self._place, is_whole=is_verbose())
-            succeeds = next((r for r in self.results if r.name == "succeeds" and r.traces is not None), None)
-            failing = None if succeeds is None or has_story else unwanted_trace(succeeds)
-            if succeeds is not None and succeeds.traces is not None and failing is not None:
-                story = succeeds.traces.story(failing.trace)
-                text += tree_report.story_as_text(mocked, story, self._place, is_whole=is_verbose())
+        succeeds = next((result for result in self.results if result.name == SUCCEEDS), None)
+        story = None if succeeds is None or has_story else self._unwanted_story(succeeds)
+        if story is not None:
+            text += tree_report.story_as_text(mocked, story, self._place, is_whole=is_verbose())
         return f"{text}{tree_report.assumptions(mocked)}\n"
+
+    def _unwanted_story(self, result: Result) -> Story | None:
+        """The explanation of a trace that contradicts an expectation: the shortest one that the search through all
+        states has found, otherwise the shortest random one."""
+        found = None if result.exact is None else result.exact.shortest(unwanted_verdict(result))
+        if found is not None:
+            return found.story(self.target.clock)
+        seen = unwanted_trace(result)
+        return None if seen is None or result.traces is None else result.traces.story(seen.trace)
 
     def _where_shown(self, has_story: bool) -> str:
         """The place in the output where the traces of the properties show the automata that wait in the stuck trace; ""

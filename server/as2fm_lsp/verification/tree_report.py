@@ -12,10 +12,9 @@ from roaml.lower.programs.nodes import EVENT_PROBABILITY
 from roaml.mocks.network import MockedTree
 from roaml.scxml.names import TreeEventKind, sent_by, tree_event_name
 from roaml.smc.program import TRUE
-from roaml.smc.statistics import Bounds
 from roaml.smc.story import Story
 from roaml.text import Location
-from roaml.verification.tree_outcome import COUNTERS, Influence, TreeOutcome
+from roaml.verification.tree_outcome import COUNTERS, Influence, Measured, TreeOutcome
 from roaml.views.cause import cause
 from roaml.views.turns import Turn, turns
 
@@ -24,8 +23,15 @@ MIN_NORMAL_TRACES = 30
 """If fewer traces than this succeed, or fewer fail, the intervals of influences are only approximate."""
 RAISED_BY = 0.01
 """The change of the probability of a mock for which the report states the influence."""
+NEGLIGIBLE = 0.0001
+"""The change of the probability of success below which the report states that there is almost no difference."""
 MAX_LINES = 40
 """The maximum number of shown lines of a trace; the lines in its middle are folded."""
+
+NOT_MEASURED = (
+    "  not computed: times, recoveries and influences, because there are too many states or choices; omit --exhaustive "
+    "to estimate them from traces\n"
+)
 
 PlaceOf = Callable[[Location], str]
 
@@ -54,30 +60,28 @@ def assumptions(mocked: MockedTree) -> str:
 
 
 def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf, is_whole: bool) -> Iterator[str]:
-    failure = outcome.failure
-    yield f"  the tree fails: {_interval(failure.value, failure.bounds)}"
-    if outcome.unfinished:
-        yield f"  not ended when the time ends: {outcome.unfinished} of {outcome.traces} traces"
-    if outcome.exceptions:
-        yield f"  ended by an exception of the library: {outcome.exceptions} of {outcome.traces} traces"
+    yield f"  the tree fails: {_interval(outcome.failure)}"
+    if outcome.unfinished.value:
+        yield f"  not ended when the time ends: {_interval(outcome.unfinished)}"
+    if outcome.exceptions.value:
+        yield f"  ended by an exception of the library: {_interval(outcome.exceptions)}"
     if outcome.time is not None:
-        yield f"  time until success: mean {_interval(outcome.time.mean, outcome.time.bounds(outcome.confidence))} s"
+        yield f"  time until success: mean {_interval(outcome.time)} s"
         for quantile in outcome.quantiles:
-            yield f"    {quantile.share:.0%} within {_interval(quantile.value, quantile.bounds)} s"
-    for node, counter, tally in outcome.counts:
-        bounds = tally.bounds(outcome.confidence)
-        mean = _interval(tally.mean, bounds) if bounds.half_width else f"{tally.mean:g} in all traces"
+            yield f"    {quantile.share:.0%} within {_interval(Measured(quantile.value, quantile.bounds))} s"
+    for node, counter, value in outcome.counts:
+        is_constant = value.bounds.lower == value.bounds.upper and not outcome.is_exact
+        mean = f"{value.value:g} in all traces" if is_constant else _interval(value)
         yield f"  {counter.replace('_', ' ')} of {node.name} ({place_of(node.origin)}): mean {mean}"
-    if not outcome.influences and any(0 < leaf.probability < 1 for leaf in mocked.leaves):
+    if not outcome.influences and not outcome.is_exact and any(0 < leaf.probability < 1 for leaf in mocked.leaves):
         yield (
             "  the influence of the leaves cannot be estimated, because all traces had the same outcome; more traces "
             "(--max-traces) may have other outcomes"
         )
     if outcome.influences:
-        rare = min(outcome.success.count, outcome.traces - outcome.success.count)
         note = (
-            f" (only {rare} traces differ from the others: the intervals are approximate)"
-            if rare < MIN_NORMAL_TRACES
+            f" (only {outcome.rare} traces differ from the others: the intervals are approximate)"
+            if outcome.rare is not None and outcome.rare < MIN_NORMAL_TRACES
             else ""
         )
         yield f"  influence of the leaves on the probability that the tree succeeds{note}:"
@@ -89,18 +93,24 @@ def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf, is_whole
 
 
 def _influence(influence: Influence, place_of: PlaceOf) -> str:
-    """What a small change of the probability of a mock adds, such as `raising Grasp (tree.xml:5) from 0.9 to 0.91 adds
-    about 0.008 in [0.005, 0.011]`."""
+    """What a small change of the probability of a mock does, such as `raising Grasp (tree.xml:5) from 0.9 to 0.91 adds
+    0.008`."""
     node, before = influence.leaf.node, influence.leaf.probability
     change = RAISED_BY if before + RAISED_BY <= 1 else 1 - before
-    low, high = change * influence.bounds.lower, change * influence.bounds.upper
-    return (
-        f"raising {node.name} ({place_of(node.origin)}) from {before:.6g} to {before + change:.6g} adds about "
-        f"{change * influence.value:.2g} in [{low:.2g}, {high:.2g}]"
-    )
+    low, value, high = (change * v for v in (influence.bounds.lower, influence.value, influence.bounds.upper))
+    raised = f"raising {node.name} ({place_of(node.origin)}) from {before:.6g} to {before + change:.6g}"
+    if abs(value) < NEGLIGIBLE and abs(low) < NEGLIGIBLE and abs(high) < NEGLIGIBLE:
+        return f"{raised} makes almost no difference (less than {NEGLIGIBLE:g})"
+    if low == high:
+        return f"{raised} {'adds' if value > 0 else 'takes away'} {abs(value):.2g}"
+    if low <= 0 <= high:
+        return f"{raised} makes no difference that these traces show ({low:.2g} to {high:.2g})"
+    least, most = sorted((abs(low), abs(high)))
+    return f"{raised} {'adds' if value > 0 else 'takes away'} about {abs(value):.2g} ({least:.2g} to {most:.2g})"
 
 
-def _interval(value: float, bounds: Bounds) -> str:
+def _interval(measured: Measured) -> str:
+    value, bounds = measured.value, measured.bounds
     if bounds.lower == bounds.upper:
         return f"{value:.4g}"
     upper = "∞" if math.isinf(bounds.upper) else f"{bounds.upper:.4g}"
@@ -141,7 +151,8 @@ def story_as_text(mocked: MockedTree, story: Story, place_of: PlaceOf, *, is_who
         folded = len(lines) - MAX_LINES
         lines[MAX_LINES // 2 : -MAX_LINES // 2] = [f"  … {folded} more statuses (--verbose) …"]
     outcome = "with" if story.recording.verdict == TRUE else "without"
-    head = f"the shortest trace {outcome} success (trace {story.recording.trace}):"
+    number = story.recording.trace
+    head = f"the shortest trace {outcome} success (trace {number}):" if number >= 0 else f"a trace {outcome} success:"
     why = cause(story, place_of)
     return "".join(f"{line}\n" for line in (*([why] if why else []), head, *lines))
 
@@ -158,19 +169,18 @@ def as_row(mocked: MockedTree, outcome: TreeOutcome) -> dict[str, Any]:
         "nodes": len(mocked.tree.nodes),
         "tick_rate": float(mocked.options.rate),
         "max_time": mocked.options.max_time / 1e9,
+        "exact": outcome.is_exact,
         "traces": outcome.traces,
-        "success": _share_row(outcome.success.value, outcome.success.bounds),
-        "failure": _share_row(outcome.failure.value, outcome.failure.bounds),
-        "unfinished": outcome.unfinished,
-        "exceptions": outcome.exceptions,
-        "time": None
-        if outcome.time is None
-        else _share_row(outcome.time.mean, outcome.time.bounds(outcome.confidence)),
-        "quantiles": [{"share": q.share, **_share_row(q.value, q.bounds)} for q in outcome.quantiles],
+        "success": _row(outcome.success),
+        "failure": _row(outcome.failure),
+        "unfinished": _row(outcome.unfinished),
+        "exceptions": _row(outcome.exceptions),
+        "time": None if outcome.time is None else _row(outcome.time),
+        "quantiles": [{"share": q.share, **_row(Measured(q.value, q.bounds))} for q in outcome.quantiles],
         **{
             counter: [
-                {"node": node.name, "number": node.number, **_share_row(t.mean, t.bounds(outcome.confidence))}
-                for node, known, t in outcome.counts
+                {"node": node.name, "number": node.number, **_row(value)}
+                for node, known, value in outcome.counts
                 if known == counter
             ]
             for counter in COUNTERS
@@ -180,7 +190,7 @@ def as_row(mocked: MockedTree, outcome: TreeOutcome) -> dict[str, Any]:
                 "node": i.leaf.node.name,
                 "number": i.leaf.node.number,
                 "probability": i.leaf.probability,
-                **_share_row(i.value, i.bounds),
+                **_row(Measured(i.value, i.bounds)),
             }
             for i in outcome.influences
         ],
@@ -188,9 +198,10 @@ def as_row(mocked: MockedTree, outcome: TreeOutcome) -> dict[str, Any]:
     }
 
 
-def _share_row(value: float, bounds: Bounds) -> dict[str, Any]:
+def _row(measured: Measured) -> dict[str, Any]:
+    lower, upper = measured.bounds
     return {
-        "value": value,
-        "lower": bounds.lower if math.isfinite(bounds.lower) else None,
-        "upper": bounds.upper if math.isfinite(bounds.upper) else None,
+        "value": measured.value,
+        "lower": lower if math.isfinite(lower) else None,
+        "upper": upper if math.isfinite(upper) else None,
     }

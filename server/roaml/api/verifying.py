@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from roaml.api.jani_files import read_jani
 from roaml.disk import MAX_DATA, required
-from roaml.durations import ANY_TIME, ReactionTime
+from roaml.durations import ReactionTime
 from roaml.jani.model import Model
 from roaml.model.kinds import mocks_path
 from roaml.model.parameters import NO_OVERRIDES, Overrides
@@ -81,7 +81,7 @@ def target(
         else:
             declared = named_mocks(mocks)
         rate = DEFAULT_RATE if tick_rate is None else Fraction(str(tick_rate))
-        assumed = overrides.reaction_time or (ANY_TIME if settings is None else settings.reaction_time)
+        assumed = overrides.reaction_time or (None if settings is None else settings.reaction_time)
         options = MockOptions(declared, entries or {}, rate, reaction_time=assumed)
         loaded = load_tree(path, options, settings, texts)
         return loaded.target.expecting(_expected(settings))

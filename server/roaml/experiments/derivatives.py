@@ -3,8 +3,7 @@
 
 The probability V of reaching a target satisfies V = P V + b on the states from which the target is neither certain nor
 impossible. So dV/dp = λ dP/dp V, where λ, the expected numbers of visits, is the solution of one adjoint system
-λ = e + λ P, for any number of parameters. It is solved component by component in topological order: λ is
-propagated along the steps, and within a component until the rest is negligible.
+λ = e + λ P (`visits`), for any number of parameters.
 
 All schedulers must have the same value. Then every scheduler reaches a state from which the target is certain or
 impossible, so the equations of any of them have one solution. Two schedulers are compared: if their derivatives differ,
@@ -14,23 +13,20 @@ the minimum and the maximum have a kink here, and there is no derivative.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from roaml.exact_number import exact_fraction
 from roaml.experiments.parametric import ParametricSpace
 from roaml.experiments.sweeps import Setting
+from roaml.experiments.visits import SlowChainError, expected_visits
 from roaml.explicit import codes, solver
 from roaml.explicit.values import MAXIMUM, MINIMUM, NOTHING
 from roaml.record import Record
 from roaml.smc.goal import NOT
 from roaml.smc.program import AT_END, FALSE, TRUE, UNKNOWN
 
-MAX_PASSES = 100_000
-"""The number of passes through a component after which the solution is given up."""
 _STEP = 1e-3
 """The difference of a parameter from which the derivatives of probabilities are computed."""
-_NEGLIGIBLE = 1e-13
-"""The expected number of further visits that is neglected, relative to that of the component."""
 
 
 class NoDerivativeError(ValueError):
@@ -117,11 +113,10 @@ def _difference(space: ParametricSpace, setting: Setting, name: str, value: floa
 
 class _Chain:
     """The Markov chain of a scheduler that takes the first or the last choice of each state, on the states from which
-    the target is neither certain nor impossible, in topological order of its components.
+    the target is neither certain nor impossible.
 
     Attributes:
         steps: state -> its destinations, each with the number of its probability in the search; -1 for 1.
-        components: the strongly connected components, those that are reached first before the others.
     """
 
     def __init__(self, space: ParametricSpace, values: Sequence[float], root: int, *, is_last: bool) -> None:
@@ -136,7 +131,6 @@ class _Chain:
                 continue
             self.steps[state] = self._choice(state, is_last=is_last)
             waiting += [successor for successor, _ in self.steps[state]]
-        self.components = list(reversed(list(self._components())))
 
     def chance(self, number: int) -> float:
         return 1.0 if number < 0 else float(self.search.reals[number])
@@ -153,76 +147,16 @@ class _Chain:
                 at += 3 - 2 * size
         return chosen
 
-    def _components(self) -> Iterator[list[int]]:
-        """The components, in reverse topological order (Tarjan 1972, without recursion)."""
-        index: dict[int, int] = {}
-        low: dict[int, int] = {}
-        stack: list[int] = []
-        is_open: set[int] = set()
-        work = [(self.root, 0)] if self.root in self.steps else []
-        while work:
-            state, place = work.pop()
-            if place == 0:
-                index[state] = low[state] = len(index)
-                stack.append(state)
-                is_open.add(state)
-            successors = [successor for successor, _ in self.steps[state] if successor in self.steps]
-            if place > 0:
-                low[state] = min(low[state], low[successors[place - 1]])
-            while place < len(successors):
-                successor = successors[place]
-                place += 1
-                if successor not in index:
-                    work += [(state, place), (successor, 0)]
-                    break
-                if successor in is_open:
-                    low[state] = min(low[state], index[successor])
-            else:
-                if low[state] == index[state]:
-                    component: list[int] = []
-                    while not component or component[-1] != state:
-                        component.append(stack.pop())
-                        is_open.discard(component[-1])
-                    yield component
-
 
 def _adjoint(chain: _Chain, values: Sequence[float], slopes_of_numbers: Sequence[Mapping[int, float]]) -> list[float]:
     """λ dP/dp V for each parameter p."""
-    visits = dict.fromkeys(chain.steps, 0.0)
-    if chain.root in visits:
-        visits[chain.root] = 1.0
+    try:
+        visits = expected_visits(chain.steps, chain.root, chain.chance)
+    except SlowChainError as error:
+        raise NoDerivativeError(str(error)) from None
     result = [0.0] * len(slopes_of_numbers)
-    for component in chain.components:
-        _settle(chain, component, visits)
-        inside = set(component)
-        for state in component:
-            for successor, number in chain.steps[state]:
-                if successor in visits and successor not in inside:
-                    visits[successor] += visits[state] * chain.chance(number)
-                for place, slopes in enumerate(slopes_of_numbers):
-                    result[place] += visits[state] * slopes.get(number, 0.0) * values[successor]
+    for state, steps in chain.steps.items():
+        for successor, number in steps:
+            for place, slopes in enumerate(slopes_of_numbers):
+                result[place] += visits[state] * slopes.get(number, 0.0) * values[successor]
     return result
-
-
-def _settle(chain: _Chain, component: Sequence[int], visits: dict[int, float]) -> None:
-    """Replace the numbers of entries into a component by the expected numbers of visits of its states: the rest that
-    has not been propagated is passed on along the steps until it is negligible."""
-    inside = set(component)
-    order = component[::-1]
-    rest = {state: visits[state] for state in order}
-    if not any(successor in inside for state in order for successor, _ in chain.steps[state]):
-        return
-    total = dict.fromkeys(order, 0.0)
-    for _ in range(MAX_PASSES):
-        for state in order:
-            amount = rest[state]
-            if amount:
-                rest[state] = 0.0
-                total[state] += amount
-                for successor, number in chain.steps[state]:
-                    if successor in inside:
-                        rest[successor] += amount * chain.chance(number)
-        if sum(rest.values()) <= _NEGLIGIBLE * sum(total.values()):
-            visits.update(total)
-            return
-    raise NoDerivativeError("the equations converge too slowly")

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
-from roaml.durations import ANY_TIME, ReactionTime
+from roaml.durations import AT_ONCE, ReactionTime
 from roaml.expr.operators import Operator
 from roaml.expr.types import BASE_TYPES
 from roaml.forest.forest import Forest, port_type
@@ -61,7 +61,8 @@ class MockOptions(Record, frozen=True):
         rate: the number of ticks per second.
         max_time: the limit of the simulated time, in ns.
         counts: whether the model counts ticks and the answers of mocks, for measurements.
-        reaction_time: how long nodes may wait before they take a possible step.
+        reaction_time: how long nodes may wait before they take a possible step; `None` for `instant`, because a mock
+            states how long its leaf takes, and a tick takes no time.
     """
 
     mocks: tuple[Mock, ...] = ()
@@ -69,7 +70,7 @@ class MockOptions(Record, frozen=True):
     rate: Fraction = DEFAULT_RATE
     max_time: int = DEFAULT_MAX_TIME
     counts: bool = False
-    reaction_time: ReactionTime = ANY_TIME
+    reaction_time: ReactionTime | None = None
 
 
 class MockedLeaf(Record, frozen=True, eq=False):
@@ -162,7 +163,8 @@ class _Builder:
         if blackboard is not None:
             members.append(blackboard)
         members.append(clock([timer], self.options.max_time, origin))
-        network = Network(tuple(members), MAX_TEXT_LENGTH, 2, clock_step([timer]), self.options.reaction_time)
+        reaction_time = self.options.reaction_time or AT_ONCE
+        network = Network(tuple(members), MAX_TEXT_LENGTH, 2, clock_step([timer]), reaction_time)
         self.leaves.reverse()
         self.assumed.reverse()
         return MockedTree(self.tree, network, tuple(self.leaves), tuple(self.assumed), self.options)

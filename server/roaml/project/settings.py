@@ -14,7 +14,7 @@ from typing import Any
 
 from roaml.comparison import Comparison, read_comparison
 from roaml.diagnostics import Severity, current_code
-from roaml.durations import ANY_TIME, REACTION_TIME, ReactionTime, reaction_time
+from roaml.durations import REACTION_TIME, ReactionTime, reaction_time
 from roaml.forest.settings import NEWEST, TreeSettings
 from roaml.libraries import LIBRARIES
 from roaml.libraries.version import Version, read_version
@@ -47,7 +47,8 @@ class Settings(Record, frozen=True):
         only_uniform: whether `verify` assumes uniform choices even if a property requests the minimum or maximum over
             all schedulers.
         expectations: name of a property -> the result that `verify` expects.
-        reaction_time: the reaction time of systems that state none.
+        reaction_time: the reaction time of trees with mocks, and of systems that state none; `None` for `instant` in
+            trees and `any` in systems.
         limits: the maximum size of a system that is translated.
         overrides: parameters that replace those in system files; they are not read from a configuration.
         parameters: names and texts of values for parameters that models declare (docs/spec/parameters.md#values).
@@ -65,7 +66,7 @@ class Settings(Record, frozen=True):
     warnings_as_errors: bool = False
     only_uniform: bool = False
     expectations: Mapping[str, Comparison] = field(default_factory=dict)
-    reaction_time: ReactionTime = ANY_TIME
+    reaction_time: ReactionTime | None = None
     limits: Limits = DEFAULT_LIMITS
     overrides: Overrides = NO_OVERRIDES
     parameters: tuple[tuple[str, str], ...] = ()

@@ -13,6 +13,7 @@ import os
 from collections.abc import Callable, Iterable, Mapping
 
 from roaml.disk import Roots
+from roaml.durations import ANY_TIME
 from roaml.interfaces.registry import Registry
 from roaml.interfaces.search import SearchPath
 from roaml.model.config_files import CONFIG_FILE
@@ -163,7 +164,7 @@ class Workspace:
         listed, settings = (*self._listed, *new), self.settings
         overrides = replace(
             settings.overrides,
-            default_reaction_time=settings.reaction_time,
+            default_reaction_time=settings.reaction_time or ANY_TIME,
             default_semantics=settings.trees.semantics,
             values=(*settings.parameters, *settings.overrides.values),
         )

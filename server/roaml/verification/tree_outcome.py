@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The result of random traces of a tree with mocks: its outcome, its time, its recoveries, and the influence of its
-leaves (docs/spec/mocks.md#results)."""
+"""The measurements of a tree with mocks: its outcome, its time, its recoveries, and the influence of its leaves
+(docs/spec/mocks.md#results). Here they are estimated from random traces; `roaml.experiments.exact_trees` computes them
+from all states."""
 
 from __future__ import annotations
 
@@ -36,7 +37,10 @@ TRACES = 1000
 """The default number of traces."""
 QUANTILES = (0.5, 0.9, 0.99)
 COUNTERS = ("recoveries", "failed_attempts")
-_SUCCESS, _FAILURE, _RUNNING, _SKIPPED, _HELD = 1, 2, 3, 4, 5
+SUCCESS, FAILURE, RUNNING, SKIPPED, HELD = 1, 2, 3, 4, 5
+"""The numbers of the statuses that the tree returns."""
+FAILURES = (FAILURE, SKIPPED, HELD)
+"""The statuses with which the tree has failed."""
 
 
 def tree_properties(root: int) -> tuple[Property, ...]:
@@ -45,44 +49,44 @@ def tree_properties(root: int) -> tuple[Property, ...]:
     Args:
         root: the number of the root of the tree.
     """
-    failed = _any(root, _FAILURE, _SKIPPED, _HELD)
-    return (_eventually(SUCCEEDS, _any(root, _SUCCESS)), _eventually(FAILS, failed))
+    return (eventually(SUCCEEDS, returned(root, SUCCESS)), eventually(FAILS, returned(root, *FAILURES)))
 
 
-def _status(root: int) -> str:
+def status_variable(root: int) -> str:
     """The variable with the status that the tree returned last."""
     return f"{tree_event_name(root, TreeEventKind.RESPONSE)}__status"
 
 
-def _any(root: int, *codes: int) -> Expression:
+def returned(root: int, *codes: int) -> Expression:
     """The condition that the tree has returned one of the statuses `codes`."""
-    first, *others = (Binary(BinaryOperator.EQUAL, Name(_status(root)), Integer(code)) for code in codes)
+    first, *others = (Binary(BinaryOperator.EQUAL, Name(status_variable(root)), Integer(code)) for code in codes)
     for other in others:
         first = Binary(BinaryOperator.OR, first, other)
     return first
 
 
-def _eventually(name: str, condition: Expression) -> Property:
+def eventually(name: str, condition: Expression) -> Property:
+    """The probability that a condition holds at some time."""
     path = UnaryPath(UnaryPathOperator.FINALLY, condition)
     probability = Probability(ProbabilityOperator.PMIN, path)
     return Property(name, Filter(FilterFunction.VALUES, probability, Predicate(StatePredicate.INITIAL)))
 
 
-class OutcomeShare(Record, frozen=True):
-    """The number of traces with a given outcome, with the interval for its probability."""
+class Measured(Record, frozen=True):
+    """A measured value. Its bounds are its confidence interval; those of an exact value are equal to it."""
 
-    count: int
-    traces: int
+    value: float
     bounds: Bounds
 
-    @property
-    def value(self) -> float:
-        return self.count / self.traces
+
+def exactly(value: float) -> Measured:
+    """A value that is exact."""
+    return Measured(value, Bounds(value, value))
 
 
 class Quantile(Record, frozen=True):
-    """The time in s within which a share of the successful traces has ended, with its confidence interval. Its upper
-    end is infinite if there are too few traces."""
+    """The time in s within which a share of the successful traces has ended, with its bounds. The upper end is infinite
+    if there are too few traces."""
 
     share: float
     value: float
@@ -90,7 +94,7 @@ class Quantile(Record, frozen=True):
 
 
 class Influence(Record, frozen=True):
-    """The derivative of the probability of success with respect to the probability of a mock, with its interval."""
+    """The derivative of the probability of success with respect to the probability of a mock, with its bounds."""
 
     leaf: MockedLeaf
     value: float
@@ -98,14 +102,15 @@ class Influence(Record, frozen=True):
 
 
 class TreeOutcome(Record, frozen=True, eq=False):
-    """The measurements of all traces of a tree.
+    """The measurements of a tree.
 
     Attributes:
-        traces: the number of traces.
-        confidence: the confidence level of all intervals.
-        success, failure: the outcomes of the tree; `failure` includes trees that were skipped.
-        unfinished: the number of traces in which the tree had not ended at the end of time.
-        exceptions: the number of traces in which a node got stuck, because the library throws an exception there.
+        traces: the number of traces; `None` if the values are exact.
+        confidence: the confidence level of all intervals; 1 if the values are exact.
+        success, failure: the probabilities of the outcomes of the tree; `failure` includes trees that were skipped.
+        unfinished: the probability that the tree has not ended at the end of time.
+        exceptions: the probability that a node gets stuck, because the library throws an exception there.
+        rare: the number of traces with the rarer of both outcomes, success or not; `None` if the values are exact.
         time: the time until the tree succeeds, in s; `None` if it never does.
         quantiles: the quantiles of this time.
         counts: nodes, their counters, and the expected value of each counter at the end of a trace.
@@ -114,17 +119,33 @@ class TreeOutcome(Record, frozen=True, eq=False):
         shortest: the number of the shortest trace that does not succeed; `None` if there is none.
     """
 
-    traces: int
+    traces: int | None
     confidence: float
-    success: OutcomeShare
-    failure: OutcomeShare
-    unfinished: int
-    exceptions: int
-    time: Mean | None
+    success: Measured
+    failure: Measured
+    unfinished: Measured
+    exceptions: Measured
+    rare: int | None
+    time: Measured | None
     quantiles: tuple[Quantile, ...]
-    counts: tuple[tuple[ExecutedNode, str, Mean], ...]
+    counts: tuple[tuple[ExecutedNode, str, Measured], ...]
     influences: tuple[Influence, ...]
-    shortest: int | None
+    shortest: int | None = None
+
+    @property
+    def is_exact(self) -> bool:
+        return self.traces is None
+
+
+def root_automaton(mocked: MockedTree) -> str:
+    """The name of the automaton that ticks the tree, and counts the ticks."""
+    return f"{TREE_ROOT_PREFIX}{mocked.tree.name}"
+
+
+def counters_of(mocked: MockedTree) -> list[tuple[ExecutedNode, str]]:
+    """The nodes with counters, and their counters. The model must have counters (`MockOptions.counts`)."""
+    own = {automaton.name: {data.id for data in automaton.data} for automaton in mocked.network.automata}
+    return [(node, counter) for node in mocked.tree.nodes for counter in COUNTERS if counter in own[node.automaton]]
 
 
 def measure(mocked: MockedTree, target: VerificationTarget, options: Options) -> TreeOutcome:
@@ -142,27 +163,22 @@ def measure(mocked: MockedTree, target: VerificationTarget, options: Options) ->
 class _Measuring:
     def __init__(self, mocked: MockedTree, target: VerificationTarget, options: Options) -> None:
         self.mocked, self.target, self.options = mocked, target, options
-        ends = _eventually("ends", _any(mocked.tree.root, _SUCCESS, _FAILURE, _SKIPPED, _HELD))
+        ends = eventually("ends", returned(mocked.tree.root, SUCCESS, *FAILURES))
         checker = ModelChecker(target.model, (ends,))
         compiled = checker.compiled(checker.compiled_properties[0])
         self.kernel = Kernel(compiled.program, compiled.goal)
         layout = checker.legend.layout
         shared = {storage.name: storage for storage in layout.shared}
-        self.status = shared[_status(mocked.tree.root)]
+        self.status = shared[status_variable(mocked.tree.root)]
         self.clock = tuple(shared[name] for name in target.clock or ())
-        root = f"{TREE_ROOT_PREFIX}{mocked.tree.name}"
+        root = root_automaton(mocked)
         self.ticks = next(s for i in layout.instances if i.automaton.name == root for s in i.own if s.name == TICKS)
         self.own = {i.automaton.name: {storage.name: storage for storage in i.own} for i in layout.instances}
 
     def run(self) -> TreeOutcome:
         traces = self.options.max_traces or TRACES
         leaves = [leaf for leaf in self.mocked.leaves if 0 < leaf.probability < 1]
-        counters = [
-            (node, counter, self.own[node.automaton][counter])
-            for node in self.mocked.tree.nodes
-            for counter in COUNTERS
-            if counter in self.own[node.automaton]
-        ]
+        counters = [(node, counter, self.own[node.automaton][counter]) for node, counter in counters_of(self.mocked)]
         tallies = [self.own[leaf.node.automaton] for leaf in leaves]
         answers: list[int] = []
         times: list[float] = []
@@ -174,14 +190,14 @@ class _Measuring:
             answer, steps, is_stuck = self.trace(trace)
             answers.append(answer)
             stuck += is_stuck
-            if answer == _SUCCESS:
+            if answer == SUCCESS:
                 times.append(float(self.integer(self.ticks) / self.mocked.options.rate))
             elif shortest is None or steps < shortest[1]:
                 shortest = (trace, steps)
             means = [mean.add(self.integer(s)) for mean, (_, _, s) in zip(means, counters, strict=True)]
             scores.append([self.score(leaf, own) for leaf, own in zip(leaves, tallies, strict=True)])
-        successes = answers.count(_SUCCESS)
-        failures = sum(answer in (_FAILURE, _SKIPPED, _HELD) for answer in answers)
+        successes = answers.count(SUCCESS)
+        failures = sum(answer in FAILURES for answer in answers)
         time = Mean()
         for seconds in times:
             time = time.add(seconds)
@@ -190,12 +206,13 @@ class _Measuring:
             self.options.confidence,
             self.share(successes, traces, traces - successes - failures),
             self.share(failures, traces, traces - successes - failures),
-            traces - successes - failures - stuck,
-            stuck,
-            time if times else None,
+            self.share(traces - successes - failures - stuck, traces),
+            self.share(stuck, traces),
+            min(successes, traces - successes),
+            self.mean(time) if times else None,
             tuple(quantile(share, sorted(times), self.options.confidence) for share in QUANTILES) if times else (),
-            tuple((node, counter, mean) for (node, counter, _), mean in zip(counters, means, strict=True)),
-            self.influences(leaves, scores, [answer == _SUCCESS for answer in answers]),
+            tuple((node, counter, self.mean(mean)) for (node, counter, _), mean in zip(counters, means, strict=True)),
+            self.influences(leaves, scores, [answer == SUCCESS for answer in answers]),
             None if shortest is None else shortest[0],
         )
 
@@ -221,8 +238,11 @@ class _Measuring:
         seconds, nanoseconds = map(self.integer, self.clock)
         return seconds + nanoseconds / 1e9
 
-    def share(self, count: int, traces: int, undecided: int) -> OutcomeShare:
-        return OutcomeShare(count, traces, clopper_pearson(count, traces, self.options.confidence, undecided))
+    def share(self, count: int, traces: int, undecided: int = 0) -> Measured:
+        return Measured(count / traces, clopper_pearson(count, traces, self.options.confidence, undecided))
+
+    def mean(self, mean: Mean) -> Measured:
+        return Measured(mean.mean, mean.bounds(self.options.confidence))
 
     def score(self, leaf: MockedLeaf, own: dict[str, Storage]) -> float:
         """The derivative of the logarithm of the probability of the trace with respect to the probability of a mock."""

@@ -37,24 +37,27 @@ def cause(story: Story, place_of: Callable[[Origin], str]) -> str:
     if story.is_whole or not verb or not story.steps:
         return ""
     all_turns = turns(story)
-    time = story.clock[-1]
-    at = "" if time is None else f" at {time:.3f} s"
-    subject = f"{story.property} {verb}{at}"
+    subject = f"{story.property} {verb}"
     if story.recording.end is End.TIME:
+        subject += _at(story.clock[-1])
         if verb == "fails":
             return f"{subject}, because the time ends before what the property requires has happened"
         return f"{subject}, because nothing has violated it when the time ends"
     if story.recording.end in _OTHER_ENDS:
-        return f"{subject}, {_OTHER_ENDS[story.recording.end]}"
+        return f"{subject}{_at(story.clock[-1])}, {_OTHER_ENDS[story.recording.end]}"
     root = next((turn for turn in reversed(all_turns) if turn.ends and _is_root(turn)), None)
     if root is not None:
         node = _responsible(all_turns[: all_turns.index(root)])
         why = "" if node is None else f", because {node.who} {_returned(node)}{_place(node, place_of)}"
-        return f"{subject}: the tree ends with {root.result}{why}"
+        return f"{subject}{_at(root.time)}: the tree ends with {root.result}{why}"
     last = next((turn for turn in reversed(all_turns) if turn.ends), None)
     if last is None:
         return ""
-    return f"{subject}: {_sentence(last, place_of)}{_chance_before(all_turns, last)}"
+    return f"{subject}{_at(last.time)}: {_sentence(last, place_of)}{_chance_before(all_turns, last)}"
+
+
+def _at(time: float | None) -> str:
+    return "" if time is None else f" at {time:.3f} s"
 
 
 def _is_root(turn: Turn) -> bool:
@@ -97,6 +100,5 @@ def _chance_before(all_turns: Sequence[Turn], last: Turn) -> str:
     drawn = next((t for t in reversed(all_turns) if t is not last and t.number < last.number and any(draws(t))), None)
     if drawn is None:
         return ""
-    at = "" if drawn.time is None else f" at {drawn.time:.3f} s"
     odds = [chance(part.destination.probability) for part in draws(drawn)][-1]
-    return f"; the last outcome of chance was that of {drawn.who}{at} ({odds.removeprefix('by chance, ')})"
+    return f"; the last outcome of chance was that of {drawn.who}{_at(drawn.time)} ({odds.removeprefix('by chance, ')})"

@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The measurements of trees with mocks, computed from all states: they are those of probability theory, of random
+traces, and of differences between two mocks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import conformance
+from as2fm_lsp.cli.main import run
+from roaml import api
+from roaml.api.trees import LoadedTree, load_tree
+from roaml.durations import ANY_TIME
+from roaml.experiments.exact_trees import measure_exactly
+from roaml.mocks.mock import read_mock
+from roaml.mocks.network import MockOptions
+from roaml.project.settings import Settings
+from roaml.record import replace
+from roaml.smc.run import Options
+from roaml.verification.small import SHARED_LIMITS
+from roaml.verification.tree_outcome import Measured, TreeOutcome, measure
+
+HEAD = '<root BTCPP_format="4" main_tree_to_execute="Main">'
+FETCH = Path(__file__).resolve().parents[2] / "examples/fetch_tree/fetch.xml"
+NAV2 = conformance.ROOT / "trees/nav2"
+FETCH_MOCKS = {
+    "ComputePathToPose": (0.98, "200 ms"),
+    "FollowPath": (0.9, "2 s"),
+    "ClearEntireCostmap": (0.8, "100 ms"),
+    "LookAgain": (0.95, "300 ms"),
+    "CloseGripper": (0.7, "500 ms"),
+}
+
+
+def tree(tmp_path: Path, content: str) -> str:
+    path = tmp_path / "tree.xml"
+    path.write_text(f'{HEAD}\n<BehaviorTree ID="Main">\n{content}\n</BehaviorTree>\n</root>\n', encoding="utf-8")
+    return str(path)
+
+
+def loaded(path: str, *mocks: str, max_time: int = 600) -> LoadedTree:
+    options = MockOptions(tuple(map(read_mock, mocks)), max_time=max_time * 10**9, counts=True)
+    return load_tree(path, options)
+
+
+def exact(model: LoadedTree) -> TreeOutcome:
+    outcome = measure_exactly(model.mocked, model.target, SHARED_LIMITS)
+    assert outcome is not None
+    assert outcome.is_exact
+    return outcome
+
+
+def fetch_mocks(**changed: float) -> tuple[str, ...]:
+    return tuple(f"{name}: {changed.get(name, p)} in {time}" for name, (p, time) in FETCH_MOCKS.items())
+
+
+def test_values_are_those_of_probability_theory(tmp_path: Path) -> None:
+    content = "<RecoveryNode number_of_retries='1'><Drive/><Sequence><Ask/></Sequence></RecoveryNode>"
+    outcome = exact(loaded(tree(tmp_path, content), "Drive: 0.7 in 1 s", "Ask: 0.8 in 500 ms"))
+    drive, ask = 0.7, 0.8
+    success = drive + (1 - drive) * ask * drive
+    assert outcome.success.value == pytest.approx(success, abs=1e-12)
+    assert outcome.failure.value == pytest.approx(1 - success, abs=1e-12)
+    assert outcome.unfinished.value == outcome.exceptions.value == 0
+    assert [(node.name, counter) for node, counter, _ in outcome.counts] == [("RecoveryNode", "recoveries")]
+    assert outcome.counts[0][2].value == pytest.approx(1 - drive, abs=1e-12)
+    # The first tick is at 0.1 s; an action of 1 s ends 10 ticks later. `Ask` takes 0.5 s, and `Drive` starts again.
+    assert outcome.time is not None
+    assert outcome.time.value == pytest.approx((1.1 * drive + 2.6 * (1 - drive) * ask * drive) / success, abs=1e-12)
+    assert [quantile.value for quantile in outcome.quantiles] == [1.1, 2.6, 2.6]
+    influence = {found.leaf.node.name: found.value for found in outcome.influences}
+    assert influence == pytest.approx({"Drive": 1 + ask * (1 - 2 * drive), "Ask": (1 - drive) * drive}, abs=1e-7)
+
+
+def test_influences_are_differences() -> None:
+    """Each influence is the quotient of a small difference of two exact probabilities."""
+    outcome = exact(loaded(str(FETCH), *fetch_mocks()))
+    assert len(outcome.influences) == len(FETCH_MOCKS)
+    for influence in outcome.influences:
+        name, step = influence.leaf.node.name, 1e-4
+        low, high = (
+            exact(loaded(str(FETCH), *fetch_mocks(**{name: FETCH_MOCKS[name][0] + change}))).success.value
+            for change in (-step, step)
+        )
+        assert influence.value == pytest.approx((high - low) / (2 * step), rel=1e-5)
+
+
+def within(measured: Measured, truth: float) -> bool:
+    return measured.bounds.lower - 1e-9 <= truth <= measured.bounds.upper + 1e-9
+
+
+def test_values_are_those_of_traces() -> None:
+    model = loaded(str(FETCH), *fetch_mocks())
+    outcome, seen = exact(model), measure(model.mocked, model.target, Options(max_traces=2000, confidence=0.9999))
+    assert within(seen.success, outcome.success.value)
+    assert seen.time is not None
+    assert outcome.time is not None
+    assert within(seen.time, outcome.time.value)
+    for estimated, computed in zip(seen.quantiles, outcome.quantiles, strict=True):
+        assert within(Measured(estimated.value, estimated.bounds), computed.value)
+    for (node, counter, mean), (other, name, value) in zip(seen.counts, outcome.counts, strict=True):
+        assert (node.number, counter) == (other.number, name)
+        assert within(mean, value.value)
+    truth = {influence.leaf.node.number: influence.value for influence in outcome.influences}
+    for found in seen.influences:
+        assert within(Measured(found.value, found.bounds), truth[found.leaf.node.number])
+
+
+def test_a_tree_that_does_not_end(tmp_path: Path) -> None:
+    content = "<KeepRunningUntilFailure><Drive/></KeepRunningUntilFailure>"
+    outcome = exact(loaded(tree(tmp_path, content), "Drive: 0.9 in 900 ms", max_time=5))
+    # It is ticked at 0.1 s, 0.2 s, …; `Drive` ends at 1.0 s, 2.0 s, …, 5.0 s.
+    assert outcome.success.value == 0
+    assert outcome.time is None
+    assert outcome.failure.value == pytest.approx(1 - 0.9**5, abs=1e-12)
+    assert outcome.unfinished.value == pytest.approx(0.9**5, abs=1e-12)
+
+
+def test_an_exception_of_the_library(tmp_path: Path) -> None:
+    """The condition of an `IfThenElse` is skipped."""
+    condition = '<AlwaysSuccess _skipIf="n == 1"/>'
+    content = (
+        f"<Sequence><Script code='n := 1'/><Drive/><IfThenElse>{condition}<AlwaysSuccess/></IfThenElse></Sequence>"
+    )
+    outcome = exact(loaded(tree(tmp_path, content), "Drive: 0.9"))
+    assert outcome.exceptions.value == pytest.approx(0.9, abs=1e-12)
+    assert outcome.failure.value == pytest.approx(0.1, abs=1e-12)
+
+
+def test_too_many_states_have_no_values() -> None:
+    model = loaded(str(FETCH), *fetch_mocks())
+    assert measure_exactly(model.mocked, model.target, replace(SHARED_LIMITS, states=50)) is None
+
+
+@pytest.mark.parametrize("name", ["follow_point", "navigate_w_replanning_time", "odometry_calibration"])
+def test_reaction_times_do_not_change_success(name: str) -> None:
+    path = str(NAV2 / f"{name}.xml")
+    mocks = (read_mock("*: 0.9 in 1 s"),)
+    at_once = load_tree(path, MockOptions(mocks, counts=True))
+    any_time = load_tree(path, MockOptions(mocks, counts=True, reaction_time=ANY_TIME))
+    (found,) = api.verify(any_time.target, ["succeeds"], exact_if_small=True)
+    assert found.exact is not None
+    outcome = exact(at_once)
+    assert found.exact.least == pytest.approx(outcome.success.value, abs=1e-9)
+    assert found.exact.greatest == pytest.approx(outcome.success.value, abs=1e-9)
+
+
+def test_nodes_react_at_once_unless_a_setting_says_otherwise() -> None:
+    mocks = {"*": "0.9 in 1 s"}
+    default = api.target(str(FETCH), mocks=mocks)
+    other = api.target(str(FETCH), mocks=mocks, settings=Settings(reaction_time=ANY_TIME))
+    assert default.model.metadata is not None
+    assert default.model.metadata.reaction_time.is_instant
+    assert other.model.metadata is not None
+    assert other.model.metadata.reaction_time.is_any
+
+
+def test_all_reports_show_the_same_times(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The report, the explanation and the simulation of an event at the third tick."""
+    path = tree(tmp_path, "<Sequence><Drive/></Sequence>")
+    mocks = ("--mock", "Drive: 0 in 200 ms")
+    assert run(["verify", path, *mocks]) == 0
+    report = capsys.readouterr().out
+    assert "succeeds fails at 0.300 s" in report
+    assert "0.3 s  Drive  FAILURE" in report
+    assert run(["verify", path, *mocks, "--explain"]) == 0
+    assert "0.300 s  Drive" in capsys.readouterr().out
+    assert run(["simulate", path, *mocks]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert any("0.300 s" in line and "Drive" in line and "FAILURE" in line for line in lines)
