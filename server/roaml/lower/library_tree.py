@@ -21,7 +21,7 @@ from roaml.libraries.programs.statuses import FAILURE, RUNNING, SUCCESS
 from roaml.lower.programs.automaton import CONDITION_MACHINE, MACHINE, MACHINES, NodeTooLargeError, node_automaton
 from roaml.lower.programs.board import Board, build_board, set_entry
 from roaml.lower.programs.code import Child, NodeCode
-from roaml.lower.programs.executed import ExecutedNode, ExecutedTree, identifier
+from roaml.lower.programs.executed import ExecutedNode, ExecutedTree, FrameNames, TreeLinks
 from roaml.lower.programs.nodes import (
     EVENT_PROBABILITY,
     PortValues,
@@ -32,16 +32,16 @@ from roaml.lower.programs.nodes import (
     program_of,
 )
 from roaml.lower.programs.refusal import TreeRefusal
-from roaml.model.expand import Frame, Instance, Reference, TreeUse, node_at
+from roaml.model.expand import Instance, entered_uses
 from roaml.model.node_effects import tree_effects
 from roaml.model.system import EntryOutline, System, SystemAutomaton
-from roaml.model.tree import TreeFile, TreeNode
+from roaml.model.tree import TreeFile
 from roaml.record import Record, replace
 from roaml.roles import NodeKind
 from roaml.script.names import names_in
 from roaml.scxml.model import Automaton
 from roaml.scxml.names import CONDITIONS_PREFIX
-from roaml.text import NO_SPAN, Location
+from roaml.text import Location
 
 STATUSES = frozenset((SUCCESS, FAILURE, RUNNING))
 """The statuses with which a machine answers a tick, as codes."""
@@ -71,26 +71,6 @@ class LibraryTree(Record, frozen=True, eq=False):
         return tuple(node_automaton(code).automaton for code in self.codes[number])
 
 
-class _FrameNames(Record, frozen=True, eq=False):
-    """The names in one use of a tree. Entries that a `<SubTree>` sets to constants are added to `initial`, with the
-    texts of the constants."""
-
-    frame: Frame
-    initial: dict[str, str]
-
-    def entry(self, name: str) -> str:
-        value = self.frame.resolve(name)
-        if isinstance(value, Reference):
-            return value.variable
-        variable = identifier(value.variable)
-        self.initial[variable] = value.text
-        return variable
-
-    def is_initial(self, entry: str) -> bool:
-        """Whether a `<SubTree>` sets an entry to a constant."""
-        return entry in self.initial
-
-
 class _Part(Record, eq=False):
     """One part of an instance, which becomes an automaton: the conditions of a node, or the node itself. `program` is
     `None` for a machine."""
@@ -110,14 +90,14 @@ class LibraryTreeBuilder:
     """
 
     def __init__(self, system: System, files: Mapping[str, TreeFile]) -> None:
-        self.system, self.files = system, files
-        self.initial: dict[str, str] = {}
+        self.system = system
+        self.links = TreeLinks(files, {})
         self.refusals: list[TreeRefusal] = []
         self.parts = {instance.number: tuple(self.parts_of(instance)) for instance in system.instances}
         nodes = [part for parts in self.parts.values() for part in parts]
         # In the tree of all parts, each part has a separate number.
         self.tree_of_parts = ExecutedTree(
-            "", tuple(replace(part.node, number=index) for index, part in enumerate(nodes)), self.initial
+            "", tuple(replace(part.node, number=index) for index, part in enumerate(nodes)), self.links.initial
         )
         used = {index: part.program for index, part in enumerate(nodes)}
         for node in self.tree_of_parts.nodes:
@@ -132,13 +112,10 @@ class LibraryTreeBuilder:
     def parts_of(self, instance: Instance) -> Iterator[_Part]:
         """The parts of an instance, the outermost first; empty if its node cannot be translated."""
         automaton = self.system.by_instance.get(instance.number)
-        source = self.source(instance)
-        if automaton is None or source is None:
+        if automaton is None:
             return
-        names = _FrameNames(self.system.tree_uses[instance.use].frame, self.initial)
-        origin = Location(instance.source.path, source.element.name_span)
         known = _declared(automaton, is_program=self.system.is_program(automaton))
-        node = ExecutedNode(instance.number, known.name, instance.name, source, known, names, instance.children, origin)
+        node = self.links.node(instance, self.system.tree_uses[instance.use].frame, known, instance.children)
         try:
             program = program_of(node) if self.system.is_program(automaton) else None
         except TreeRefusal as refusal:
@@ -159,25 +136,12 @@ class LibraryTreeBuilder:
         `<SubTree>` resets its child when the child has ended."""
         parent = None if instance.parent is None else self.system.by_instance.get(instance.parent)
         around = parent.instance.use if parent is not None and parent.instance is not None else None
-        uses: list[TreeUse] = []
-        index: int | None = instance.use
-        while index != around and index is not None:
-            use = self.system.tree_uses[index]
-            if use.frame.use is not None and use.frame.outer is not None:
-                uses.append(use)
-            index = use.outer
+        uses = [self.system.tree_uses[index] for index in entered_uses(self.system.tree_uses, instance.use, around)]
         is_ticked_again = parent is not None and self.ticks_ended(parent, instance)
-        for position, use in enumerate(reversed(uses)):
+        for position, use in enumerate(uses):
             if not use.scripts and (position > 0 or not is_ticked_again):
                 continue
-            assert use.frame.use is not None
-            assert use.frame.outer is not None
-            file = self.files.get(use.frame.use.path)
-            source = node_at(file, use.frame.use) if file else None
-            if source is not None:
-                origin = Location(use.frame.use.path, source.element.name_span)
-                names = _FrameNames(use.frame.outer, self.initial)
-                yield ExecutedNode(0, "SubTree", use.name, source, None, names, (instance.number,), origin)
+            yield self.links.subtree(0, use, instance.number)
 
     def ticks_ended(self, parent: SystemAutomaton, instance: Instance) -> bool:
         """Whether the parent of an instance may tick it again after it has ended, without resetting it."""
@@ -185,14 +149,6 @@ class LibraryTreeBuilder:
             bool(parent.path)
             or tree_effects(self.system).on_child(parent, self.system.by_instance[instance.number]).ticks_ended
         )
-
-    def origin(self, instance: Instance) -> Location:
-        source = self.source(instance)
-        return Location(instance.source.path, source.element.name_span if source is not None else NO_SPAN)
-
-    def source(self, instance: Instance) -> TreeNode | None:
-        file = self.files.get(instance.source.path)
-        return node_at(file, instance.source) if file else None
 
     def machine_types(self) -> dict[str, str]:
         """Variable to which a port of a machine is bound -> the name of its type."""
@@ -238,7 +194,7 @@ class LibraryTreeBuilder:
         children: dict[int, Child] = {}
         for instance in reversed(self.system.instances):
             translated: list[NodeCode] = []
-            origin = self.origin(instance)
+            origin = self.links.origin(instance.source)
             child = Child(str(instance.number), STATUSES, False, origin)
             for part in reversed(self.parts[instance.number]):
                 try:
@@ -341,8 +297,8 @@ class LibraryTreeBuilder:
         )
 
 
-def _names(part: _Part) -> _FrameNames:
-    assert isinstance(part.node.frame, _FrameNames)
+def _names(part: _Part) -> FrameNames:
+    assert isinstance(part.node.frame, FrameNames)
     return part.node.frame
 
 

@@ -4,78 +4,105 @@ entries to which names in this use refer (docs/spec/mocks.md#blackboard)."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator
+from functools import partial
 
 from roaml.forest.entries import entry_of, is_autoremapped, old_entry_of
 from roaml.forest.forest import Forest
 from roaml.forest.ports import ports_of
-from roaml.lower.programs.executed import SUBTREE, ExecutedNode, ExecutedTree, identifier
+from roaml.lower.programs.executed import ExecutedNode, ExecutedTree, FrameNames, TreeLinks, identifier
 from roaml.lower.programs.refusal import TreeRefusal
-from roaml.model.expand import MAX_NODES, ROOT_NUMBER
+from roaml.model.expand import (
+    AUTOREMAP,
+    MAX_NODES,
+    MAX_SUBTREES,
+    ROOT_NUMBER,
+    Expansion,
+    PortConstant,
+    Written,
+    entered_uses,
+    expand,
+    tree_file_outline,
+)
 from roaml.model.tree import Tree, TreeNode
-from roaml.record import Record, field, replace
 from roaml.text import Location
 
 UNNAMED = "BehaviorTree_0"
 """The name that BehaviorTree.CPP gives to the only tree of a file if it has no `ID`."""
 
-MAX_DEPTH = 200
-"""The maximum nesting depth of nodes and subtrees."""
 
-
-class TreeFrame(Record, frozen=True, eq=False):
-    """One use of a tree, which determines the blackboard entries to which names in the tree refer.
-
-    Attributes:
-        prefix: the prefix of the full names of the entries that belong to this use.
-        remapped: names in the tree, with the full names of the outer entries to which they refer.
-        autoremap: whether all other names, except those that begin with `_`, refer to the entries of `outer`.
-        outer: the frame of the tree that contains this one; `None` for the main tree.
-        trees: the names of this tree and of the trees that contain it.
-    """
-
-    prefix: str
-    remapped: Mapping[str, str]
-    autoremap: bool
-    outer: TreeFrame | None
-    trees: frozenset[str]
+class _Names(FrameNames, frozen=True, eq=False):
+    """The names in one use of a tree, which may have characters that the names of variables do not have."""
 
     def entry(self, name: str) -> str:
-        """The full name of the entry to which a name refers."""
-        if name.startswith("@"):
-            return identifier(name[1:])
-        frame = self
-        while name not in frame.remapped and frame.autoremap and frame.outer is not None and name[:1] != "_":
-            frame = frame.outer
-        return frame.remapped.get(name) or identifier(frame.prefix + name)
+        return identifier(super().entry(name))
 
 
 def unfold(forest: Forest) -> ExecutedTree:
     """The executed tree of the analysed file.
 
+    The nodes have the numbers of a system's tree and of pictures, which do not number `<SubTree>`; these have the
+    numbers after the last node.
+
     Raises:
         TreeRefusal: the file has no executed tree, it is not clear which tree is executed, or the tree is invalid.
     """
     tree = main_tree(forest)
-    unfolder = _Unfolder(forest)
-    name = tree.id.value if tree.id is not None else UNNAMED
-    unfolder.tree(forest.path, tree, TreeFrame("", {}, False, None, frozenset((name,))), 0)
-    return ExecutedTree(name, _numbered(unfolder.nodes), unfolder.initial, forest.settings.version)
+    name = tree.id.value if tree.id is not None else ""
+    files = tuple(tree_file_outline(path, file, partial(_read, forest)) for path, file in forest.files)
+    main = next(each for file in files for each in file.trees if each.id == name and (name or file.path == forest.path))
+    expansion = expand(files, main, takes_all=True)
+    links = TreeLinks(dict(forest.files), {}, _Names)
+    _check(forest, tree, expansion, links)
+    for value in (value for frame in expansion.frames for value in frame.remapped.values()):
+        if isinstance(value, PortConstant):
+            links.initial[identifier(value.variable)] = value.text
+    nodes = tuple(_nodes(forest, expansion, links))
+    return ExecutedTree(name or UNNAMED, nodes, links.initial, forest.settings.version)
 
 
-def _numbered(places: Mapping[int, ExecutedNode]) -> tuple[ExecutedNode, ...]:
-    """The nodes in pre-order. They have the numbers of a system's tree and of pictures, which do not number
-    `<SubTree>`; these have the numbers after the last node.
+def _nodes(forest: Forest, expansion: Expansion, links: TreeLinks) -> Iterator[ExecutedNode]:
+    """The nodes in pre-order, with those that stand for subtrees."""
+    instances, uses = expansion.instances, expansion.uses
+    use_of = {instance.number: instance.use for instance in instances}
+    before = ROOT_NUMBER + len(instances) - 1
+    entered = {each.number: entered_uses(uses, each.use, use_of.get(each.parent or 0)) for each in instances}
+    for instance in instances:
+        inside = entered[instance.number]
+        for use, below in zip(inside, (*(before + use for use in inside[1:]), instance.number), strict=False):
+            yield links.subtree(before + use, uses[use], below)
+        children = tuple(before + entered[child][0] if entered[child] else child for child in instance.children)
+        known = forest.known_node(links.source(instance.source))
+        yield links.node(instance, uses[instance.use].frame, known, children)
 
-    Args:
-        places: place in pre-order -> the node. The number and the children of a node are places.
+
+def _check(forest: Forest, tree: Tree, expansion: Expansion, links: TreeLinks) -> None:
+    """Check that a tree is expanded, with all subtrees.
+
+    Raises:
+        TreeRefusal: it is not, a tree has no root or several, or a port has lost its meaning.
     """
-    order = sorted(places, key=lambda place: (places[place].is_subtree, place))
-    numbers = {place: number for number, place in enumerate(order, ROOT_NUMBER)}
-    return tuple(
-        replace(node, number=numbers[place], children=tuple(numbers[child] for child in node.children))
-        for place, node in sorted(places.items())
-    )
+    trees = [(forest.path, tree), *(forest.trees[frame.tree.id] for frame in expansion.frames[1:])]
+    for source in expansion.left_out:
+        node = links.source(source)
+        name = node.plugin.value if node.plugin else ""
+        if name not in forest.trees:
+            raise TreeRefusal(Location(source.path, node.element.name_span), f"there is no tree `{name}`")
+        if forest.trees[name][1].roots:
+            raise TreeRefusal(Location(source.path, node.element.name_span), f"the tree `{name}` contains itself")
+        trees.append(forest.trees[name])
+    for path, each in trees:
+        if len(each.roots) != 1:
+            reason = f"a tree needs exactly one root node, not {len(each.roots)}"
+            raise TreeRefusal(Location(path, each.element.name_span), reason)
+    if not expansion.instances:
+        reason = f"the tree is too large: at most {MAX_NODES} nodes and {MAX_SUBTREES} subtrees inside each other"
+        raise TreeRefusal(Location(forest.path, tree.element.name_span), reason)
+    for instance in expansion.instances if forest.is_version_3 else ():
+        node = links.source(instance.source)
+        if instance.plugin == "Parallel" and node.element.get("threshold"):
+            reason = "`threshold` is the name of the port before version 3.5; write `success_threshold`"
+            raise TreeRefusal(Location(instance.source.path, node.element.name_span), reason)
 
 
 def main_tree(forest: Forest) -> Tree:
@@ -106,73 +133,13 @@ def main_tree(forest: Forest) -> Tree:
     raise TreeRefusal(place, "it is not clear which tree is executed; set `main_tree_to_execute`")
 
 
-class _Unfolder(Record):
-    forest: Forest
-    nodes: dict[int, ExecutedNode] = field(default_factory=dict)
-    initial: dict[str, str] = field(default_factory=dict)
-    count: int = 0
-    prefixes: dict[str, int] = field(default_factory=dict)
-
-    def tree(self, path: str, tree: Tree, frame: TreeFrame, depth: int) -> int:
-        if len(tree.roots) != 1:
-            place = Location(path, tree.element.name_span)
-            raise TreeRefusal(place, f"a tree needs exactly one root node, not {len(tree.roots)}")
-        return self.node(path, tree.roots[0], frame, depth)
-
-    def node(self, path: str, node: TreeNode, frame: TreeFrame, depth: int) -> int:
-        origin = Location(path, node.element.name_span)
-        if self.count >= MAX_NODES or depth > MAX_DEPTH:
-            raise TreeRefusal(
-                origin, f"the tree is too large: at most {MAX_NODES} nodes and {MAX_DEPTH} levels of nesting"
-            )
-        place = self.count
-        self.count += 1
-        type_ = node.plugin.value if node.plugin else ""
-        name = node.name.value if node.name else type_
-        if node.is_subtree or self.forest.names_tree(node):
-            if type_ not in self.forest.trees:
-                raise TreeRefusal(origin, f"there is no tree `{type_}`")
-            inner_path, inner = self.forest.trees[type_]
-            child = self.tree(inner_path, inner, self.enter(node, name, type_, frame, origin), depth + 1)
-            self.nodes[place] = ExecutedNode(place, SUBTREE, name, node, None, frame, (child,), origin)
-            return place
-        known = self.forest.known_node(node)
-        if self.forest.is_version_3:
-            self.refuse_old(node, origin)
-            # Version 4 has other names for some nodes of version 3.
-            type_ = known.name if known is not None else type_
-        children = tuple(self.node(path, below, frame, depth + 1) for below in node.children)
-        self.nodes[place] = ExecutedNode(place, type_, name, node, known, frame, children, origin)
-        return place
-
-    def refuse_old(self, node: TreeNode, origin: Location) -> None:
-        """Refuse a port of version 3 whose meaning is not that of a port of version 4.
-
-        Raises:
-            TreeRefusal: the node has such a port.
-        """
-        if node.plugin is not None and node.plugin.value == "Parallel" and node.element.get("threshold"):
-            reason = "`threshold` is the name of the port before version 3.5; write `success_threshold`"
-            raise TreeRefusal(origin, reason)
-
-    def enter(self, node: TreeNode, name: str, type_: str, frame: TreeFrame, origin: Location) -> TreeFrame:
-        if type_ in frame.trees:
-            raise TreeRefusal(origin, f"the tree `{type_}` contains itself")
-        word = f"{frame.prefix}{identifier(name)}"
-        count = self.prefixes[word] = self.prefixes.get(word, 0) + 1
-        prefix = f"{word}__" if count == 1 else f"{word}_{count}__"
-        remapped: dict[str, str] = {}
-        model = self.forest.subtree_models.get(type_)
-        given = {setting.attribute.name for setting in ports_of(node)}
-        defaults = [p for p in model.ports if p.default is not None and p.name not in given] if model else []
-        for port in defaults:
-            self.initial[identifier(prefix + port.name)] = port.default or ""
-        is_old = self.forest.is_version_3
-        for setting in ports_of(node):
-            key, bound = setting.attribute.name, old_entry_of(node, setting) if is_old else entry_of(setting)
-            if bound is None:
-                self.initial[identifier(prefix + key)] = setting.value.value
-                remapped[key] = identifier(prefix + key)
-            else:
-                remapped[key] = frame.entry(bound)
-        return TreeFrame(prefix, remapped, is_autoremapped(node, version_3=is_old), frame, frame.trees | {type_})
+def _read(forest: Forest, node: TreeNode) -> Written:
+    """A node of a forest. The attributes of a `<SubTree>` are those of version 4; others are not needed."""
+    if not node.is_subtree and not forest.names_tree(node):
+        return False, ()
+    is_old = forest.is_version_3
+    attributes = [(AUTOREMAP, "true")] if is_autoremapped(node, version_3=is_old) else []
+    for setting in ports_of(node):
+        bound = old_entry_of(node, setting) if is_old else entry_of(setting)
+        attributes.append((setting.attribute.name, setting.value.value if bound is None else f"{{{bound}}}"))
+    return True, tuple(attributes)

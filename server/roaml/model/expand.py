@@ -152,12 +152,21 @@ class Instance(Record, frozen=True):
         return next((value for name, value in self.ports if name == key), None)
 
 
-def tree_file_outline(path: str, file: TreeFile) -> TreeFileOutline:
+Written: TypeAlias = tuple[bool, tuple[tuple[str, str], ...]]
+"""Whether a node stands for a tree, and its attributes with the main names of its ports."""
+
+
+def _as_written(node: TreeNode) -> Written:
+    plugin = node.plugin.value if node.plugin else ""
+    return node.is_subtree, tuple((port_key(plugin, each.name), each.value) for each in node.element.attributes)
+
+
+def tree_file_outline(path: str, file: TreeFile, read: Callable[[TreeNode], Written] = _as_written) -> TreeFileOutline:
     return TreeFileOutline(
         path,
         file.main.value if file.main else "",
         tuple(
-            TreeOutline(path, tree.id.value if tree.id else "", _outlines(tree.roots[0]) if tree.roots else None)
+            TreeOutline(path, tree.id.value if tree.id else "", _outlines(tree.roots[0], read) if tree.roots else None)
             for tree in file.trees
         ),
         tuple(
@@ -173,19 +182,17 @@ def tree_file_outline(path: str, file: TreeFile) -> TreeFileOutline:
     )
 
 
-def _outlines(root: TreeNode) -> NodeOutline:
+def _outlines(root: TreeNode, read: Callable[[TreeNode], Written]) -> NodeOutline:
     count = 0
 
     def convert(node: TreeNode) -> NodeOutline:
         nonlocal count
         position, count = count, count + 1
-        plugin = node.plugin.value if node.plugin else ""
         return NodeOutline(
             position,
-            plugin,
+            node.plugin.value if node.plugin else "",
             node.name.value if node.name else "",
-            node.is_subtree,
-            tuple((port_key(plugin, attribute.name), attribute.value) for attribute in node.element.attributes),
+            *read(node),
             tuple(convert(child) for child in node.children),
             node.element.name == "Condition",
         )
@@ -290,9 +297,13 @@ class TreeExtent(Record, frozen=True):
         return self.nodes <= MAX_NODES and self.depth <= MAX_SUBTREES
 
 
-def extent(files: tuple[TreeFileOutline, ...]) -> TreeExtent:
-    """The size of the executed tree. Subtrees that are unknown or contain themselves have the size 0."""
-    main = main_tree(files)
+def extent(files: tuple[TreeFileOutline, ...], executed: TreeOutline | None = None) -> TreeExtent:
+    """The size of the executed tree. Subtrees that are unknown or contain themselves have the size 0.
+
+    Args:
+        executed: the executed tree, if it is known.
+    """
+    main = main_tree(files) if executed is None else executed
     if isinstance(main, tuple) or main.root is None:
         return TreeExtent(0, 0, None)
     trees = _by_id(files)
@@ -362,7 +373,8 @@ class Frame(Record, frozen=True, eq=False):
         remapped: the names that the attributes of the `<SubTree>` bind, with their values in the enclosing use.
         autoremap: whether all other names are bound to the variables of the same name in the enclosing use.
         outer: the enclosing use.
-        names: the variables that the nodes of the tree refer to.
+        names: the variables that the nodes of the tree refer to; `None` if a program may set other entries, too, so
+            that every name counts.
         inside: the IDs of the tree and of all enclosing trees.
         scripts: the conditions and scripts of the `<SubTree>`.
         looked_up: a cache of resolved names.
@@ -377,7 +389,7 @@ class Frame(Record, frozen=True, eq=False):
     remapped: Mapping[str, PortValue]
     autoremap: bool
     outer: Frame | None
-    names: frozenset[str]
+    names: frozenset[str] | None
     inside: frozenset[str]
     scripts: tuple[tuple[str, str], ...] = ()
     looked_up: dict[str, PortValue | None] = field(default_factory=dict)
@@ -401,7 +413,7 @@ class Frame(Record, frozen=True, eq=False):
             frame = frame.outer if frame.autoremap and not name.startswith("_") else None
         value = None if frame is None else frame.remapped.get(name) or frame.looked_up.get(name)
         for frame in reversed(visited):
-            if value is None and name in frame.names:
+            if value is None and (frame.names is None or name in frame.names):
                 value = Reference(f"{frame.prefix}{name}")
             frame.looked_up[name] = value
         return value
@@ -419,11 +431,13 @@ class Expansion(Record, frozen=True):
         instances: its nodes in pre-order.
         frames: all uses of trees, each after the enclosing one; the executed tree is first.
         frame_of: number of an instance -> the use of a tree that contains it.
+        left_out: the `<SubTree>` nodes that cannot be expanded, in pre-order.
     """
 
     instances: tuple[Instance, ...] = ()
     frames: tuple[Frame, ...] = ()
     frame_of: Mapping[int, Frame] = field(default_factory=dict)
+    left_out: tuple[NodeSource, ...] = ()
 
     @property
     def uses(self) -> tuple[TreeUse, ...]:
@@ -441,13 +455,33 @@ class Expansion(Record, frozen=True):
         )
 
 
-def expand(files: tuple[TreeFileOutline, ...]) -> Expansion:
+def expand(
+    files: tuple[TreeFileOutline, ...], main: TreeOutline | None = None, *, takes_all: bool = False
+) -> Expansion:
     """The executed tree; it is empty if the tree is ambiguous, has no node, or is too large
-    (`TreeExtent.is_expanded`)."""
-    main = main_tree(files)
-    if isinstance(main, tuple) or main.root is None or not extent(files).is_expanded:
+    (`TreeExtent.is_expanded`).
+
+    Args:
+        main: the executed tree, if it is known.
+        takes_all: whether automatic remapping leads to the outermost enclosing tree even for names that only the inner
+            tree uses, because a program may set their entries.
+    """
+    chosen = main_tree(files) if main is None else main
+    if isinstance(chosen, tuple) or chosen.root is None or not extent(files, chosen).is_expanded:
         return Expansion()
-    return _Expander(files).run(main)
+    return _Expander(files, takes_all=takes_all).run(chosen)
+
+
+def entered_uses(uses: tuple[TreeUse, ...], inner: int, around: int | None = None) -> tuple[int, ...]:
+    """The uses of trees between two nodes: the use `inner` and its enclosing ones up to `around`, without `around`, the
+    outermost first. The executed tree itself is left out."""
+    entered: list[int] = []
+    index: int | None = inner
+    while index != around and index is not None:
+        if uses[index].outer is not None:
+            entered.append(index)
+        index = uses[index].outer
+    return tuple(reversed(entered))
 
 
 class _Placed(Record):
@@ -467,8 +501,10 @@ class _Expander:
     """Expands a tree with an explicit stack, because subtrees may be nested more deeply than Python's call stack
     allows."""
 
-    def __init__(self, files: tuple[TreeFileOutline, ...]) -> None:
+    def __init__(self, files: tuple[TreeFileOutline, ...], *, takes_all: bool) -> None:
         self.trees = _by_id(files)
+        self.takes_all = takes_all
+        self.left_out: list[NodeSource] = []
         self.defaults: dict[str, dict[str, str]] = {}
         for file in files:
             for plugin, port, value in file.defaults:
@@ -492,6 +528,8 @@ class _Expander:
                 inner = self.trees.get(node.plugin) if node.plugin else None
                 if inner is not None and inner.root is not None and inner.id not in frame.inside:
                     pending.append((inner.root, self.enter(node, inner, frame), parent))
+                else:
+                    self.left_out.append(NodeSource(frame.tree.path, frame.tree.id, node.position))
                 continue
             number = self.place(node, frame, parent)
             pending += ((child, frame, number) for child in reversed(node.children))
@@ -511,7 +549,7 @@ class _Expander:
             )
             for number, placed in enumerate(self.placed, ROOT_NUMBER)
         )
-        return Expansion(tuple(instances), tuple(self.frames), self.frame_of)
+        return Expansion(tuple(instances), tuple(self.frames), self.frame_of, tuple(self.left_out))
 
     def place(self, node: NodeOutline, frame: Frame, parent: int | None) -> int:
         """Create an instance of `node` and return its number."""
@@ -562,14 +600,17 @@ class _Expander:
         self.frames.append(entered)
         return entered
 
-    def names_in(self, tree: TreeOutline) -> frozenset[str]:
+    def names_in(self, tree: TreeOutline) -> frozenset[str] | None:
+        if self.takes_all:
+            return None
         if tree.id not in self.names:
             self.names[tree.id] = _names(tree)
         return self.names[tree.id]
 
 
 _OWN_ATTRIBUTES = frozenset(("ID", "name"))
-_AUTOREMAP = ("_autoremap", "__autoremap", "__shared_blackboard")
+AUTOREMAP = "_autoremap"
+_AUTOREMAP = (AUTOREMAP, "__autoremap", "__shared_blackboard")
 
 
 def _scripts(node: NodeOutline) -> tuple[tuple[str, str], ...]:

@@ -10,7 +10,7 @@ from roaml.libraries import library_node
 from roaml.libraries.programs.effects import ALL_EFFECTS, ChildEffects, Effects, effects_on
 from roaml.libraries.programs.linked import ANY, OF_MACHINE, LinkedNode, Possible, linked
 from roaml.libraries.programs.statuses import FAILURE, RUNNING, SKIPPED, SUCCESS
-from roaml.model.expand import Instance, PortConstant
+from roaml.model.expand import Instance, PortConstant, entered_uses
 from roaml.model.system import System, SystemAutomaton
 
 _NO_SUCCESS = frozenset((FAILURE, RUNNING))
@@ -79,7 +79,7 @@ class TreeEffects:
         return bound.effects([Possible(given, given) for given in answers])
 
     def _of(self, system: System, instance: Instance) -> Possible:
-        has_conditions = any(system.tree_uses[use].scripts for use in _with_outer(system, instance.use))
+        has_conditions = any(system.tree_uses[use].scripts for use in entered_uses(system.tree_uses, instance.use))
         bound = self._linked.get(instance.number)
         return ANY if has_conditions or bound is None else bound.possible(self._below(instance))
 
@@ -97,15 +97,6 @@ def _bound(automaton: SystemAutomaton, instance: Instance) -> LinkedNode:
     settings = {key: value.text if isinstance(value, PortConstant) else None for key, value in instance.ports}
     scripts = (name for name, _ in instance.scripts)
     return linked(known, settings, scripts, len(instance.children), OF_MACHINE if automaton.path else ANY)
-
-
-def _with_outer(system: System, use: int | None) -> list[int]:
-    """The index of the use of a tree, and those of all enclosing uses."""
-    result = []
-    while use is not None:
-        result.append(use)
-        use = system.tree_uses[use].outer
-    return result
 
 
 def tree_effects(system: System) -> TreeEffects:

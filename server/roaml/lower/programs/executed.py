@@ -12,7 +12,8 @@ from roaml.forest.entries import entry_of
 from roaml.forest.ports import ports_of
 from roaml.libraries import Node
 from roaml.libraries.version import NEWEST_VERSION, Version
-from roaml.model.tree import TreeNode
+from roaml.model.expand import Frame, Instance, NodeSource, Reference, TreeUse, node_at
+from roaml.model.tree import TreeFile, TreeNode
 from roaml.record import Record
 from roaml.scxml.names import NODE_PREFIX
 from roaml.text import Location, Span
@@ -24,6 +25,26 @@ class Names(Protocol):
     def entry(self, name: str) -> str:
         """The full name of the entry to which `name` refers."""
         ...
+
+
+class FrameNames(Record, frozen=True, eq=False):
+    """The names in one use of a tree. Entries that a `<SubTree>` sets to constants are added to `initial`, with the
+    texts of the constants."""
+
+    frame: Frame
+    initial: dict[str, str]
+
+    def entry(self, name: str) -> str:
+        value = self.frame.resolve(name)
+        if isinstance(value, Reference):
+            return value.variable
+        variable = identifier(value.variable)
+        self.initial[variable] = value.text
+        return variable
+
+    def is_initial(self, entry: str) -> bool:
+        """Whether a `<SubTree>` sets an entry to a constant."""
+        return entry in self.initial
 
 
 SUBTREE = "SubTree"
@@ -50,10 +71,6 @@ class ExecutedNode(Record, frozen=True, eq=False):
     frame: Names
     children: tuple[int, ...]
     origin: Location
-
-    @property
-    def is_leaf(self) -> bool:
-        return not self.children
 
     @property
     def is_subtree(self) -> bool:
@@ -91,6 +108,45 @@ class ExecutedTree(Record, frozen=True, eq=False):
     def root(self) -> int:
         """The number of the root, which may be a `<SubTree>`."""
         return self.nodes[0].number
+
+
+class TreeLinks(Record, frozen=True, eq=False):
+    """Binds the nodes of an expanded tree to the elements of its files.
+
+    Attributes:
+        files: the tree files, by path. They contain all nodes of the tree.
+        initial: the entries that `<SubTree>` nodes set to constants; names are resolved when they are used.
+        names: how the names in a use of a tree are resolved.
+    """
+
+    files: Mapping[str, TreeFile]
+    initial: dict[str, str]
+    names: type[FrameNames] = FrameNames
+
+    def source(self, place: NodeSource) -> TreeNode:
+        node = node_at(self.files[place.path], place)
+        assert node is not None, place
+        return node
+
+    def origin(self, place: NodeSource) -> Location:
+        return Location(place.path, self.source(place).element.name_span)
+
+    def node(self, instance: Instance, frame: Frame, known: Node | None, children: tuple[int, ...]) -> ExecutedNode:
+        source, names, type_ = (
+            instance.source,
+            self.names(frame, self.initial),
+            known.name if known else instance.plugin,
+        )
+        node = self.source(source)
+        return ExecutedNode(instance.number, type_, instance.name, node, known, names, children, self.origin(source))
+
+    def subtree(self, number: int, use: TreeUse, below: int) -> ExecutedNode:
+        """The node of a `<SubTree>`; `below` is its child."""
+        source, outer = use.frame.use, use.frame.outer
+        assert source is not None
+        assert outer is not None
+        names = self.names(outer, self.initial)
+        return ExecutedNode(number, SUBTREE, use.name, self.source(source), None, names, (below,), self.origin(source))
 
 
 def identifier(name: str) -> str:

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from roaml.libraries import library_node
 from roaml.libraries.programs.statuses import RUNNING, SUCCESS
 from roaml.model.behavior.phases import Phase
+from roaml.model.expand import entered_uses
 from roaml.model.node_effects import tree_effects
 from roaml.model.system import System, SystemAutomaton
 
@@ -66,11 +67,9 @@ def _halted(
 def _stops_itself(system: System, parent: SystemAutomaton | None, node: SystemAutomaton) -> bool:
     """Whether `_while` of a node, or of a `<SubTree>` around it and below `parent`, can halt the running node."""
     assert node.instance is not None
-    scripts = [node.instance.scripts]
-    use: int | None = node.instance.use
-    while use is not None and (parent is None or parent.instance is None or use != parent.instance.use):
-        scripts.append(system.tree_uses[use].scripts)
-        use = system.tree_uses[use].outer
+    around = None if parent is None or parent.instance is None else parent.instance.use
+    entered = entered_uses(system.tree_uses, node.instance.use, around)
+    scripts = [node.instance.scripts, *(system.tree_uses[use].scripts for use in entered)]
     return any(name == "_while" for given in scripts for name, _ in given)
 
 
