@@ -18,7 +18,7 @@ from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Absent, Library, Node, 
 from roaml.libraries.version import first_patch
 from roaml.model.kinds import PROJECT_EXTENSION
 from roaml.model.outline import MachineOutline
-from roaml.model.system import System
+from roaml.model.system import CHILDREN_COUNT, System
 from roaml.model.tree import NodeModel, Tree, TreeFile, TreeNode, nodes
 from roaml.record import Record, replace
 from roaml.roles import UNBOUNDED, Direction, NodeKind
@@ -136,7 +136,10 @@ class Forest(Record, frozen=True, eq=False, dict=True):
         return models
 
     def is_partly_described(self, node: Node) -> bool:
-        """Whether an error in the model of a node may hide some of its ports."""
+        """Whether an error in the model or machine of a node may hide some of its ports."""
+        if self.system is not None:
+            outline = self.system.plugin(node.name)[1]
+            return outline is not None and not outline.all_ports
         return node.name in self._unclear_models and not node.library
 
     @cached_property
@@ -182,7 +185,8 @@ class Forest(Record, frozen=True, eq=False, dict=True):
         version 3 are known, too."""
         if self.system is not None:
             path, outline = self.system.plugin(name)
-            return None if outline is None else node_of_machine(outline) if path else library_node(name)
+            declared = None if outline is None else node_of_machine(outline) if path else library_node(name)
+            return None if declared is None else self._with_defaults(declared)
         renamed = CPP.renamed.get(name) if self.is_version_3 else None
         declaration = CPP.nodes.get(renamed.now if renamed else name)
         is_known = declaration is not None and (self.is_version_3 or not declaration.until)
@@ -193,6 +197,18 @@ class Forest(Record, frozen=True, eq=False, dict=True):
             return declaration
         known = next((known.nodes[name] for known in self.libraries if name in known.nodes), None)
         return None if known is None or self._is_own(known) else known
+
+    def _with_defaults(self, node: Node) -> Node:
+        """A node of a system, whose ports need not be set if models give them defaults."""
+        defaults = {
+            port.name.value
+            for _, file in self.files
+            for model in file.models
+            for port in model.ports
+            if model.id is not None and model.id.value == node.name and port.name and port.default is not None
+        }
+        ports = (replace(port, required=port.required and port.name not in defaults) for port in node.ports)
+        return replace(node, ports=tuple(ports)) if defaults else node
 
     def _is_own(self, node: Node) -> bool:
         """Whether the program has a node of its own with the name of a node of a library: a model in another file of
@@ -364,9 +380,15 @@ def node_of(model: NodeModel) -> Node:
 
 
 def node_of_machine(outline: MachineOutline) -> Node:
-    """The declaration of a node that a machine executes. The number of its children is not limited here."""
+    """The declaration of a node that a machine executes, which needs all ports that a tree can set. The number of its
+    children is not limited here."""
     ports = tuple(
-        Port(port.key, Direction.IN if port.direction is Direction.IN else Direction.OUT, port.type)
+        Port(
+            port.key,
+            Direction.IN if port.direction is Direction.IN else Direction.OUT,
+            port.type,
+            required=port.key != CHILDREN_COUNT,
+        )
         for port in outline.ports
     )
     return Node(outline.name, NodeKind.ACTION, ports, (0, UNBOUNDED))

@@ -604,15 +604,6 @@ def _library_outline(name: str, node: Node) -> MachineOutline:
     return MachineOutline(name, "ascxml", False, frozenset(), ports, (), (), (), (), (), plugin)
 
 
-def optional_ports(name: str) -> frozenset[str]:
-    """The ports that need not be set of `name`, a node of a library."""
-    element = BEHAVIOR_TREE.elements.get(name)
-    if element is not None and element.node:
-        return frozenset(a.name for a in element.ports if a.port and not a.port.required)
-    declared = (library(known).nodes.get(name) for known in LIBRARIES)
-    return frozenset(port.name for node in declared if node for port in node.ports if not port.required)
-
-
 def _library_port(port: Port) -> PortOutline:
     if port.names_entry:  # the port itself does not read the entry
         return PortOutline(port.name, ANY_TYPE, Direction.IN, False, port.direction.writes)

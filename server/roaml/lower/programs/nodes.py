@@ -219,10 +219,10 @@ class _Reader(Record, eq=False):
             raise TreeRefusal(
                 node.origin, f"a port of `{node.type}` is bound to an entry with a text; only numbers can be translated"
             )
-        for port_name in ("else", "return_on_mismatch", "if_empty", "then_skip", "catch_on_halt", "wrap_around"):
-            if port_name in bound:
+        for port in declared:
+            if port.name in bound and port.type in ("bool", "NodeStatus") and not port.direction.writes:
                 raise TreeRefusal(
-                    node.origin, f"the port `{port_name}` must be a constant; entries cannot be translated here"
+                    node.origin, f"the port `{port.name}` must be a constant; entries cannot be translated here"
                 )
 
     def check_divisor(self, node: ExecutedNode, port: str, value: Known, origin: Location) -> None:

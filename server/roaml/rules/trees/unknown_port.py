@@ -7,62 +7,19 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
 from roaml.edit.elements import removal
-from roaml.forest.forest import OLD_ATTRIBUTES
+from roaml.forest.forest import OLD_ATTRIBUTES, Forest
 from roaml.forest.ports import ports_of, probable_ports
 from roaml.libraries import Node
 from roaml.libraries.node import EVENT_ATTRIBUTE
 from roaml.libraries.programs.assembly import reads_world
 from roaml.libraries.scripts import AFTERWARDS, CONDITIONS
-from roaml.model.outline import MachineOutline
 from roaml.model.system import CHILDREN_COUNT
-from roaml.model.tree import TreeNode, nodes
+from roaml.model.tree import PortSetting, TreeNode
+from roaml.record import replace
 from roaml.roles import SymbolKind
-from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, listing, replacements
-from roaml.rules.support.forest import forest_of, probably_meant
+from roaml.rules.rule import Rule, TreeContext, did_you_mean, listing, replacements
+from roaml.rules.support.forest import probably_meant, trees_of
 from roaml.suggest import are_similar
-
-
-def check(context: TreeContext) -> Iterator[Finding]:
-    yield from _alone(context) if context.system is None else _of_system(context)
-
-
-def _of_system(context: TreeContext) -> Iterator[Finding]:
-    assert context.system is not None
-    for tree in context.file.trees:
-        for node in nodes(tree):
-            if not node.is_subtree and node.plugin is not None:
-                path, plugin = context.system.plugin(node.plugin.value)
-                if plugin is not None:
-                    yield from _check(context, node, plugin, path)
-
-
-def _check(context: TreeContext, node: TreeNode, plugin: MachineOutline, path: str) -> Iterator[Finding]:
-    keys = [port.key for port in plugin.ports]
-    related = [Related(Symbol(path, SymbolKind.MACHINE, plugin.name), "the plugin")] if path else []
-    for setting in node.ports:
-        key = setting.key
-        edit = removal(context.source.text, setting.attribute.span)
-        if key.value == EVENT_ATTRIBUTE and reads_world(plugin.name) and not path:
-            continue
-        if key.value == CHILDREN_COUNT:
-            if CHILDREN_COUNT not in keys and path:
-                continue  # no effect: a user's plugin that does not declare the port cannot read it
-            message = f"`{CHILDREN_COUNT}` is set automatically and cannot be set here; remove it"
-            yield RULE.at(key.span, message, Fix(f"Remove `{key.value}`", (edit,)), related=related)
-        elif key.value not in keys and plugin.all_ports:
-            given = {other.key.value for other in node.ports}
-            free = [k for k in keys if k not in given]
-            close = close_names(key.value, free)
-            # A misspelled port would also be reported as missing.
-            drop = [] if close else [Fix(f"Remove `{key.value}`", (edit,), preferred=False)]
-            known = f"; it has {listing(keys)}" if keys else "; it has no ports"
-            hint = did_you_mean(close) or known
-            message = f"`{plugin.name}` has no port `{key.value}`{hint}"
-            yield RULE.at(key.span, message, *replacements(key.span, close), *drop, related=related)
-
-
-# ------------------------------------------------------------ trees without a system
-
 
 MAX_PORTS = 8
 """The maximum number of ports that a message lists."""
@@ -70,33 +27,47 @@ MAX_PORTS = 8
 _OF_LIBRARY = (*CONDITIONS, *AFTERWARDS, "_autoremap", "_description", "_uid", "_fullpath")
 
 
-def _alone(context: TreeContext) -> Iterator[Finding]:
-    forest = forest_of(context)
-    if forest is None:
+def check(context: TreeContext) -> Iterator[Finding]:
+    trees = trees_of(context)
+    if trees is None:
         return
-    for _, node in forest.own_nodes:
-        yield from _conditions(node)
-        yield from _identifier(node)
-        known = forest.known_node(node)
-        if known is not None and not forest.is_partly_described(known):
-            yield from _ports(context, node, known)
+    for _, node in trees.own_nodes:
+        if trees.system is None:
+            yield from _conditions(node)
+            yield from _identifier(node)
+        known = trees.known_node(node)
+        if known is not None and not trees.is_partly_described(known):
+            yield from _ports(context, trees, node, known)
 
 
-def _ports(context: TreeContext, node: TreeNode, known: Node) -> Iterator[Finding]:
+def _ports(context: TreeContext, trees: Forest, node: TreeNode, known: Node) -> Iterator[Finding]:
     names = [port.name for port in known.ports if not port.alias_of]
+    path = trees.system.plugin(known.name)[0] if trees.system is not None else ""
+    related = [Related(Symbol(path, SymbolKind.MACHINE, known.name), "the plugin")] if path else []
+    # Only a warning: a model in a file may be older than the node.
+    severity = Severity.ERROR if known.library or path else Severity.WARNING
     probable = probable_ports(node, known)
-    for setting in ports_of(node):
+    for setting in ports_of(node) if trees.system is None else node.ports:
         attribute = setting.attribute
-        if attribute.name not in probable:
-            continue
-        close = probable[attribute.name]
-        hint = did_you_mean(close) or _known(names)
-        drop = Fix(f"Remove `{attribute.name}`", (removal(context.source.text, attribute.span),), preferred=False)
-        fixes = (*replacements(attribute.name_span, close), *(() if close else (drop,)))
-        # Only a warning: a model in a file may be older than the node.
-        severity = Severity.ERROR if known.library else Severity.WARNING
-        message = f"`{known.name}` has no port `{attribute.name}`{hint}"
-        yield RULE.at(attribute.name_span, message, *fixes, severity=severity)
+        drop = Fix(f"Remove `{attribute.name}`", (removal(context.source.text, attribute.span),))
+        if trees.system is not None and attribute.name == CHILDREN_COUNT:
+            # A plugin that does not declare the port cannot read it, so the value has no effect.
+            if CHILDREN_COUNT in names or not path:
+                message = f"`{CHILDREN_COUNT}` is set automatically and cannot be set here; remove it"
+                yield RULE.at(attribute.name_span, message, drop, related=related)
+        elif attribute.name in probable if trees.system is None else not _is_port_in_system(setting, known):
+            close = probable.get(attribute.name, ())
+            hint = did_you_mean(close) or _known(names)
+            # A misspelled port would also be reported as missing.
+            fixes = replacements(attribute.name_span, close) if close else (replace(drop, preferred=False),)
+            message = f"`{known.name}` has no port `{attribute.name}`{hint}"
+            yield RULE.at(attribute.name_span, message, *fixes, severity=severity, related=related)
+
+
+def _is_port_in_system(setting: PortSetting, known: Node) -> bool:
+    """Whether a system reads an attribute as a port, which may have the name of an alias, or as a probability."""
+    is_event = setting.key.value == EVENT_ATTRIBUTE and bool(known.library) and reads_world(known.name)
+    return is_event or known.port(setting.key.value) is not None
 
 
 def _known(names: list[str]) -> str:
