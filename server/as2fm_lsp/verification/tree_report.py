@@ -12,6 +12,7 @@ from roaml.lower.programs.nodes import EVENT_PROBABILITY
 from roaml.mocks.network import MockedTree
 from roaml.scxml.names import TreeEventKind, sent_by, tree_event_name
 from roaml.smc.program import TRUE
+from roaml.smc.record import SELECTED
 from roaml.smc.story import Story
 from roaml.text import Location
 from roaml.verification.tree_outcome import COUNTERS, Influence, Measured, TreeOutcome
@@ -152,7 +153,8 @@ def story_as_text(mocked: MockedTree, story: Story, place_of: PlaceOf, *, is_who
         lines[MAX_LINES // 2 : -MAX_LINES // 2] = [f"  … {folded} more statuses (--verbose) …"]
     outcome = "with" if story.recording.verdict == TRUE else "without"
     number = story.recording.trace
-    head = f"the shortest trace {outcome} success (trace {number}):" if number >= 0 else f"a trace {outcome} success:"
+    article = "a" if number == SELECTED else "the shortest"
+    head = f"{article} trace {outcome} success{f' (trace {number})' if number >= 0 else ''}:"
     why = cause(story, place_of)
     return "".join(f"{line}\n" for line in (*([why] if why else []), head, *lines))
 
