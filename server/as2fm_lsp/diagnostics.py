@@ -30,7 +30,7 @@ from as2fm_lsp.progress import Progress, ProgressReporter
 from as2fm_lsp.session import Moment, Session
 from roaml.diagnostics import Diagnostic
 from roaml.ide.names.occurrences import uses
-from roaml.project.memo import Interrupted
+from roaml.interruption import Interrupted
 from roaml.project.provisional import Checked, after, checked
 from roaml.project.workspace import Snapshot
 from roaml.text import SourceFile

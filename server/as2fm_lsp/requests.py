@@ -19,7 +19,7 @@ from typing import Any
 from pygls.exceptions import JsonRpcContentModified, JsonRpcRequestCancelled
 
 from as2fm_lsp.inbox import Inbox
-from roaml.project.memo import Interrupted
+from roaml.interruption import Interrupted
 from roaml.record import Record
 
 

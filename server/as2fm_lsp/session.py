@@ -19,8 +19,8 @@ from lsprotocol import types
 
 from as2fm_lsp.buffer import MARK, edited
 from as2fm_lsp.convert import Converter
+from roaml.interruption import go_on
 from roaml.project.configuration import find_settings
-from roaml.project.memo import go_on
 from roaml.project.paths import is_below, is_on_disk
 from roaml.project.settings import Settings, ament_prefixes, enclosing_root, settings_from
 from roaml.project.workspace import Snapshot, Workspace

@@ -20,9 +20,9 @@ from as2fm_lsp.translation import jani_path, summary, without_bounded
 from roaml import api
 from roaml.diagnostics import Diagnostic
 from roaml.ide.system_names import system_names
+from roaml.interruption import Interrupted
 from roaml.jani.model import Model
 from roaml.jani.writer import write as jani_text
-from roaml.project.memo import Interrupted
 from roaml.project.paths import is_on_disk
 from roaml.project.workspace import Snapshot
 from roaml.text import SourceFile

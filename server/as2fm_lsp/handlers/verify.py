@@ -25,9 +25,9 @@ from as2fm_lsp.verification.settings import VerificationSettings, verification_s
 from roaml import api
 from roaml.diagnostics import Diagnostic
 from roaml.ide.verifiable import Texts, verifiable
+from roaml.interruption import Interrupted
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
-from roaml.project.memo import Interrupted
 from roaml.record import replace
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import STUCK_PROPERTY, CompiledProperty

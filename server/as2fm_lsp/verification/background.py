@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
-from roaml.project.memo import Interrupted
+from roaml.interruption import Interrupted
 from roaml.record import replace
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.pool import Pool

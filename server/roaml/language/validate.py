@@ -14,6 +14,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any, TypeAlias
 
+from roaml.interruption import checkpoint
 from roaml.language.grammar import AttributeType, ElementType, Grammar, Multiplicity, SimpleType
 from roaml.language.resources import schema_path
 from roaml.record import Record
@@ -172,6 +173,7 @@ def _walk(document: Document, root: Element, grammar: Grammar, disordered: list[
     namespaces = dict(document.namespaces)
     stack: list[tuple[Element, ElementType]] = [(root, grammar.elements[root.name])]
     while stack:
+        checkpoint()
         element, type_ = stack.pop()
         yield from _attributes(element, type_)
         if not type_.text:

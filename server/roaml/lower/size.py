@@ -17,6 +17,7 @@ from roaml.expr.infer import infer
 from roaml.expr.operators import OperatorKind
 from roaml.expr.tree import ArrayLiteral, Binary, Expr, Name, ObjectLiteral, String, is_draw, walk
 from roaml.expr.types import BASE_TYPES, UNKNOWN, Array, ScalarKind, Type, is_kind, resolve_type, unwrap
+from roaml.interruption import checkpoint
 from roaml.lower.interfaces import fields
 from roaml.lower.nodes import builtin_machine
 from roaml.lower.program import TranslatableSystem
@@ -70,6 +71,7 @@ def _sorted(shares: Iterable[Share]) -> tuple[Share, ...]:
     """The shares, the largest first. Shares with the same phrase, path and symbol are added up."""
     counts: dict[tuple[str, str, Symbol | None], int] = {}
     for share in shares:
+        checkpoint()
         key = (share.words, share.path, share.symbol)
         counts[key] = counts.get(key, 0) + share.count
     shares = (Share(count, *key) for key, count in counts.items())

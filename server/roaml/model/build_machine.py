@@ -5,6 +5,7 @@ them."""
 from __future__ import annotations
 
 from roaml.expr.types import BASE_TYPES, parse_type
+from roaml.interruption import checkpoint
 from roaml.language import HL_SCXML, ElementType
 from roaml.language.validate import is_foreign
 from roaml.model.machine import (
@@ -169,6 +170,7 @@ class _Builder:
     # ---------------------------------------------------------------- states
 
     def state(self, element: Element) -> State:
+        checkpoint()
         entry = exit_ = None
         handlers = []
         for child in self.children(element):

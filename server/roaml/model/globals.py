@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from roaml.diagnostics import Symbol
 from roaml.expr.types import BASE_TYPES, BOOL, INT, EmptyArray, ScalarKind, Struct, Type, is_kind, leaves, unwrap, wrap
+from roaml.interruption import checkpoint
 from roaml.model.outline import InterfaceUse, SentField
 from roaml.model.ros import InterfaceType
 from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton
@@ -60,6 +61,7 @@ def global_variables(system: System, interface: FindInterface) -> dict[str, Glob
     """All global variables by name."""
     table: dict[str, GlobalVariable] = {}
     for event, source, params in _events(system, interface):
+        checkpoint()
         table.setdefault(flag_of(event), GlobalVariable(flag_of(event), BOOL, BOOL, event, FLAG, source))
         for name, type_ in params:
             for variable, stored, leaf in _flatten(f"{event}__{name}", type_):

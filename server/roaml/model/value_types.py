@@ -28,6 +28,7 @@ from roaml.expr.types import (
     unwrap,
 )
 from roaml.interfaces.types import Kind
+from roaml.interruption import checkpoint
 from roaml.language.grammar import Binding
 from roaml.model.initial import InitialProblem, check_bound, check_initial
 from roaml.model.machine import (
@@ -341,6 +342,7 @@ class _Typer(Record, eq=False):
         for data in chart.data:
             self.data(data, place)
         for state in chart.states:
+            checkpoint()
             for body, part in ((state.entry, ValuePart.ENTRY), (state.exit, ValuePart.EXIT)):
                 if body is not None:
                     _Body(self, variables, {}, ValuePlace(chart, state, None, part)).run(body.statements)

@@ -5,7 +5,8 @@
   key. A different key replaces the result. So the memory grows with the number of files, not with the number of edits.
 - Keys are compared by value. The cache keeps a reference to a key that is compared by identity, such as a linked
   system.
-- Work may be abandoned between two computations (`Interrupted`). Earlier results stay in the cache.
+- Work may be abandoned before a computation and at its checkpoints (`roaml.interruption`). Earlier results stay in the
+  cache.
 """
 
 from __future__ import annotations
@@ -13,20 +14,14 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable
 from typing import Any, TypeVar
 
+from roaml.interruption import go_on, run
+
 T = TypeVar("T")
 
 
-class Interrupted(BaseException):
-    """Raised to abandon work whose result is not needed. Like `KeyboardInterrupt`, it is not an `Exception`, so
-    handlers of failures do not catch it."""
-
-
-def go_on() -> None:
-    """A checkpoint that never abandons the work."""
-
-
 class Memo:
-    """A cache of results. `checkpoint` is called before each computation and may raise `Interrupted`."""
+    """A cache of results. `checkpoint` is called before each computation and at its checkpoints; it may raise
+    `Interrupted`."""
 
     def __init__(self, checkpoint: Callable[[], None] = go_on) -> None:
         self.checkpoint = checkpoint
@@ -42,7 +37,7 @@ class Memo:
             result: T = known[1]
             return result
         self.checkpoint()
-        result = compute()
+        result = run(compute, self.checkpoint)
         self._slots[slot] = (key, result)
         return result
 

@@ -16,13 +16,14 @@ from roaml.disk import Roots
 from roaml.durations import ANY_TIME
 from roaml.interfaces.registry import Registry
 from roaml.interfaces.search import SearchPath
+from roaml.interruption import go_on
 from roaml.model.config_files import CONFIG_FILE
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.project.checking import RuleRunner
 from roaml.project.discover import SystemIndex, candidates, is_candidate
 from roaml.project.files import DiskFiles, Files
-from roaml.project.memo import Memo, go_on
+from roaml.project.memo import Memo
 from roaml.project.paths import folder_of, full, is_below
 from roaml.project.settings import Settings
 from roaml.record import replace

@@ -16,6 +16,7 @@ import codecs
 import re
 
 from roaml.diagnostics import Finding, Fix, Related
+from roaml.interruption import checkpoint
 from roaml.regex import regex
 from roaml.suggest import are_similar
 from roaml.text import Span, TextEdit, span_of
@@ -95,6 +96,7 @@ class _Parser:
                 self.add_text(at, end)
                 at = end
                 continue
+            checkpoint()
             at = self.markup(at)
         while self.stack:
             self.close_unclosed(length)

@@ -17,6 +17,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any, TypeAlias
 
 from roaml.exhaustive import assert_never
+from roaml.interruption import checkpoint
 from roaml.libraries.programs import assembly
 from roaml.libraries.programs.assembly import Instruction, NodeProgram
 from roaml.libraries.programs.statuses import FAILURE, HELD, IDLE, RUNNING, SKIPPED, STATUS_CODES, SUCCESS, Known
@@ -225,6 +226,7 @@ class _Run(Record, eq=False):
 
     def finish(self) -> bool:
         while self.pending and len(self.seen) <= MAX_DECISIONS:
+            checkpoint()
             place, variables = self.pending.pop()
             self.execute(place, variables)
         return not self.pending

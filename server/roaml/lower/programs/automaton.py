@@ -14,6 +14,7 @@ from typing import NamedTuple, TypeAlias
 from roaml.expr.operators import Operator
 from roaml.expr.tree import Expr
 from roaml.expr.types import BASE_TYPES, Type
+from roaml.interruption import checkpoint
 from roaml.libraries.programs import assembly
 from roaml.libraries.programs.assembly import CodeLabel, Instruction
 from roaml.libraries.programs.statuses import HELD, IDLE, RUNNING, SKIPPED, STATUS_CODES, Known
@@ -186,6 +187,7 @@ class _Explorer(Record, eq=False, dict=True):
         initial = self.rest(start)
         while self.pending:
             state, key = self.pending.pop()
+            checkpoint()
             self.built[state] = self.build(state, key)
             if len(self.states) > MAX_STATES:
                 raise NodeTooLargeError

@@ -22,6 +22,7 @@ from typing import NamedTuple
 from roaml.exhaustive import Vocabulary, assert_never
 from roaml.expr.format import format_expr
 from roaml.expr.tree import ErrorExpr, Expr, Name, access_path, walk
+from roaml.interruption import checkpoint
 from roaml.model.behavior.knowledge import NOTHING, ConditionFacts, Domain, Knowledge, is_literal, variables_in
 from roaml.model.behavior.phases import (
     ANY_ID,
@@ -537,6 +538,7 @@ class _Explorer(Record, eq=False, dict=True):
             done = 0
             while done < len(self.numbers):
                 for configuration in list(self.numbers)[done:]:
+                    checkpoint()
                     self._from(configuration, self.numbers[configuration])
                     done += 1
         except _TooLargeError:

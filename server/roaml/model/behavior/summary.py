@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import TypeAlias
 
+from roaml.interruption import checkpoint
 from roaml.model.behavior.explore import UNKNOWN_STATE, Behavior, BehaviorStep, explore
 from roaml.model.behavior.phases import AWAITED_ANSWER, Duty, DutyKind, Phase, ProtocolEvent, Subject
 from roaml.model.machine import Chart, Machine
@@ -163,6 +164,7 @@ class _Summary:
     def _overlaps(self) -> Iterator[tuple[Awaited, ProtocolEvent]]:
         yield from _meanwhile(set(), self.behavior.at_start)
         for step in self.behavior.steps:
+            checkpoint()
             if any(event.part in _ASKS for event in step.sent):
                 source = self.behavior.configurations[step.source]
                 awaited = {subject for subject, _ in source.phases if subject[0] in _AWAITED}
@@ -196,6 +198,7 @@ class _Summary:
         answers = [e for e in on_the_way if not owing[e.target] or configurations[e.target].state == UNKNOWN_STATE]
         needs = _needs(_incoming(on_the_way), answers)
         for number, alternatives in needs.items():
+            checkpoint()
             if configurations[number].answering(duty) is not Phase.SEVERAL:
                 yield self._promise(duty, number, True, alternatives)
         asked_by = _ASKED_BY.get(duty.kind)
@@ -240,6 +243,7 @@ class _Summary:
         changed = True
         while changed:
             changed = False
+            checkpoint()
             for edge in self.edges:
                 causes = before[edge.source] if edge.taken is None else {edge.taken}
                 if not causes <= before[edge.target]:
@@ -307,6 +311,7 @@ def _needs(incoming: Mapping[int, Sequence[_Edge]], reaching: Collection[_Edge])
         needs[edge.source] = _least((*needs.get(edge.source, ()), edge.event))
         waiting[edge.source] = None
     while waiting:
+        checkpoint()
         target = next(iter(waiting))
         del waiting[target]
         for edge in incoming.get(target, ()):

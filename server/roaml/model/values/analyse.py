@@ -15,6 +15,7 @@ from typing import NamedTuple, TypeAlias
 
 from roaml.expr.tree import ArrayLiteral, Expr, Index, Member, Number, ObjectLiteral, access_path, walk
 from roaml.expr.types import INTEGER_RANGES, Array, Scalar, ScalarKind, Type, is_kind, leaves
+from roaml.interruption import checkpoint
 from roaml.language import HL_SCXML
 from roaml.model.behavior.explore import EVENT_VARIABLES
 from roaml.model.machine import (
@@ -296,6 +297,7 @@ class _Interpreter(Record, eq=False, dict=True):
         self.evaluator.records = True
         self._start()
         for name in self.entered:
+            checkpoint()
             for _ in self._from(name, self.entered[name]):
                 pass
         return ChartValues(dict(self.entered), self.conditions, self.evaluator.seen, self.uncovered)
@@ -307,6 +309,7 @@ class _Interpreter(Record, eq=False, dict=True):
         waiting = {initial: None}
         widened = False
         while waiting:
+            checkpoint()
             name = next(iter(waiting))
             del waiting[name]
             for number, (target, known) in enumerate(self._from(name, self.entered[name])):
@@ -333,6 +336,7 @@ class _Interpreter(Record, eq=False, dict=True):
         for _ in range(MAX_NARROWINGS):
             entered: dict[str, Valuation] = {initial: start}
             for name, known in self.entered.items():
+                checkpoint()
                 for target, arrived in self._from(name, known):
                     entered[target] = joined_valuations(entered[target], arrived) if target in entered else arrived
             if entered == self.entered:

@@ -41,9 +41,17 @@ class Memory:
     def __init__(self) -> None:
         self._before: dict[Hashable, Transitions] = {}
         self._now: dict[Hashable, Transitions] = {}
+        self._is_complete = True
 
-    def next_version(self) -> None:
-        self._before, self._now = self._now, {}
+    def begin(self) -> None:
+        """Begin a version. What the last one needed remains; an interrupted version replaces nothing."""
+        if self._is_complete:
+            self._before, self._now = self._now, {}
+        self._is_complete = False
+
+    def complete(self) -> None:
+        """The analysis of the version has reached its end."""
+        self._is_complete = True
 
     def transitions(
         self, part: RememberedPart, known: Valuation, follow: Callable[[Valuation], Iterable[tuple[str, Valuation]]]

@@ -95,7 +95,9 @@ class ReachedValues:
 
         def compute() -> MachineValues:
             if number == 0:
-                memory.next_version()
-            return analyse(machine, typed, data, memory=memory)
+                memory.begin()
+            values = analyse(machine, typed, data, memory=memory)
+            memory.complete()
+            return values
 
         return memo.get(_SLOT.format(number), (path, system), (typed, data), compute)

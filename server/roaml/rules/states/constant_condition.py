@@ -12,6 +12,7 @@ from roaml.expr.infer import constant
 from roaml.expr.operators import Operator, OperatorKind
 from roaml.expr.tree import Binary, Expr, Member, Name, String, walk
 from roaml.expr.types import INTEGER_RANGES, Scalar
+from roaml.interruption import checkpoint
 from roaml.model.behavior.explore import condition_facts
 from roaml.model.behavior.knowledge import NOTHING, ConditionFacts, variables_in
 from roaml.model.machine import Assign, Chart, Handler, If, State
@@ -131,7 +132,9 @@ def _letters(text: str) -> str:
 def _numbers_never_sent(context: MachineContext, reported: Collection[Span]) -> Iterator[Finding]:
     """Report the comparisons of a field of a message or event with a constant whose result is the same for all numbers
     that machines send."""
+    stored = {chart.scope: _received_variables(chart) for chart in context.machine.charts}
     for value in context.typed.values:
+        checkpoint()
         chart = context.values.charts.get(value.place.chart.scope)
         tree = value.value.tree if isinstance(value.value, Expression) else None
         if chart is None or tree is None or value.value.span in reported:
@@ -143,17 +146,24 @@ def _numbers_never_sent(context: MachineContext, reported: Collection[Span]) -> 
                     if sent is not None:
                         yield from _compared_with_sent(chart, node, field, other, tree, sent)
                     elif node.operator is Operator.EQUAL and value.use in _CONDITIONS:
-                        yield from _never_chosen(context, value.place, chart, node, field, other)
+                        names = stored[value.place.chart.scope]
+                        yield from _never_chosen(context, value.place, chart, node, field, other, names)
 
 
 def _never_chosen(
-    context: MachineContext, place: ValuePlace, chart: ChartValues, node: Binary, choice: Expr, other: Expr
+    context: MachineContext,
+    place: ValuePlace,
+    chart: ChartValues,
+    node: Binary,
+    choice: Expr,
+    other: Expr,
+    stored: Collection[str],
 ) -> Iterator[Finding]:
-    """Report that a field of a request or goal, or a variable that stores a received field, is compared with a constant
-    that it never has, although it has several values."""
+    """Report that a field of a request or goal, or a variable of `stored`, is compared with a constant that it never
+    has, although it has several values."""
     number = chart.at(other)
     known = _sent(context, place.handler, choice, _ASKED)
-    if known is None and isinstance(choice, Name) and _stores_received(place.chart, choice.name):
+    if known is None and isinstance(choice, Name) and choice.name in stored:
         known = _compared_values(context, chart, choice.name)
     if number is None or number.value is None or known is None or known.only is None or known.value is not None:
         return
@@ -169,14 +179,16 @@ def _compared_values(context: MachineContext, values: ChartValues, name: str) ->
     return joined(known for n in names if (known := values.at(n)) is not None)
 
 
-def _stores_received(chart: Chart, name: str) -> bool:
-    """Whether all assignments to a variable store a field of a message, event, request or goal as it is."""
-    values = [
-        s.value for s in chart.statements if isinstance(s, Assign) and s.location and place_of(s.location.tree) == name
-    ]
-    places = [place_of(value.tree) if isinstance(value, Expression) else None for value in values]
+def _received_variables(chart: Chart) -> frozenset[str]:
+    """The variables to which all assignments store a field of a message, event, request or goal as it is."""
     prefixes = (*_FROM_SENDERS.values(), *_ASKED.values())
-    return bool(places) and all(place is not None and place.startswith(prefixes) for place in places)
+    stores: dict[str, bool] = {}
+    for statement in chart.statements:
+        name = place_of(statement.location.tree) if isinstance(statement, Assign) and statement.location else None
+        if name is not None and isinstance(statement, Assign):
+            place = place_of(statement.value.tree) if isinstance(statement.value, Expression) else None
+            stores[name] = stores.get(name, True) and place is not None and place.startswith(prefixes)
+    return frozenset(name for name, is_received in stores.items() if is_received)
 
 
 def _reached(values: ValueSet) -> ValueSet:
