@@ -91,7 +91,7 @@ def test_a_tree_runs_with_the_mocks_beside_it(client: Client) -> None:
     for _ in range(3):
         client.move()
         ticks.append(client.ask("choices")["time"])
-    assert ticks == pytest.approx([0.4, 0.5, 0.6, 0.7])
+    assert ticks == pytest.approx([0.3, 0.4, 0.5, 0.6])
 
 
 def test_breakpoints_in_a_subtree_and_statuses_in_the_picture(client: Client) -> None:
@@ -136,8 +136,8 @@ def test_the_attributes_of_launch_declare_the_mocks(client: Client, tree: Path) 
     client.event("stopped")
     assert client.move()["text"] == "satisfied: succeeds"
     steps, time = client.step(), client.ask("choices")["time"]
-    # The first tick is at 0.4 s. Drive ends 2 s later, and an action without a duration at the next tick.
-    assert time == pytest.approx(2.8)
+    # The first tick is at 0.4 s. Drive ends 2 s later, and the action without a duration in the same tick.
+    assert time == pytest.approx(2.4)
     output = tree.parent / "run.json"
     options = ["--mock", "grasp*: 1", "--mocks", str(tree.parent / "slow.mocks"), "--entry", "load=5"]
     assert run(["simulate", str(tree), *options, "--tick-rate", "2.5", "--json", str(output)]) == 0
