@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The types of blackboard entries, and the scripts whose operations do not fit them (docs/spec/scripts.md#types)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from roaml.diagnostics import Severity
+from roaml.forest.cpp_types import ANY, STRING
+from roaml.forest.entries import Entries, Key
+from roaml.forest.forest import Forest
+from roaml.forest.scripts import ScriptUse, scripts_of
+from roaml.libraries.version import CONSTANTS_TYPED_SINCE
+from roaml.rules.rule import TreeContext
+from roaml.rules.support.entries import entries_of
+from roaml.rules.support.forest import trees_of
+from roaml.rules.support.scripts import scripts
+from roaml.script.infer import Type, assignments_as_conditions, check_condition, check_types, created_in
+from roaml.script.parse import ScriptProblem
+
+_TYPES = {
+    STRING: Type.TEXT, "double": Type.REAL, "float": Type.REAL, "bool": Type.REAL,
+    **dict.fromkeys(("int", "int8", "int16", "int64", "uint8", "uint16", "unsigned", "uint64"), Type.INTEGER),
+}  # fmt: skip
+
+
+def type_problems(context: TreeContext) -> Iterator[tuple[ScriptUse, ScriptProblem, bool, Severity | None]]:
+    """The problems of the scripts of a file: the script, the problem, whether it is one of a condition, and its
+    severity if it is not an error."""
+    forest = trees_of(context)
+    if forest is None:
+        return
+    entries = entries_of(forest)
+    types = {**_assigned(forest, entries), **_types(entries), **_constants(forest, entries)}
+    for tree, use, script, problems in scripts(context):
+        own = tree.id.value if tree.id else ""
+
+        def lookup(name: str, own: str = own) -> Type:
+            return types.get(entries.entry(own, name), Type.UNKNOWN)
+
+        if problems:
+            continue
+        yield from ((use, problem, False, None) for problem in check_types(script, lookup))
+        if use.is_condition:
+            yield from ((use, problem, True, None) for problem in check_condition(script, lookup))
+            yield from ((use, problem, True, Severity.WARNING) for problem in assignments_as_conditions(script))
+
+
+def _types(entries: Entries) -> dict[Key, Type]:
+    """The types of the entries whose ports all have the same type."""
+    types_of: Mapping[Key, set[str]] = {
+        key: {use.type for use in uses if not use.script} for key, uses in entries.by_entry.items()
+    }
+    single = {key: next(iter(types)) for key, types in types_of.items() if len(types) == 1}
+    return {key: _TYPES[name] for key, name in single.items() if name != ANY and name in _TYPES}
+
+
+def _assigned(forest: Forest, entries: Entries) -> dict[Key, Type]:
+    """The types of the entries that only scripts use. An entry has a type if all assignments that create it assign
+    values of one type."""
+    others = {key for key, uses in entries.by_entry.items() if not all(use.script for use in uses)}
+    types: dict[Key, set[Type]] = {}
+    for _, tree, node in forest.all_nodes:
+        own = tree.id.value if tree.id else ""
+        for use in scripts_of(forest, node):
+            for name, type_ in created_in(use.attribute.value):
+                types.setdefault(entries.entry(own, name), set()).add(type_)
+    return {key: given.pop() for key, given in types.items() if len(given) == 1 and key not in others}
+
+
+def _constants(forest: Forest, entries: Entries) -> dict[Key, Type]:
+    """The entries that only constants of `<SubTree>` nodes set, if the version of the library stores these as texts."""
+    if forest.settings.version >= CONSTANTS_TYPED_SINCE:
+        return {}
+    writers = {key: [use for use in uses if use.writes is not False] for key, uses in entries.by_entry.items()}
+    return {
+        key: Type.TEXT
+        for key, uses in writers.items()
+        if uses and all(use.node.is_subtree and not use.script and use.creates for use in uses)
+    }
