@@ -114,7 +114,7 @@ def _replaced(path: Path, rules: tuple[tuple[re.Pattern[str], str], ...], part: 
 
 
 def _entries(path: Path, tables: tuple[str, ...]) -> Iterator[Mutant]:
-    """The names and numbers in tables of a module. A name becomes another name of its table, which deletes the entry."""
+    """The names and numbers in tables of a module. A name becomes the next one of its table, which deletes it."""
     text = (ROOT / path).read_text("utf-8")
     assert text.isascii(), path
     starts = [0]
@@ -173,7 +173,7 @@ def main() -> int:
     chosen = [each for each in mutants() if arguments.only in each.described(texts[each.path])]
     # Equal numbers from each table, because most entries are statements of programs.
     by_path = [[each for each in chosen if each.path == path] for path in texts]
-    source = random.Random(arguments.seed)  # noqa: S311 - no secret
+    source = random.Random(arguments.seed)
     for group in by_path:
         source.shuffle(group)
     turns = (group[turn] for turn in range(max(map(len, by_path), default=0)) for group in by_path if turn < len(group))
