@@ -12,7 +12,7 @@ from roaml.smc.story import Story
 from roaml.verification.counterexample import unwanted_trace
 from roaml.verification.nearest import nearest
 from roaml.verification.results import Result
-from roaml.views.parting import parting, parting_text, read_trace
+from roaml.views.parting import parting, parting_text
 from roaml.views.turn_words import details
 
 LAMP = """<ascxml name="{name}" version="1.0" initial="off">
@@ -80,14 +80,13 @@ def test_no_other_trace_has_more_in_common(result: Result) -> None:
     assert near is not None
     passed = [result.traces.story(seen.trace) for seen in result.answer.tally.examples[1]]
     assert len(passed) == near.compared > 1
-    others = [parting(read_trace(story), read_trace(other)) for other in passed]
+    others = [parting(story, other) for other in passed]
     assert max(other.common for other in others if other is not None and other.there) == near.parting.common
 
 
 def test_a_trace_does_not_part_from_itself(result: Result) -> None:
-    trace = read_trace(story_of(result))
-    assert trace.turns
-    assert parting(trace, trace) is None
+    story = story_of(result)
+    assert parting(story, story) is None
 
 
 @pytest.mark.parametrize(("targets", "parts"), [(SURE, False), (CHANCE, True)])
@@ -101,6 +100,5 @@ def test_an_order_is_no_difference(tmp_path: Path, targets: str, *, parts: bool)
     stories = [result.traces.story(trace) for trace in range(20)]
     orders = {tuple(part.automaton for step in story.steps for part in step.parts) for story in stories}
     assert len(orders) > 1
-    first = read_trace(stories[0])
-    differences = [parting(first, read_trace(other)) for other in stories[1:]]
+    differences = [parting(stories[0], other) for other in stories[1:]]
     assert any(d is not None and d.there is not None for d in differences) == parts

@@ -101,8 +101,9 @@ def json_lines(target: VerificationTarget, recorder: Recorder, trace: int) -> It
     yield "{\n"
     name = _json(recorder.compiled_property.question.name)
     yield f' "property": {name},\n "trace": {trace},\n "seed": {recorder.seed},\n'
-    yield f' "initial": {_json(start)},\n "steps": ['
     shown = shared_names(start, names_of(recorder.automata))
+    named = {name: text for name, text in shown.items() if text != name}
+    yield f' "initial": {_json(start)},\n "names": {_json(named)},\n "steps": ['
     comma = "\n  "
     for step in recorder.walk(recording):
         yield comma + _json(step_row(target, recorder.automata, shown, step))

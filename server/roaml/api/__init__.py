@@ -121,7 +121,7 @@ if TYPE_CHECKING:
     from roaml.verification.stuck import Stuck, StuckLevel, StuckResult
     from roaml.verification.target import LineColumn, VerificationTarget
     from roaml.verification.verifier import NoThresholdError, Verifier
-    from roaml.views.parting import Parting, parting, read_trace
+    from roaml.views.parting import Parting, parting
     from roaml.views.story import StoryLine
     from roaml.views.waiting import Wait
 else:
@@ -222,7 +222,7 @@ else:
         "roaml.verification.stuck": ("StuckResult", "Stuck", "StuckLevel"),
         "roaml.verification.target": ("LineColumn", "VerificationTarget"),
         "roaml.verification.verifier": ("NoThresholdError", "Verifier"),
-        "roaml.views.parting": ("Parting", "parting", "read_trace"),
+        "roaml.views.parting": ("Parting", "parting"),
         "roaml.views.story": ("StoryLine",),
         "roaml.views.waiting": ("Wait",),
     }
@@ -386,7 +386,6 @@ __all__ = [
     "proposed_text",
     "read_jani",
     "read_mocks",
-    "read_trace",
     "session",
     "source_map",
     "target",

@@ -9,7 +9,7 @@ from roaml.record import Record
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.story import Story
 from roaml.verification.results import Result
-from roaml.views.parting import Parting, parting, read_trace
+from roaml.views.parting import Parting, first_difference, read_trace
 
 MAX_COMPARED_TRACES = 100
 """The maximum number of traces that are compared."""
@@ -33,20 +33,20 @@ class Nearest(Record, frozen=True):
 def nearest(result: Result, story: Story, clock: tuple[str, str] | None) -> Nearest | None:
     """Of the first random traces with the opposite verdict, and of the shortest one if all states were explored, the
     one that has the most turns in common with a trace of the property. `None` if there is no other trace, if the trace
-    does nothing that the others do not do as well, or if it has no verdict.
+    does nothing that the others do not do as well, if it has no verdict, or if it gets stuck.
 
     Args:
         clock: see `roaml.smc.story.build_story`.
     """
     opposite = {TRUE: FALSE, FALSE: TRUE}.get(story.recording.verdict)
-    if opposite is None:
+    if opposite is None or story.standstill is not None:  # the waiting automata explain a standstill
         return None
     here = read_trace(story)
     best: tuple[Story, Parting] | None = None
     compared = 0
     for other in _others(result, opposite, clock):
         compared += 1
-        difference = parting(here, read_trace(other))
+        difference = first_difference(here, read_trace(other))
         if difference is not None and (best is None or _rank(difference) > _rank(best[1])):
             best = other, difference
     return None if best is None else Nearest(*best, compared)

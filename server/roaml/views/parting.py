@@ -60,8 +60,13 @@ def read_trace(story: Story) -> ReadTrace:
     return ReadTrace(story, all_turns, lanes, tuple((what(turn), *details(turn)) for turn in all_turns))
 
 
-def parting(first: ReadTrace, second: ReadTrace) -> Parting | None:
+def parting(first: Story, second: Story) -> Parting | None:
     """The first difference of two traces of a model; `None` if each automaton does the same in both."""
+    return first_difference(read_trace(first), read_trace(second))
+
+
+def first_difference(first: ReadTrace, second: ReadTrace) -> Parting | None:
+    """The first difference of two traces whose turns have been read, as `parting` returns it."""
     places = (_difference(first, second, instance) for instance in first.lanes)
     found = [place for place in places if place is not None]
     # An automaton that takes no further turn in a trace may only have had no time for it.
