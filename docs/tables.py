@@ -20,11 +20,11 @@ from roaml.record import encoded
 
 
 def grammars() -> Iterator[tuple[Path, bytes]]:
-    return ((grammar.tables_file, encoded(read_schema(grammar.schema))) for grammar in XML_GRAMMARS)
+    return ((Path(grammar.tables_file), encoded(read_schema(grammar.schema))) for grammar in XML_GRAMMARS)
 
 
 def libraries() -> Iterator[tuple[Path, bytes]]:
-    return ((table_of(name), encoded(read_library(name))) for name in (BEHAVIORTREE_CPP, *LIBRARIES))
+    return ((Path(table_of(name)), encoded(read_library(name))) for name in (BEHAVIORTREE_CPP, *LIBRARIES))
 
 
 def update(tables: Iterator[tuple[Path, bytes]], *, check: bool) -> list[Path]:

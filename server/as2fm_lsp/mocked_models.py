@@ -7,7 +7,6 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
-from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -155,7 +154,7 @@ def load_mocked_tree(
     from roaml.model.kinds import mocks_path  # noqa: PLC0415
 
     beside = mocks_path(path)
-    if not declared.has_mocks and Path(beside).is_file():
+    if not declared.has_mocks and os.path.isfile(beside):
         messages.write(f"uses the mocks of {messages.shown(beside)}")
         declared = replace(declared, file=beside)
     mocks = declared.mocks()
@@ -170,7 +169,7 @@ def load_mocked_tree(
         if not uses_proposal:
             raise _review(path, beside, leaves, messages, is_new=declared.file is None) from None
         _keep_proposal(path, beside, leaves, messages)
-        declared = replace(declared, file=beside if Path(beside).is_file() else None)
+        declared = replace(declared, file=beside if os.path.isfile(beside) else None)
         proposed = tuple(leaf.proposed for leaf in leaves if leaf.mock is None)
         tree = load_tree(path, replace(run, mocks=mocks + proposed), settings, texts)
     _report_unused(unused(mocks, [(node.name, node.type) for node in tree.mocked.tree.nodes]), messages)
@@ -193,7 +192,7 @@ def keep_proposal(path: str, leaves: Sequence[MockableLeaf]) -> int:
     from roaml.model.kinds import mocks_path  # noqa: PLC0415
 
     beside = mocks_path(path)
-    if Path(beside).is_file():
+    if os.path.isfile(beside):
         text = completed_text(required(beside).decode("utf-8"), leaves)
     else:
         text = proposed_text(os.path.basename(path), leaves)

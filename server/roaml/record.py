@@ -28,7 +28,7 @@ def encoded(record: Record) -> bytes:
     return json.format(json.encode(record), indent=1) + b"\n"
 
 
-def decoded(data: bytes, type_: type[_Decoded]) -> _Decoded:
+def decoded(data: bytes | str, type_: type[_Decoded]) -> _Decoded:
     """The record of a file that `encoded` has written."""
     return json.decode(data, type=type_)
 

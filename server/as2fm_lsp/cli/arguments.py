@@ -16,6 +16,10 @@ from roaml.suggest import close_names, did_you_mean
 if TYPE_CHECKING:
     from _typeshed import SupportsWrite
 
+argparse._ = str  # type: ignore[attr-defined]
+"""`argparse` looks for translations of its messages, which Python does not contain. The search imports `locale` and
+reads folders for each message, which takes 3 ms at each start."""
+
 
 class _HelpFormatter(argparse.RawDescriptionHelpFormatter):
     """Formats help in the width of the terminal.

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import logging
 import os
 import sys
 import time
@@ -24,7 +23,6 @@ from as2fm_lsp.cli.standard_input import STANDARD_INPUT_PATH, named_input
 from as2fm_lsp.cli.tree_semantics import semantics_of
 from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, OutputFiles, outputs_of
 from roaml import api
-from roaml.api.systems import unknown_parameter
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.project.configuration import find_settings
 from roaml.project.settings import SEVERITIES, Settings, ament_prefixes
@@ -63,7 +61,6 @@ def parser() -> ArgumentParser:
 def check(options: argparse.Namespace, name: str = "--check") -> int:
     """Run a check with parsed options; return the exit status. `name` is the name of the command, for error
     messages."""
-    logging.basicConfig(level=logging.WARNING, format="as2fm-lsp: %(message)s")
     misuse = _misuse(options, name)
     if misuse:
         return _usage(*misuse)
@@ -163,9 +160,12 @@ def _result(
         api.ParameterError: no system declares a parameter that `--set` names.
     """
     result = api.check(paths, options.ros_path, settings, texts)
-    analysis = result.snapshot.analysis
-    if undeclared := unknown_parameter(analysis, analysis.system_paths, settings.overrides):
-        raise api.ParameterError(f"--set: {undeclared}")
+    if settings.overrides.values:
+        from roaml.api.systems import unknown_parameter  # noqa: PLC0415 - imports the translation
+
+        analysis = result.snapshot.analysis
+        if undeclared := unknown_parameter(analysis, analysis.system_paths, settings.overrides):
+            raise api.ParameterError(f"--set: {undeclared}")
     return result
 
 

@@ -4,11 +4,18 @@
 from __future__ import annotations
 
 import importlib.util
+import os
 import sys
 from importlib.machinery import EXTENSION_SUFFIXES
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import roaml
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+PACKAGE = os.path.dirname(roaml.__file__)
+"""The folder of the library."""
 
 SLOWER = "12 to 37 times slower"
 """The measured difference between plain Python and the compiled kernel (docs/performance.md)."""
@@ -20,21 +27,24 @@ def is_compiled() -> bool:
     return spec is not None and not (spec.origin or "").endswith(".py")
 
 
-def outdated_modules(package: Path = Path(roaml.__file__).parent) -> list[str]:
+def outdated_modules(package: str | Path = PACKAGE) -> list[str]:
     """The compiled modules that are older than their sources in a checkout that was updated and not installed again.
     They may fail or have wrong results. In other installations, the times of files are those of the installation."""
-    if not (package.parents[1] / "setup.py").is_file():
+    if not os.path.isfile(os.path.join(package, "..", "..", "setup.py")):
         return []
     suffix = EXTENSION_SUFFIXES[0]
     return [
-        f"{package.name}.{path.parent.name}.{path.name.removesuffix(suffix)}"
-        for path in sorted(package.glob(f"*/*{suffix}"))
-        if _is_newer(path.with_name(path.name.removesuffix(suffix) + ".py"), path)
+        f"{os.path.basename(package)}.{part}.{file.removesuffix(suffix)}"
+        for part in sorted(os.listdir(package))
+        if os.path.isdir(folder := os.path.join(package, part))
+        for file in sorted(os.listdir(folder))
+        if file.endswith(suffix)
+        and _is_newer(os.path.join(folder, file.removesuffix(suffix) + ".py"), os.path.join(folder, file))
     ]
 
 
-def _is_newer(source: Path, compiled: Path) -> bool:
-    return source.is_file() and source.stat().st_mtime > compiled.stat().st_mtime
+def _is_newer(source: str, compiled: str) -> bool:
+    return os.path.isfile(source) and os.path.getmtime(source) > os.path.getmtime(compiled)
 
 
 def version_line() -> str:

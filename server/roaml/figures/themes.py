@@ -10,7 +10,8 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from functools import cache
-from pathlib import Path
+
+from roaml.disk import resource
 
 _FONT = "system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, 'DejaVu Sans', sans-serif"
 
@@ -94,7 +95,7 @@ def style_sheet(theme: str, names: tuple[str, ...]) -> str:
     Args:
         names: the style sheets in this folder.
     """
-    css = "".join((Path(__file__).parent / name).read_text(encoding="utf-8") for name in names)
+    css = "".join(resource(__package__, name) for name in names)
     css = re.sub(r"/\*.*?\*/", "", css, flags=re.DOTALL)
     values = {f"--figure-{name}": color for name, color in THEMES[theme].items()} | {"--figure-font": _FONT}
     css = re.sub(r"var\((--figure-[\w-]+)\)", lambda match: values[match[1]], css)

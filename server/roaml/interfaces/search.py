@@ -19,7 +19,7 @@ from collections.abc import Iterable, Mapping
 from functools import cache
 from typing import NamedTuple, Protocol, TypeAlias
 
-from roaml.disk import read
+from roaml.disk import path_of_resource, read
 from roaml.interfaces.names import PACKAGE_NAME, TYPE_NAME
 from roaml.interfaces.types import KINDS, Kind
 from roaml.regex import regex
@@ -305,9 +305,7 @@ def is_standard(path: str) -> bool:
 
 @cache
 def _standard() -> str:
-    from importlib import resources  # noqa: PLC0415  takes longer to import than all of this package
-
-    return str(resources.files("roaml.interfaces") / "standard")
+    return path_of_resource(__package__, "standard")
 
 
 def _absolute(paths: Iterable[str]) -> tuple[str, ...]:

@@ -11,17 +11,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING
 
+from roaml.disk import path_of_resource, resource
 from roaml.language.resources import schema_path
 from roaml.record import Record, decoded
 from roaml.roles import Direction, NodeKind, ProtocolPart, SymbolKind, ValuePart, ValueRole
 
 if TYPE_CHECKING:
     from lxml import etree
-
-_TABLES = Path(__file__).parent / "tables"
 
 
 class ValueChoice(Record, frozen=True, omit_defaults=True):
@@ -197,11 +195,16 @@ class Grammar(Record, frozen=True, dict=True):
 
     @cached_property
     def _tables(self) -> SchemaTables:
-        return decoded(self.tables_file.read_bytes(), SchemaTables)
+        return decoded(resource(*self._file), SchemaTables)
 
     @property
-    def tables_file(self) -> Path:
-        return _TABLES / self.schema.replace(".xsd", ".json")
+    def tables_file(self) -> str:
+        """The path of the file with the tables."""
+        return path_of_resource(*self._file)
+
+    @property
+    def _file(self) -> tuple[str, ...]:
+        return (__package__, "tables", self.schema.replace(".xsd", ".json"))
 
     @cached_property
     def validator(self) -> etree.XMLSchema:

@@ -3,14 +3,18 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from typing import TYPE_CHECKING
+
+from roaml.disk import path_of_resource
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 
 def schema_path(name: str) -> Path:
     """The file `name` of `schemas/`."""
-    import importlib.resources  # noqa: PLC0415 - models in JANI do not need it
+    from pathlib import Path  # noqa: PLC0415 - models in JANI do not need it
 
-    installed = importlib.resources.files("roaml") / "schemas" / name
-    if isinstance(installed, Path) and installed.is_file():
-        return installed
-    return Path(__file__).parents[3] / "schemas" / name
+    package = Path(path_of_resource("roaml"))
+    installed = package / "schemas" / name
+    return installed if installed.is_file() else package.parents[1] / "schemas" / name

@@ -8,8 +8,8 @@ them the node elements of `schemas/behaviortree.xsd`, and the tables that this p
 from __future__ import annotations
 
 import functools
-from pathlib import Path
 
+from roaml.disk import path_of_resource, resource
 from roaml.libraries.node import Absent, Library, Node, Port, PortLimits, Renamed
 from roaml.record import decoded
 
@@ -38,12 +38,16 @@ LIBRARIES = ("nav2",)
 @functools.cache
 def library(name: str) -> Library:
     """The library with this name: `BEHAVIORTREE_CPP` or one of `LIBRARIES`."""
-    return decoded(table_of(name).read_bytes(), Library)
+    return decoded(resource(*_table(name)), Library)
 
 
-def table_of(name: str) -> Path:
-    """The file with the table of a library."""
-    return Path(__file__).parent / "tables" / f"{name}.json"
+def table_of(name: str) -> str:
+    """The path of the file with the table of a library."""
+    return path_of_resource(*_table(name))
+
+
+def _table(name: str) -> tuple[str, ...]:
+    return (__name__, "tables", f"{name}.json")
 
 
 def node_in_libraries(name: str) -> Node | None:

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import functools
 import itertools
-import logging
 import os
 from collections.abc import Callable, Iterable, Iterator
 from typing import TypeAlias
@@ -64,8 +63,6 @@ from roaml.rules.support.end_tags import without_misnamed_ends
 from roaml.suggest import close_names
 from roaml.text import Location, SourceFile, Span
 from roaml.xml_syntax import Document
-
-log = logging.getLogger(__name__)
 
 MAX_FINDINGS = 1000
 """The maximum number of findings of one rule in one file. It limits the time that is spent on similar names and
@@ -171,7 +168,7 @@ class RuleRunner:
             run = _Run(self.analysis, path, source, self.analysis.kind_in(path, system), system, self.settings.limits)
             return self.analysis.memo.get("findings", (path, system), run.key(), run.findings)
         except Exception as error:  # an internal error in one file must not prevent the check of the others
-            log.exception("%s cannot be analysed", path)
+            _log_exception("%s cannot be analysed", path)
             return (internal_error("the analysis of this file", error),)
 
     def contexts(self, path: str, system: str | None) -> tuple[FileContext, MachineContext] | None:
@@ -392,7 +389,7 @@ class _Run:
                         (r, functools.partial(r.properties, properties)) for r in RULES if r.properties and properties
                     ]
         except Exception as error:  # after an internal error, the findings of the parsers are still useful
-            log.exception("the model of %s cannot be built", self.path)
+            _log_exception("the model of %s cannot be built", self.path)
             failure = internal_error("the analysis of this file", error)
             return [(internal_error_rule.RULE, lambda: [failure])]
         return []
@@ -669,8 +666,15 @@ def _all(path: str, checks: Iterable[Check], memo: Memo) -> Iterator[Finding]:
         try:
             yield from _limited(rule, check())
         except Exception as error:  # an internal error must not stop the other rules
-            log.exception("rule %s failed on %s", rule.code, path)
+            _log_exception("rule %s failed on %s", rule.code, path)
             yield internal_error(f"the rule `{rule.code}`", error)
+
+
+def _log_exception(message: str, *arguments: object) -> None:
+    """Log the exception that is handled."""
+    import logging  # noqa: PLC0415 - imports `traceback` and `string`, and only internal errors are logged
+
+    logging.getLogger(__name__).exception(message, *arguments)
 
 
 def internal_error(subject: str, error: Exception) -> Finding:

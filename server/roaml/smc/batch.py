@@ -9,6 +9,7 @@ import threading
 import time
 from array import array
 from collections.abc import Callable, Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 from roaml.record import Record
@@ -29,11 +30,49 @@ STEPS_BETWEEN_PULSES = 200_000
 """The number of steps of a trace after which its progress is reported: these steps take some hundredths of a second."""
 
 
-class Payload(NamedTuple):
-    """A compiled model and goal, packed once for all batches."""
+class Payload:
+    """A compiled model and goal. They are packed once for all batches, when a worker or a saved run needs them: most
+    questions are answered in one process, and to load OpenSSL for the digest takes a tenth of a short command."""
 
-    digest: str
-    data: bytes
+    def __init__(self, compiled: Compiled) -> None:
+        self._compiled: Compiled | None = compiled
+
+    @property
+    def compiled(self) -> Compiled:
+        if self._compiled is None:
+            import pickle  # noqa: PLC0415 - only workers need it
+
+            self._compiled = pickle.loads(self._data)
+        return self._compiled
+
+    @cached_property
+    def digest(self) -> str:
+        """A hash of the model and the goal."""
+        import hashlib  # noqa: PLC0415 - only workers and saved runs need it
+
+        digest = hashlib.sha256()
+        for part in (self.compiled.program, self.compiled.goal):
+            for name in part.__struct_fields__:
+                value = getattr(part, name)
+                digest.update(value.tobytes() if isinstance(value, array) else repr(value).encode())
+                digest.update(name.encode())
+        return digest.hexdigest()
+
+    @cached_property
+    def _data(self) -> bytes:
+        import pickle  # noqa: PLC0415 - only workers need it
+
+        return pickle.dumps(self._compiled)
+
+    def has_same_content(self, other: Payload) -> bool:
+        return self is other or self.digest == other.digest
+
+    def __getstate__(self) -> tuple[str, bytes]:
+        return self.digest, self._data
+
+    def __setstate__(self, state: tuple[str, bytes]) -> None:
+        self.digest, self._data = state
+        self._compiled = None
 
 
 class TraceProblem(NamedTuple):
@@ -134,20 +173,6 @@ class BatchOutcome(Record, frozen=True, eq=False):
     counted: tuple[Tally | Rows, ...] = ()
 
 
-def pack(compiled: Compiled) -> Payload:
-    """A compiled model in the form that is sent to workers."""
-    import hashlib  # noqa: PLC0415 - only workers and saved runs need it
-    import pickle  # noqa: PLC0415
-
-    digest = hashlib.sha256()
-    for part in (compiled.program, compiled.goal):
-        for name in part.__struct_fields__:
-            value = getattr(part, name)
-            digest.update(value.tobytes() if isinstance(value, array) else repr(value).encode())
-            digest.update(name.encode())
-    return Payload(digest.hexdigest(), pickle.dumps(compiled))
-
-
 class Simulator:
     """The kernel of a compiled model and goal, the states that its traces have reached so far, and those in which they
     have been found to repeat.
@@ -168,7 +193,7 @@ class _Simulators(threading.local):
     """The last simulator of each thread. A kernel simulates one trace at a time, and some executors run batches in
     threads."""
 
-    digest = ""
+    payload: Payload | None = None
     simulator: Simulator | None = None
 
 
@@ -178,11 +203,9 @@ _simulators = _Simulators()
 def simulator_of(payload: Payload) -> Simulator:
     """The simulator of a payload for this thread. The last simulator is kept for the next call."""
     simulator = _simulators.simulator
-    if simulator is None or payload.digest != _simulators.digest:
-        import pickle  # noqa: PLC0415 - only workers need it
-
-        _simulators.simulator = simulator = Simulator(pickle.loads(payload.data))
-        _simulators.digest = payload.digest
+    if simulator is None or _simulators.payload is None or not payload.has_same_content(_simulators.payload):
+        _simulators.simulator = simulator = Simulator(payload.compiled)
+    _simulators.payload = payload
     return simulator
 
 

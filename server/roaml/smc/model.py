@@ -12,7 +12,7 @@ from roaml.jani.model import Model, ModelType
 from roaml.jani.passive import without_passive
 from roaml.jani.properties import Formula, Property, identifiers, walk
 from roaml.record import replace
-from roaml.smc.batch import Payload, TraceProblem, pack
+from roaml.smc.batch import Payload, TraceProblem
 from roaml.smc.choices import Choices, check_choices
 from roaml.smc.compile import Compilation, Legend
 from roaml.smc.end import Marks
@@ -175,7 +175,7 @@ class ModelChecker:
     def payload(self, *properties: CompiledProperty) -> Payload:
         """The data that workers need to answer questions."""
         goals = [goal for question in properties for goal in (question.goal, question.assumptions) if goal is not None]
-        return pack(Compiled(self.program, merged(goals)))
+        return Payload(Compiled(self.program, merged(goals)))
 
     def answer(
         self,

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import ast
 import functools
-import importlib.resources
 import re
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple, TypeAlias
 
+from roaml.disk import path_of_resource, resource
 from roaml.libraries import BEHAVIORTREE_CPP, library
 from roaml.libraries.version import NEWEST_VERSION, Version, first_patch
 from roaml.record import Record, field
@@ -242,7 +242,7 @@ class Programs(Mapping[str, NodeProgram]):
         self._places: dict[str, list[int]] = {}
         self._compiled: dict[int, NodeProgram] = {}
         for file in FILES:
-            text = (importlib.resources.files(__package__) / "definitions" / file).read_text(encoding="utf-8")
+            text = resource(__package__, "definitions", file)
             for match in _CLASS.finditer(text):
                 if match["before"] is None or version < first_patch(match["before"]):
                     self._places.setdefault(match["name"], []).append(len(self._texts))
@@ -292,10 +292,10 @@ def program_place(name: str) -> Location | None:
     """The place of the program of a node of a library; `None` if there is none."""
     renamed = library(BEHAVIORTREE_CPP).renamed.get(name)
     for file in FILES:
-        source = importlib.resources.files(__package__) / "definitions" / file
-        match = re.search(rf"^class ({re.escape(renamed.now if renamed else name)})\b", source.read_text("utf-8"), re.M)
+        text = resource(__package__, "definitions", file)
+        match = re.search(rf"^class ({re.escape(renamed.now if renamed else name)})\b", text, re.M)
         if match is not None:
-            return Location(str(source), Span(*match.span(1)))
+            return Location(path_of_resource(__package__, "definitions", file), Span(*match.span(1)))
     return None
 
 

@@ -9,8 +9,8 @@ of children; this module sets it.
 from __future__ import annotations
 
 import functools
-import importlib.resources
 
+from roaml.disk import resource
 from roaml.language import BEHAVIOR_TREE
 from roaml.libraries import library_node
 from roaml.model.build_machine import build_machine
@@ -45,7 +45,7 @@ def _children(automaton: SystemAutomaton) -> int:
 
 @functools.cache
 def _resource(name: str) -> str:
-    return (importlib.resources.files(__name__) / f"{name}.ascxml").read_text(encoding="utf-8")
+    return resource(__name__, f"{name}.ascxml")
 
 
 @functools.lru_cache(maxsize=256)
