@@ -102,7 +102,8 @@ def test_a_fixed_system_is_not_reported_as_stuck(command: Command, tmp_path: Pat
     write(tmp_path, hospital(mended=True))
     done = command("verify", "main.xml", "--stuck", "error")
     assert done.status == 0
-    assert "gets stuck" not in done.out
+    assert "stuck" not in done.out
+    done = command("verify", "main.xml", "--stuck", "error", "--verbose")
     assert "probability of getting stuck: 0 in [0, " in done.out
     assert parsed(command("verify", "main.xml", "--format", "json").out)["stuck"]["example"] is None
 
@@ -156,7 +157,6 @@ def test_junit(command: Command, ward: Path, level: str) -> None:
     output = cases["does not get stuck"].findtext("failure" if level == "error" else "system-out") or ""
     assert "Fetch (bt_1002) waits in `asked` for the response of the service `/ward/prepare`" in output
     beneath = cases["delivered"].findtext("skipped") or ""
-    assert "ends: goal decided" in beneath
     assert f"  {level}: " in beneath
     assert "    the clock waits at 2 s" in beneath
     (about,) = cases["delivered"].iter("property")

@@ -583,7 +583,7 @@ def test_exhaustive(command: Command, tmp_path: Path, option: str) -> None:
     exact = rows(command("verify", name, option, "--format", "json").out)["heads"]["exact"]
     assert [exact[key] for key in ("least", "greatest", "uniform")] == [pytest.approx(0.3)] * 3
     assert (exact["states"], exact["shortest"]) == (3, {"failed": 1, "passed": 1})
-    done = command("verify", name, option, "--explain")
+    done = command("verify", name, option, "--explain", "--verbose")
     assert re.match(r"heads: = 0.3 for all schedulers, exact, 3 states, \d+\.\d s\n", done.out)
     assert "  shortest traces: it fails after 1 step, it holds after 1 step\n" in done.out
     assert "heads failed in the shortest trace after 1 step" in done.out
@@ -611,7 +611,7 @@ def test_invariants_are_proved(command: Command, tmp_path: Path) -> None:
     heads = written["properties"][0]["expression"]["values"]["exp"]["exp"]
     for symbol, goal in (("G", op("¬", op("∧", heads, op("¬", heads)))), ("F", op("∧", heads, op("¬", heads)))):
         written["properties"] = [{"name": "p", "expression": probability(op(symbol, goal))}]
-        out = command("verify", write(tmp_path, written), "--exhaustive").out
+        out = command("verify", write(tmp_path, written), "--exhaustive", "--verbose").out
         states = "all 3 states" if symbol == "G" else "none of the 3 states"
         assert f"  proof: its condition holds in {states}\n" in out
         row = rows(command("verify", "model.jani", "--exhaustive", "--format", "json").out)["p"]

@@ -86,7 +86,8 @@ def test_a_small_model_is_answered_exactly(command: Command, tmp_path: Path) -> 
     name = write(tmp_path, starving())
     done = command("verify", name, "--expect", "p <= 0.1")
     assert done.status == 0
-    lines = done.out.splitlines()
+    assert [line.partition(",")[0] for line in done.out.splitlines()] == ["p: minimum 0", "  expected ≤ 0.1: met"]
+    lines = command("verify", name, "--expect", "p <= 0.1", "--verbose").out.splitlines()
     assert re.fullmatch(r"p: minimum 0, maximum 1, 1 under uniform choices, exact, 100 states, \d\.\d s", lines[0])
     assert lines[1:4] == [
         "  shortest traces: it holds after 1 step",
@@ -205,13 +206,10 @@ def test_met_under_uniform_choices(command: Command, tmp_path: Path) -> None:
     done = command("verify", name, *options)
     assert done.status == 0
     assert "expected ≥ 0.9: met under uniform choices" in done.out
-    assert done.out.count("may differ") == 1
-    assert (
-        "\nnote: these are values under uniform choices; the minimum or maximum over all schedulers may differ\n"
-        in (done.out)
-    )
-    assert re.search(r"\n  minimum of p: up to \d+ sampled schedulers show no difference", done.out)
-    assert "\n  help: use --scheduler uniform for " in done.out
+    assert done.out.count("\nnote: ") == 1
+    known = r"\nnote: the minimum of p over all schedulers is not known \(up to \d+ sampled schedulers show no "
+    assert re.search(known, done.out)
+    assert "\n  help: use --exhaustive to compute it from all states, or --scheduler uniform if " in done.out
     assert "may differ" in rows(command("verify", name, *options, "--format", "json").out)["p"]["warning"]
     (judged,) = rows(command("verify", name, *options, "--format", "json").out)["p"]["expectations"]
     assert (judged["met"], judged["under_uniform_choices_only"]) == (True, True)
@@ -232,15 +230,10 @@ def test_the_note_names_each_property_once(command: Command, tmp_path: Path) -> 
     cost = {"op": "Emax", "exp": 1, "accumulate": ["steps"], "reach": op("=", "n", 200)}
     written["properties"] += [{"name": "most", "expression": most}, {"name": "cost", "expression": cost}]
     out = command("verify", write(tmp_path, written), "--method", "fixed", "--max-traces", "60").out
-    (note,) = re.findall(r"^note: .*\n((?:  .*\n)+)", out, re.MULTILINE)
-    lines = note.splitlines()
-    assert [line.split(":")[0] for line in lines] == [
-        "  minimum of p, q",
-        "  maximum of most",
-        "  maximum of cost",
-        "  help",
-    ]
-    assert lines[2].endswith("schedulers are not sampled for expected rewards")
+    notes = re.findall(r"^note: the (.*) over all schedulers is not known \((.*)\)$", out, re.MULTILINE)
+    assert [of for of, _ in notes] == ["minimum of p, q", "maximum of most", "maximum of cost"]
+    assert notes[2][1] == "schedulers are not sampled for expected rewards"
+    assert out.count("\n  help: use --exhaustive ") == 1
 
 
 def test_an_expectation_that_is_not_met_names_the_scheduler(command: Command, tmp_path: Path) -> None:
@@ -290,7 +283,7 @@ def test_verdicts_that_are_not_certain(command: Command, tmp_path: Path, expecte
 def test_schedulers_that_were_looked_for_have_all_that_results_have(command: Command, tmp_path: Path) -> None:
     name = write(tmp_path, starving(length=3))
     options = ("--scheduler", "lss", "--epsilon", "0.1", "--seed", "7")
-    out = command("verify", name, *options).out
+    out = command("verify", name, *options, "--verbose").out
     block = r"p: (least|greatest) probability found .* failed\n  by sampled scheduler \d+, which .*\n  ends: .*\n"
     assert re.match(rf"{block}{block}  [\d,]+ schedulers were tried, \d+\.\d s\n", out)
     assert "seed 7" in out

@@ -190,7 +190,7 @@ def row_of(capsys: pytest.CaptureFixture[str], *arguments: str, status: int = 0)
 
 def test_equal_extremes_are_the_value_for_all_schedulers(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     file = write(tmp_path, counters(TOSS))
-    lines = text_of(capsys, file, "--expect", "p = 0.5").splitlines()
+    lines = text_of(capsys, file, "--expect", "p = 0.5", "--verbose").splitlines()
     assert lines[0].startswith("p: = 0.5 for all schedulers, exact, 4 states after reductions, ")
     assert lines[2].startswith("  ends of 200 random traces: ")
     assert lines[3] == "  expected = 0.5: met"
@@ -203,7 +203,7 @@ def test_equal_extremes_are_the_value_for_all_schedulers(capsys: pytest.CaptureF
     assert (row["method"], row["probability"], row["traces"]) == ("exact", 0.5, 200)
     assert (row["exact"]["uniform"], row["exact"]["reduced"]) == (0.5, True)
     assert "uniform" not in row
-    uniform = text_of(capsys, file, "--scheduler", "uniform")
+    uniform = text_of(capsys, file, "--scheduler", "uniform", "--verbose")
     assert uniform.startswith("p: = 0.5 for all schedulers, exact, ")
     closing = (
         "exact values, computed from all reachable states: minimum and maximum over all schedulers, which are equal"
@@ -216,12 +216,12 @@ def test_uniform_values_beside_values_for_all_schedulers(capsys: pytest.CaptureF
     choice = automaton("a", "s t u", [edge("s", way("t", x=1)), edge("s", way("u"))])
     properties = {"p": probability(op("F", op("=", "x", 1))), "q": probability(op("F", True))}
     file = write(tmp_path, document(choice, variables=[variable("x")], properties=properties))
-    out = text_of(capsys, file, "--scheduler", "uniform")
+    out = text_of(capsys, file, "--scheduler", "uniform", "--verbose")
     assert out.startswith("p: = 0.5 under uniform choices, exact, ")
     assert "\nq: = 1 for all schedulers, exact, " in out
     both = "value under uniform choices, which is that of all schedulers where a result says so"
     assert f"\nexact values, computed from all reachable states: {both}; use" in out
-    out = text_of(capsys, file, "--scheduler", "uniform", "--property", "p")
+    out = text_of(capsys, file, "--scheduler", "uniform", "--property", "p", "--verbose")
     assert "\nexact values, computed from all reachable states: value under uniform choices; use" in out
 
 
@@ -229,7 +229,7 @@ def test_traces_estimate_the_uniform_value_between_different_extremes(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     file = write(tmp_path, counters(CHOICE))
-    out = text_of(capsys, file, "--expect", "p >= 0.2", "--explain", status=1)
+    out = text_of(capsys, file, "--expect", "p >= 0.2", "--explain", "--verbose", status=1)
     lines = out.splitlines()
     assert lines[0].startswith("p: minimum 0, maximum 1, exact, 4 states after reductions, ")
     assert lines[1].startswith("  under uniform choices: 0.50")

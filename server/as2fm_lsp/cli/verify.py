@@ -49,7 +49,7 @@ from as2fm_lsp.verification.report import as_brief_text, as_json, as_text
 from as2fm_lsp.verification.saved_state import SavedState, StateError
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
-from roaml.durations import INSTANT
+from roaml.durations import ANY, ANY_TIME, AT_ONCE, INSTANT
 from roaml.explicit.space import MAX_STATES, StateLimits
 from roaml.figures.themes import AUTOMATIC
 from roaml.jani.property_text import PropertyTextError
@@ -69,7 +69,7 @@ from roaml.verification.counterexample import unwanted_trace, unwanted_verdict
 from roaml.verification.exhaustive import ExplorationInterruptedError
 from roaml.verification.expectations import Expectation, RangeError
 from roaml.verification.refusal import fault_message
-from roaml.verification.results import Computed, CutShort, Estimated, Exact, Refused, Result, Sampled
+from roaml.verification.results import Computed, CutShort, Exact, Refused, Result, Sampled
 from roaml.verification.searches import Searches
 from roaml.verification.small import EXAMPLE_TRACES
 from roaml.verification.target import VerificationTarget
@@ -201,7 +201,10 @@ def _run_tree(
     return _Verification(options, verifier, interrupts, (tree.mocked, outcome)).run()
 
 
-REACTIONS = {INSTANT: "assumed: machines take possible steps at once, before time advances"}
+REACTIONS = {
+    INSTANT: "assumed: machines take possible steps at once, before time advances",
+    ANY: "assumed: nodes may wait before they take a possible step",
+}
 """Reaction time -> the assumption in the words of users."""
 
 
@@ -444,12 +447,16 @@ class _Verification:
         # A story of a stuck trace ends with the waiting automata.
         has_story = STANDARD_OUTPUT_PATH in self.options.explain and any(r.answer or r.exact for r in self.results)
         has_story = has_story and not any(result.is_interrupted for result in self.results)
-        text = as_text(self.results, self._place, self.options.stuck, "in the trace below" if has_story else "")
+        shown = "in the trace below" if has_story else ""
+        text = as_text(self.results, self._place, self.options.stuck, shown, is_whole=is_verbose())
         if self.tree is not None:
-            return f"{self._tree_text(text, has_story)}{self._assumptions()}\n"
-        if self.stuck_result is not None:
-            text += stuck_report.as_text(self.stuck_result, self._place, self._where_shown(has_story))
-        return f"{text}{'' if has_story else explained(text, self.target.model, self._place)}{self._assumptions()}\n"
+            text = self._tree_text(text, has_story)
+        else:
+            if self.stuck_result is not None:
+                where = self._where_shown(has_story)
+                text += stuck_report.as_text(self.stuck_result, self._place, where, is_whole=is_verbose())
+            text += "" if has_story else explained(text, self.target.model, self._place)
+        return text + "".join(f"{line}\n" for line in self._assumptions().splitlines())
 
     def _report(self) -> CheckReport:
         """The results as findings, and the errors in the model because of which properties could not be decided."""
@@ -507,39 +514,49 @@ class _Verification:
         return "" if named is None else f"above, below `{named}`"
 
     def _assumptions(self) -> str:
-        """The assumptions of all results: how they were computed, the reaction time if it is not `any`, and the values
-        of parameters."""
+        """The assumptions of all results, in one line: the confidence and the choices of traces, and the reaction time
+        if it is not the default; then the values of parameters. Verbose output begins with the exact computation."""
         metadata = self.target.model.metadata
-        reactions = "" if metadata is None else REACTIONS.get(metadata.reaction_time.text, "")
-        if metadata is not None and not reactions and not metadata.reaction_time.is_any:
-            reactions = f"assumed: each machine takes a possible step within {metadata.reaction_time.text}"
-        lines = [self._computation(), f"{reactions} (reaction time)" if reactions else ""]
+        reactions = ""
+        if metadata is not None and metadata.reaction_time != (ANY_TIME if self.tree is None else AT_ONCE):
+            text = metadata.reaction_time.text
+            reactions = REACTIONS.get(text, f"assumed: each machine takes a possible step within {text}")
+            reactions += " (reaction time)"
+        lines = [self._exact_computation(), "; ".join(filter(None, (self._computation(), reactions)))]
         if self.target.parameters:
             values = ", ".join(f"{name} = {value}" for name, value in self.target.parameters.items())
             lines.append(f"parameters: {values}")
         return "\n".join(filter(None, lines))
 
-    def _computation(self) -> str:
-        """How the results were computed: one line, or two lines if some values are exact and others are estimates."""
+    def _exact_computation(self) -> str:
+        """How exact values were computed; "" unless the output is verbose."""
+        if not is_verbose() or self.options.scheduler is Scheduler.LSS:
+            return ""
         if self.options.exhaustive:
             return self._exploration("computed", uniform_only=False)
+        if all(result.exact is None for result in self.results):
+            return ""
+        computed = self._exploration("exact values, computed", uniform_only=self.verifier.only_uniform)
+        return f"{computed}; use --method adaptive for estimates from traces"
+
+    def _computation(self) -> str:
+        """How estimates were computed; "" if there are none."""
+        if self.options.exhaustive:
+            return ""
         if self.options.scheduler is Scheduler.LSS:
             how = f"with each scheduler found; others may be more extreme; seed {self.limits.seed}"
             return f"{self.limits.confidence:g} confidence {how}"
+        has_estimate = self.stuck_result is not None and self.stuck_result.stuck is not None
+        has_estimate = has_estimate or any(
+            not isinstance(r.outcome, Computed) or r.outcome.has_uniform_estimate for r in self.results
+        )
+        if not has_estimate:
+            return ""
         drawn = "choices were made uniformly at random"
         if (states := self.verifier.checker.initial_states) > 1:
             drawn = f"one of {states:,} initial states and all choices were drawn uniformly at random"
-        how = f"{self.limits.confidence:g} confidence, seed {self.limits.seed}; {drawn}"
-        if all(result.exact is None for result in self.results):
-            return how
-        computed = self._exploration("exact values, computed", uniform_only=self.verifier.only_uniform)
-        computed += "; use --method adaptive for estimates from traces"
-        has_estimate = self.stuck_result is not None and self.stuck_result.answer is not None
-        has_estimate = has_estimate or any(
-            isinstance(r.outcome, Estimated) or (isinstance(r.outcome, Computed) and r.outcome.has_uniform_estimate)
-            for r in self.results
-        )
-        return f"{computed}\nestimates: {how}" if has_estimate else computed
+        estimates = "" if all(result.exact is None for result in self.results) else "estimates: "
+        return f"{estimates}{self.limits.confidence:g} confidence, seed {self.limits.seed}; {drawn}"
 
     def _exploration(self, verb: str, *, uniform_only: bool) -> str:
         """Which exact values were computed, and from what.

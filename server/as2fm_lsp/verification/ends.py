@@ -6,6 +6,13 @@ from __future__ import annotations
 from roaml.smc.end import End
 from roaml.smc.tally import Tally
 
+_ORDINARY = frozenset({End.DECIDED, End.FINISHED, End.TIME})
+
+
+def are_ordinary(tally: Tally) -> bool:
+    """Whether all traces have ended because the property was decided, the tree has finished, or the time is over."""
+    return _ORDINARY.issuperset(tally.ends)
+
 
 def as_line(tally: Tally) -> str:
     """The reasons for which traces have ended, each with its number of traces, as a line for users."""

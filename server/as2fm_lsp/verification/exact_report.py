@@ -34,8 +34,9 @@ def lines(
     *,
     only_uniform: bool = False,
     uniform_estimate: str = "",
+    is_whole: bool = False,
 ) -> list[str]:
-    """The lines of the report for users: the values and the shortest traces.
+    """The lines of the report for users: the values; if it is whole, also proofs and the lengths of shortest traces.
 
     Args:
         question: what the property asks for; `None` if that is unknown.
@@ -62,18 +63,25 @@ def lines(
             shown.append("  not computed: the value under uniform choices; use --no-reductions")
     if exact.initial_states > 1:
         shown.append(f"  {_OVER_INITIAL_STATES[exact.fold].format(exact.initial_states)}")
+    return [*shown, *_details(exact, states, question)] if is_whole else shown
+
+
+def _details(exact: Exact, states: str, question: Question | None) -> list[str]:
+    """A proof, and the lengths of the shortest traces."""
+    shown = []
     fails, holds = exact.shortest(FALSE), exact.shortest(TRUE)
     if exact.proof is Proof.ALL:
         shown.append(f"  proof: its condition holds in all {'states' if exact.is_reduced else states}")
     elif exact.proof is Proof.NONE:
         shown.append(f"  proof: its condition holds in {'no state' if exact.is_reduced else f'none of the {states}'}")
+    is_reward = question is not None and question.is_reward
     shortest = [
         f"{what} after {trace.steps:,} {'step' if trace.steps == 1 else 'steps'}"
-        for what, trace in (("fails", fails), ("holds", holds))
+        for what, trace in (("it fails", fails), ("its condition is reached" if is_reward else "it holds", holds))
         if trace is not None
     ]
     if shortest:
-        shown.append(f"  {'example traces' if exact.is_reduced else 'shortest traces'}: it {', it '.join(shortest)}")
+        shown.append(f"  {'example traces' if exact.is_reduced else 'shortest traces'}: {', '.join(shortest)}")
     return shown
 
 

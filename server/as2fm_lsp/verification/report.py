@@ -40,7 +40,12 @@ if TYPE_CHECKING:
 
 
 def as_text(
-    results: Sequence[Result], place_of: PlaceOf, level: StuckLevel = StuckLevel.WARNING, shown: str = ""
+    results: Sequence[Result],
+    place_of: PlaceOf,
+    level: StuckLevel = StuckLevel.WARNING,
+    shown: str = "",
+    *,
+    is_whole: bool = False,
 ) -> str:
     """All results of one call, as text for users.
 
@@ -48,12 +53,14 @@ def as_text(
         place_of: file and line of an origin.
         level: the severity with which stuck traces are reported.
         shown: where the waiting automata are shown; "" to show them below the first result that they make doubtful.
+        is_whole: whether lines are shown that say nothing unusual: why traces have ended, the lengths of the shortest
+            traces, proofs, and that nothing is expected.
     """
     blocks = []
     shown_at: dict[object, str] = {}
     for result in results:
         where = "" if result.stuck is None else shown or shown_at.get(result.stuck.chain, "")
-        blocks.append(_block(result, place_of, level, where, is_alone=False))
+        blocks.append(_block(result, place_of, level, where, is_alone=False, is_whole=is_whole))
         if result.stuck is not None and not result.includes_stuck:
             shown_at.setdefault(result.stuck.chain, f"above, below `{result.name}`")
     open_ = [
@@ -63,7 +70,8 @@ def as_text(
         and may_differ(estimated.choices)
         and not estimated.answer.question.asks_for_extreme_state
     ]
-    return "".join(f"{line}\n" for line in (*blocks, *_without_expectation(results), *scheduler_report.note(open_)))
+    unexpected = _without_expectation(results) if is_whole or any(result.verdicts for result in results) else []
+    return "".join(f"{line}\n" for line in (*blocks, *unexpected, *scheduler_report.note(open_)))
 
 
 def as_brief_text(results: Sequence[Result], place_of: PlaceOf, level: StuckLevel = StuckLevel.WARNING) -> str:
@@ -90,7 +98,9 @@ def one_as_text(result: Result, place_of: PlaceOf, level: StuckLevel = StuckLeve
     return _block(result, place_of, level, shown, is_alone=True)
 
 
-def _block(result: Result, place_of: PlaceOf, level: StuckLevel, shown: str, *, is_alone: bool) -> str:
+def _block(
+    result: Result, place_of: PlaceOf, level: StuckLevel, shown: str, *, is_alone: bool, is_whole: bool = False
+) -> str:
     match result.outcome:
         case Refused(reason=refusal):
             lines = [f"{result.name}: not answered: {_refusal_text(refusal)}"]
@@ -100,11 +110,11 @@ def _block(result: Result, place_of: PlaceOf, level: StuckLevel, shown: str, *, 
             after = f" after {states:,} states, {result.seconds:.1f} s" if states else ""
             lines = [f"{result.name}: interrupted{after}; there is no result so far", *_growing_lines(growing)]
         case Computed() as computed:
-            lines = _computed_lines(result, computed)
+            lines = _computed_lines(result, computed, is_whole=is_whole)
         case Estimated() as estimated:
-            lines = _estimated_lines(result, estimated, place_of, level, shown, is_alone=is_alone)
+            lines = _estimated_lines(result, estimated, place_of, level, shown, is_alone=is_alone, is_whole=is_whole)
         case Sampled() as sampled:
-            lines = _sampled_lines(result, sampled, place_of, level, shown)
+            lines = _sampled_lines(result, sampled, place_of, level, shown, is_whole=is_whole)
         case never:
             assert_never(never)
     lines += _doubt_lines(result, level)
@@ -150,7 +160,7 @@ def _conditional_lines(result: Result) -> list[str]:
     return lines
 
 
-def _computed_lines(result: Result, computed: Computed) -> list[str]:
+def _computed_lines(result: Result, computed: Computed, *, is_whole: bool) -> list[str]:
     sample = computed.sample
     name = f"{result.name} ({PROBABILITY})" if result.includes_stuck else result.name
     has_estimate = sample is not None and computed.has_uniform_estimate
@@ -162,16 +172,25 @@ def _computed_lines(result: Result, computed: Computed) -> list[str]:
         computed.question,
         only_uniform=computed.is_uniform,
         uniform_estimate=estimate,
+        is_whole=is_whole,
     )
     if sample is not None:
-        lines += _remarks(sample.answer) if has_estimate else [f"  {line}" for line in _example_remarks(sample.answer)]
+        remarks = _remarks if has_estimate else _example_remarks
+        lines += remarks(sample.answer, is_whole=is_whole)
         if has_estimate and not sample.answer.is_complete:
             lines.append("  the interval is wider than requested (--epsilon)")
     return lines
 
 
 def _estimated_lines(
-    result: Result, estimated: Estimated, place_of: PlaceOf, level: StuckLevel, shown: str, *, is_alone: bool
+    result: Result,
+    estimated: Estimated,
+    place_of: PlaceOf,
+    level: StuckLevel,
+    shown: str,
+    *,
+    is_alone: bool,
+    is_whole: bool,
 ) -> list[str]:
     answer, choices = estimated.answer, estimated.choices
     is_stuck = answer.question.is_stuck
@@ -180,7 +199,7 @@ def _estimated_lines(
     lines = [f"{name}: {words}, {result.seconds:.1f} s"]
     if estimated.stuck is not None and not is_stuck:
         lines += _stuck_lines(estimated.stuck, place_of, level, shown)
-    lines += _remarks(answer)
+    lines += _remarks(answer, is_whole=is_whole)
     if is_alone or not may_differ(choices) or answer.question.asks_for_extreme_state:
         about = scheduler_report.remark(answer.question, choices)
         lines += [f"  {about}"] if about else []
@@ -191,14 +210,16 @@ def _estimated_lines(
     return lines
 
 
-def _sampled_lines(result: Result, sampled: Sampled, place_of: PlaceOf, level: StuckLevel, shown: str) -> list[str]:
+def _sampled_lines(
+    result: Result, sampled: Sampled, place_of: PlaceOf, level: StuckLevel, shown: str, *, is_whole: bool
+) -> list[str]:
     lines = []
     for extreme in sorted(sampled.extremes, key=_is_other_side):
         lines.append(f"{result.name}: {extreme.side} probability found {_estimate(extreme.answer)}")
         lines.append(f"  by {extreme.words}")
         if extreme.stuck is not None and not extreme.answer.question.is_stuck:
             lines += _stuck_lines(extreme.stuck, place_of, level, shown)
-        lines += _remarks(extreme.answer)
+        lines += _remarks(extreme.answer, is_whole=is_whole)
     if sampled.tried:
         lines.append(f"  {sampled.tried:,} schedulers were tried, {result.seconds:.1f} s")
     if sampled.is_interrupted:
@@ -244,8 +265,9 @@ def _estimate(answer: Answer) -> str:
     return estimate_text(answer) if answer.tally.traces else activity_report.warning(answer) or NO_TRACES
 
 
-def _remarks(answer: Answer) -> list[str]:
-    lines = [f"  ends: {ends.as_line(answer.tally)}"] if answer.tally.traces else []
+def _remarks(answer: Answer, *, is_whole: bool) -> list[str]:
+    are_shown = answer.tally.traces and (is_whole or not ends.are_ordinary(answer.tally))
+    lines = [f"  ends: {ends.as_line(answer.tally)}"] if are_shown else []
     if answer.question.is_reward and answer.failures:
         lines.append("  infinite: some traces never reach the condition up to which the reward is accumulated")
     if answer.question.is_reward and answer.tally.successes:
@@ -278,10 +300,11 @@ def _reward_remark(answer: Answer) -> str:
     )
 
 
-def _example_remarks(answer: Answer) -> list[str]:
+def _example_remarks(answer: Answer, *, is_whole: bool) -> list[str]:
     """Remarks on the traces that were generated as examples for an exact value."""
-    lines = [f"ends of {answer.tally.traces:,} random traces: {ends.as_line(answer.tally)}"]
-    return lines + activity_report.remarks(answer)
+    are_shown = is_whole or not ends.are_ordinary(answer.tally)
+    lines = [f"ends of {answer.tally.traces:,} random traces: {ends.as_line(answer.tally)}"] if are_shown else []
+    return [f"  {line}" for line in (*lines, *activity_report.remarks(answer))]
 
 
 def as_json(

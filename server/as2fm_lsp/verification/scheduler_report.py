@@ -57,7 +57,8 @@ def warning(question: Question, choices: Choices | None) -> str:
 
 
 def note(entries: Sequence[tuple[Question, Choices]]) -> list[str]:
-    """The lines of a note about properties whose minimum or maximum may differ from their values, and what to do.
+    """A note about properties whose minimum or maximum may differ from their values, and what to do, in one line for
+    each reason.
 
     Args:
         entries: these properties, with what is known about other schedulers; without entries, there are no lines.
@@ -70,16 +71,15 @@ def note(entries: Sequence[tuple[Question, Choices]]) -> list[str]:
         key = (question.operator, "" if choices.tried else _looked(question, choices))
         names.setdefault(key, []).append(question.name)
         tried[key] = max(tried.get(key, 0), choices.tried)
-    lines = ["note: these are values under uniform choices; the minimum or maximum over all schedulers may differ"]
+    lines = []
     for (operator, why), of in names.items():
         extreme = "minimum" if operator.endswith("min") else "maximum"
         looked = why or f"up to {tried[operator, why]:,} sampled schedulers show no difference, which proves nothing"
-        lines.append(f"  {extreme} of {', '.join(of)}: {looked}")
-    lines.append(
-        "  help: use --scheduler uniform for uniform choices, --scheduler lss to sample more schedulers, "
-        "or --exhaustive to compute the minimum and the maximum from all states"
-    )
-    return lines
+        lines.append(f"note: the {extreme} of {', '.join(of)} over all schedulers is not known ({looked})")
+    return [
+        *lines,
+        "  help: use --exhaustive to compute it from all states, or --scheduler uniform if uniform choices are meant",
+    ]
 
 
 def _looked(question: Question, choices: Choices) -> str:

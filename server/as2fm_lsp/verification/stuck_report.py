@@ -18,15 +18,16 @@ NOT_STUCK = "does not get stuck"
 """The name of the test in a JUnit report."""
 
 
-def as_text(result: StuckResult, place_of: PlaceOf, shown: str = "") -> str:
+def as_text(result: StuckResult, place_of: PlaceOf, shown: str = "", *, is_whole: bool = True) -> str:
     """The result as text for users.
 
     Args:
         shown: where in the output the waiting automata are shown, such as `in the trace below`; "" to show them here.
+        is_whole: whether the probability is also shown if no trace got stuck.
     """
     answer, stuck = result.answer, result.stuck
     lines = []
-    if answer is not None and answer.tally.traces:
+    if answer is not None and answer.tally.traces and (is_whole or answer.tally.ended(End.STUCK) or answer.is_unknown):
         lower, upper = answer.bounds
         cut = answer.tally.ended(End.CUT)
         to = f"; {cut:,} of them were cut after {answer.options.max_steps:,} steps" if cut else " to their end"

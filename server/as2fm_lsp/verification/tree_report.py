@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable, Iterator
 from typing import Any
 
+from roaml.durations import AT_ONCE
 from roaml.lower.programs.nodes import EVENT_PROBABILITY
 from roaml.mocks.network import MockedTree
 from roaml.scxml.names import TreeEventKind, sent_by, tree_event_name
@@ -44,8 +45,8 @@ def as_text(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf, *, is_w
 
 
 def assumptions(mocked: MockedTree) -> str:
-    """A line with the assumptions of the results: the number of leaves with mocks, the tick rate, the maximum time, and
-    the probability of events without a mock."""
+    """A line with the assumptions of the results: the number of leaves with mocks, the tick rate, the maximum time, the
+    time of a tick, and the probability of events without a mock."""
     options = mocked.options
     leaves = len(mocked.leaves)
     known = [leaf for leaf in mocked.leaves if leaf.is_known]
@@ -54,6 +55,8 @@ def assumptions(mocked: MockedTree) -> str:
         f"{len(mocked.tree.nodes)} nodes, {leaves} {'leaf' if leaves == 1 else 'leaves'} with mocks{certain}; "
         f"ticked at {float(options.rate):g} Hz, for at most {options.max_time / 1e9:g} s"
     )
+    if (options.reaction_time or AT_ONCE).is_instant:
+        text += "; a tick takes no time"
     if mocked.assumed:
         names = ", ".join(f"`{node.name}`" for node in mocked.assumed)
         text += f"; at each tick, the event of {names} has the probability {EVENT_PROBABILITY:g} (no mock)"
@@ -61,19 +64,22 @@ def assumptions(mocked: MockedTree) -> str:
 
 
 def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf, is_whole: bool) -> Iterator[str]:
-    yield f"  the tree fails: {_interval(outcome.failure)}"
+    if outcome.unfinished.value or outcome.exceptions.value:
+        yield f"  the tree fails: {_interval(outcome.failure)}"
     if outcome.unfinished.value:
         yield f"  not ended when the time ends: {_interval(outcome.unfinished)}"
     if outcome.exceptions.value:
         yield f"  ended by an exception of the library: {_interval(outcome.exceptions)}"
     if outcome.time is not None:
-        yield f"  time until success: mean {_interval(outcome.time)} s"
-        for quantile in outcome.quantiles:
-            yield f"    {quantile.share:.0%} within {_interval(Measured(quantile.value, quantile.bounds))} s"
+        within = (
+            f"{quantile.share * 100:g} % within {_interval(Measured(quantile.value, quantile.bounds))} s"
+            for quantile in outcome.quantiles
+        )
+        yield f"  time until success: mean {_interval(outcome.time)} s; {', '.join(within)}"
     for node, counter, value in outcome.counts:
         is_constant = value.bounds.lower == value.bounds.upper and not outcome.is_exact
-        mean = f"{value.value:g} in all traces" if is_constant else _interval(value)
-        yield f"  {counter.replace('_', ' ')} of {node.name} ({place_of(node.origin)}): mean {mean}"
+        mean = f"{value.value:g} in all traces" if is_constant else f"{_interval(value)} in a run, on average"
+        yield f"  {counter.replace('_', ' ')} of {node.name} ({place_of(node.origin)}): {mean}"
     if not outcome.influences and not outcome.is_exact and any(0 < leaf.probability < 1 for leaf in mocked.leaves):
         yield (
             "  the influence of the leaves cannot be estimated, because all traces had the same outcome; more traces "
@@ -85,7 +91,7 @@ def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf, is_whole
             if outcome.rare is not None and outcome.rare < MIN_NORMAL_TRACES
             else ""
         )
-        yield f"  influence of the leaves on the probability that the tree succeeds{note}:"
+        yield f"  influence of the leaves on the probability of success{note}:"
         for influence in outcome.influences[: None if is_whole else MAX_LEAVES]:
             yield f"    {_influence(influence, place_of)}"
         more = len(outcome.influences) - MAX_LEAVES

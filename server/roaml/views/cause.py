@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 
 from roaml.jani.node import Origin
-from roaml.scxml.names import TREE_ROOT_PREFIX
+from roaml.scxml.names import FAILS, SUCCEEDS, TREE_ROOT_PREFIX
 from roaml.smc.end import End
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.story import Story
@@ -49,7 +49,9 @@ def cause(story: Story, place_of: Callable[[Origin], str]) -> str:
     if root is not None:
         node = _responsible(all_turns[: all_turns.index(root)])
         why = "" if node is None else f", because {node.who} {_returned(node)}{_place(node, place_of)}"
-        return f"{subject}{_at(root.time)}: the tree ends with {root.result}{why}"
+        end = f"the tree ends with {root.result}"
+        is_about_tree = story.property in (SUCCEEDS, FAILS)
+        return f"{end}{_at(root.time)}{why}" if is_about_tree else f"{subject}{_at(root.time)}: {end}{why}"
     last = next((turn for turn in reversed(all_turns) if turn.ends), None)
     if last is None:
         return ""
