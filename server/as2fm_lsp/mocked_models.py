@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import os
+import stat
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from types import MappingProxyType
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING
 from roaml.disk import UnreadableReason, read, required
 from roaml.mocks.mock import Mock, MockError, read_mock, read_mocks, unused
 from roaml.model.kinds import FileKind, kind_of
-from roaml.project.settings import Settings
+from roaml.project.settings import Settings, ament_prefixes
 from roaml.record import Record, field, replace
 from roaml.text import decode
 
@@ -201,10 +202,12 @@ def keep_proposal(path: str, leaves: Sequence[MockableLeaf]) -> int:
 
 
 def _keep_proposal(path: str, beside: str, leaves: Sequence[MockableLeaf], messages: MockMessages) -> None:
+    reason = _why_not_written(beside)
     try:
-        count = keep_proposal(path, leaves)
+        count = 0 if reason else keep_proposal(path, leaves)
     except OSError as error:
-        reason = error.strerror or error
+        reason = error.strerror or str(error)
+    if reason:
         messages.write(f"uses proposed mocks, which could not be written into {messages.shown(beside)}: {reason}")
     else:
         leaves_ = "1 leaf" if count == 1 else f"{count} leaves"
@@ -218,10 +221,12 @@ def _review(
     lines = "\n".join(f"  {leaf.line}" for leaf in leaves if leaf.is_missing)
     if not is_new:
         return MockError(f"{messages.shown(beside)}: leaves have no mock; add lines for them, for example\n{lines}")
+    reason = _why_not_written(beside)
     try:
-        count = keep_proposal(path, leaves)
+        count = 0 if reason else keep_proposal(path, leaves)
     except OSError as error:
-        reason = error.strerror or error
+        reason = error.strerror or str(error)
+    if reason:
         return MockError(
             f"{messages.shown(path)}: its leaves need mocks, and a proposal could not be written into "
             f"{messages.shown(beside)}: {reason}; write these lines into a file and name it with --mocks\n{lines}"
@@ -231,6 +236,17 @@ def _review(
         f"{messages.shown(path)}: {leaves_}; a proposal is in {messages.shown(beside)}, with a reason for each: "
         f"review it and repeat the command, or set mocks with {messages.example}"
     )
+
+
+def _why_not_written(beside: str) -> str:
+    """Why a file is not written, although the user may be permitted to: its folder belongs to an installed package, or
+    nobody has the permission to write into it; "" if there is no reason."""
+    folder = Path(beside).resolve().parent
+    installed = (Path(prefix).resolve() for prefix in ament_prefixes())
+    if any(folder.is_relative_to(prefix) for prefix in installed):
+        return "the folder belongs to an installed package"
+    is_writable = folder.stat().st_mode & (stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH)
+    return "" if is_writable else "the folder is read-only"
 
 
 def mocked_system_texts(

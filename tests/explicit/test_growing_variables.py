@@ -122,6 +122,28 @@ def test_a_variable_of_a_node_is_named_before_the_messages_that_contain_it(tmp_p
     assert advice(variables[1:]) == "shorten the time (max_time)"
 
 
+@pytest.mark.parametrize(
+    ("has_maximum", "text"),
+    [
+        ((False, False), "give variables a maximum in the model"),
+        ((True, False), "give `b` a maximum in the model"),
+        ((True, True), "give variables smaller ranges in the model"),
+    ],
+)
+def test_variables_with_a_maximum_need_no_other_one(has_maximum: tuple[bool, bool], text: str) -> None:
+    variables = [
+        GrowingVariable(name, "", 100, 0, 99, has_maximum=known) for name, known in zip("ab", has_maximum, strict=True)
+    ]
+    assert advice(variables) == text
+
+
+def test_the_type_of_a_variable_has_a_maximum() -> None:
+    limit = {"kind": "bounded", "base": "int", "lower-bound": 0, "upper-bound": 100_000}
+    written = counting(variable("v", limit), v=op("+", "v", 1))
+    checker = ModelChecker(model(written))
+    assert {v.name: v.has_maximum for v in limited(checker, 100, reduces=False)} == {"n": False, "v": True}
+
+
 def test_the_memory_is_a_limit_as_well() -> None:
     checker = ModelChecker(model(counting()))
     (variable_,) = limited(checker, 1_000_000, bytes=40_000)

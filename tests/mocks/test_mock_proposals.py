@@ -158,6 +158,27 @@ def test_a_proposal_that_cannot_be_written_is_shown(
     assert "\n  FollowPath: 0.9 in 10 s" in message
 
 
+@pytest.mark.parametrize("place", ["a read-only folder", "an installed package"])
+def test_nothing_is_written_into_folders_of_others(
+    place: str, nav2: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also not by a user who may write everywhere."""
+    folder = nav2.parent
+    if place == "an installed package":
+        monkeypatch.setenv("AMENT_PREFIX_PATH", f"/opt/ros/none{os.pathsep}{folder.parent}")
+    else:
+        folder.chmod(0o555)
+    try:
+        assert run(["verify", str(nav2)]) == USAGE
+        message = capsys.readouterr().err
+        reason = "the folder is read-only" if place == "a read-only folder" else "the folder belongs to an installed"
+        assert reason in message
+        assert "; write these lines into a file and name it with --mocks\n" in message
+        assert not nav2.with_suffix(".mocks").exists()
+    finally:
+        folder.chmod(0o755)
+
+
 def test_mocks_of_the_command_line_are_not_completed(nav2: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["verify", str(nav2), "--mock", "FollowPath: 1"]) == USAGE
     assert "these leaves need mocks: ComputePathToPose" in capsys.readouterr().err

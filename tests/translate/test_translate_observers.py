@@ -367,6 +367,31 @@ def test_vacuous_traces_and_those_that_fail_at_the_end_of_time_are_counted() -> 
     assert "failed traces fail when the time ends (max_time)" in text
 
 
+BEFORE = """
+<property id="existence" pattern="existence"><event>heads</event><scope type="before" event="whistle" /></property>
+<property id="absence" pattern="absence"><event>whistle</event><scope type="before" event="heads" /></property>
+<property id="response" pattern="response"><events><event>heads</event><event>heads</event></events>
+    <scope type="before" event="whistle" /></property>
+<property id="never" pattern="absence"><event>heads</event><scope type="before" event="tails" /></property>
+"""
+
+
+def test_a_property_is_not_vacuous_if_its_scope_closes_in_each_trace() -> None:
+    """Each trace has heads, then a whistle, and no tails."""
+    written = system(BEFORE)
+    coin = written["coin.ascxml"].replace('prob="0.3"', 'prob="1"').replace('<target id="toss" />', "")
+    written["coin.ascxml"] = re.sub(r'<target id="toss" prob="0.2">.*</target>', "", coin)
+    judge = written["judge.ascxml"].replace(' prob="0.4"', "")
+    written["judge.ascxml"] = judge.replace('<target id="wait" />', "")
+    options = Options(method=EstimationMethod.FIXED, max_traces=10)
+    results = {result.name: result for result in api.verify(loaded(written), options=options, only_uniform=True)}
+    for name in ("existence", "absence", "response"):
+        assert row(results[name])["probability"] == 1
+        assert row(results[name])["vacuous"] == {"scope_not_judged": 0, "not_triggered": 0}
+        assert not warning(results[name])
+    assert "vacuous" in warning(results["never"])
+
+
 def test_what_observers_say_of_their_activity_changes_no_answer() -> None:
     source = loaded(system(VACUOUS))
     options = Options(method=EstimationMethod.FIXED, max_traces=200)

@@ -32,7 +32,7 @@ from roaml.jani.rewrite import rewrite
 from roaml.jani.types import REAL
 from roaml.mocks.network import TICKS, MockedLeaf, MockedTree
 from roaml.record import Record, replace
-from roaml.scxml.names import SUCCEEDS
+from roaml.scxml.names import MOCK_FAILURES, MOCK_SUCCESSES, SUCCEEDS
 from roaml.smc.fault import FaultError
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import UNKNOWN
@@ -260,9 +260,10 @@ def _with_probabilities(model: Model, leaves: Mapping[str, MockedLeaf]) -> Model
         def answered(destination: Destination) -> Destination:
             written = {assignment.variable for assignment in destination.assignments}
             clause = destination.probability
-            if clause is None or not written & {"successes", "failures"}:
+            if clause is None or not written & {MOCK_SUCCESSES, MOCK_FAILURES}:
                 return destination
-            return replace(destination, probability=replace(clause, exp=success if "successes" in written else failure))
+            chance = success if MOCK_SUCCESSES in written else failure
+            return replace(destination, probability=replace(clause, exp=chance))
 
         edges = (replace(edge, destinations=tuple(map(answered, edge.destinations))) for edge in part.edges)
         return replace(part, edges=tuple(edges))

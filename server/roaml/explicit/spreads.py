@@ -29,6 +29,7 @@ class Spread(Record, frozen=True):
         name: the name of the variable.
         values: the number of different values, at least; an array is one value.
         least, greatest: the range of the values; of the elements of an array.
+        has_maximum: whether its type has a maximum.
     """
 
     instance: int | None
@@ -36,6 +37,7 @@ class Spread(Record, frozen=True):
     values: int
     least: float
     greatest: float
+    has_maximum: bool
 
 
 def growing(checker: ModelChecker, search: Any) -> list[Spread]:
@@ -74,7 +76,7 @@ def _spread(checker: ModelChecker, instance: int | None, storage: Storage, keys:
     if len(different) < MIN_VALUES or len(different - earlier) < MIN_NEW * len(different):
         return None
     elements = [_number(element, storage.kind) for value in different for element in value]
-    return Spread(instance, storage.name, len(different), min(elements), max(elements))
+    return Spread(instance, storage.name, len(different), min(elements), max(elements), storage.bounds[1] is not None)
 
 
 def _number(element: int, kind: str) -> float:

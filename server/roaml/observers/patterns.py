@@ -37,7 +37,7 @@ def observe_pattern(property_: PatternProperty) -> Observer:
     pattern = _pattern_state(builder, property_, scope.is_open_at_first)
     is_deferred = property_.scope.is_judged_at_close
     bad = builder.flag("bad") if is_deferred else violated
-    triggered = builder.flag("asked") if is_deferred and exercised is not None else None
+    triggered = builder.flag("asked_inside") if is_deferred and exercised is not None else None
 
     # Evaluate a stretch that ends before this letter.
     closes = builder.temporary("closes", scope.closes)

@@ -26,6 +26,7 @@ class GrowingVariable(Record, frozen=True):
         values: the number of different values, at least; an array is one value.
         least, greatest: the range of the values; of the elements of an array.
         is_time: whether it contains the time of the clock.
+        has_maximum: whether its type has a maximum.
     """
 
     name: str
@@ -34,6 +35,7 @@ class GrowingVariable(Record, frozen=True):
     least: float
     greatest: float
     is_time: bool = False
+    has_maximum: bool = False
 
     @property
     def text(self) -> str:
@@ -63,21 +65,25 @@ def growing_variables(checker: ModelChecker, search: Any) -> tuple[GrowingVariab
 def advice(variables: Sequence[GrowingVariable]) -> str:
     """What to do about such variables, as a phrase for users."""
     remedies = []
-    if any(not variable.is_time for variable in variables):
-        remedies.append("give variables a maximum in the model")
+    own = [variable for variable in variables if not variable.is_time]
+    if unlimited := [variable for variable in own if not variable.has_maximum]:
+        which = "variables" if len(unlimited) == len(own) else ", ".join(f"`{variable.name}`" for variable in unlimited)
+        remedies.append(f"give {which} a maximum in the model")
+    elif own:
+        remedies.append("give variables smaller ranges in the model")
     if any(variable.is_time for variable in variables):
         remedies.append("shorten the time (max_time)")
     return " or ".join(remedies)
 
 
 def _named(checker: ModelChecker, spread: Spread) -> GrowingVariable:
-    values, least, greatest = spread.values, spread.least, spread.greatest
+    values, least, greatest, limited = spread.values, spread.least, spread.greatest, spread.has_maximum
     if spread.instance is None:
-        return GrowingVariable(spread.name, "", values, least, greatest)
+        return GrowingVariable(spread.name, "", values, least, greatest, has_maximum=limited)
     automaton = checker.legend.layout.instances[spread.instance].automaton
     events = {automaton.name for automaton in checker.model.automata if is_event(automaton)}
     name = variable_phrases(automaton, events.__contains__).get(spread.name, spread.name)
-    return GrowingVariable(name, automaton.name, values, least, greatest, automaton.name == CLOCK)
+    return GrowingVariable(name, automaton.name, values, least, greatest, automaton.name == CLOCK, limited)
 
 
 def _number(value: float) -> str:

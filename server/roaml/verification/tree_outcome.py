@@ -24,7 +24,15 @@ from roaml.jani.properties import (
 from roaml.lower.programs.executed import ExecutedNode
 from roaml.mocks.network import TICKS, MockedLeaf, MockedTree
 from roaml.record import Record
-from roaml.scxml.names import FAILS, SUCCEEDS, TREE_ROOT_PREFIX, TreeEventKind, tree_event_name
+from roaml.scxml.names import (
+    FAILS,
+    MOCK_FAILURES,
+    MOCK_SUCCESSES,
+    SUCCEEDS,
+    TREE_ROOT_PREFIX,
+    TreeEventKind,
+    tree_event_name,
+)
 from roaml.smc.kernel import Kernel
 from roaml.smc.model import ModelChecker
 from roaml.smc.names import Storage
@@ -247,8 +255,8 @@ class _Measuring:
     def score(self, leaf: MockedLeaf, own: dict[str, Storage]) -> float:
         """The derivative of the logarithm of the probability of the trace with respect to the probability of a mock."""
         p = leaf.probability
-        successes = self.integer(own["successes"]) if "successes" in own else 0
-        failures = self.integer(own["failures"]) if "failures" in own else 0
+        successes = self.integer(own[MOCK_SUCCESSES]) if MOCK_SUCCESSES in own else 0
+        failures = self.integer(own[MOCK_FAILURES]) if MOCK_FAILURES in own else 0
         return successes / p - failures / (1 - p)
 
     def influences(

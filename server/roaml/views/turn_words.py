@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.jani.expressions import Integer, Real
 from roaml.jani.model import Clause
-from roaml.scxml.names import CLOCK, TREE_ROOT_PREFIX
+from roaml.scxml.names import CLOCK, MOCK_FAILURES, MOCK_SUCCESSES, TREE_ROOT_PREFIX
 from roaml.smc.record import AutomatonStep
 from roaml.views.arrays import DeclaredChange, DeclaredValue
 from roaml.views.turns import Message, Turn
@@ -15,8 +15,7 @@ from roaml.views.values import shown_parameters, shown_value
 
 MAX_CHARACTERS = 60
 """The maximum number of characters of the states or the parameters of an event in a line."""
-_COUNTERS = frozenset({"successes", "failures"})
-"""The variables with which mocks count their answers, for measurements."""
+_COUNTERS = frozenset({MOCK_SUCCESSES, MOCK_FAILURES})
 
 
 def draws(turn: Turn) -> Iterator[AutomatonStep]:
