@@ -241,11 +241,11 @@ def _review(
 def _why_not_written(beside: str) -> str:
     """Why a file is not written, although the user may be permitted to: its folder belongs to an installed package, or
     nobody has the permission to write into it; "" if there is no reason."""
-    folder = Path(beside).resolve().parent
-    installed = (Path(prefix).resolve() for prefix in ament_prefixes())
-    if any(folder.is_relative_to(prefix) for prefix in installed):
+    folder = os.path.dirname(os.path.realpath(beside))
+    installed = [os.path.realpath(prefix) for prefix in ament_prefixes()]
+    if any(f"{folder}{os.sep}".startswith(f"{prefix.rstrip(os.sep)}{os.sep}") for prefix in installed):
         return "the folder belongs to an installed package"
-    is_writable = folder.stat().st_mode & (stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH)
+    is_writable = os.stat(folder).st_mode & (stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH)
     return "" if is_writable else "the folder is read-only"
 
 

@@ -163,7 +163,7 @@ def test_all_reports_show_the_same_times(tmp_path: Path, capsys: pytest.CaptureF
     mocks = ("--mock", "Drive: 0 in 200 ms")
     assert run(["verify", path, *mocks]) == 0
     report = capsys.readouterr().out
-    assert "succeeds fails at 0.300 s" in report
+    assert "the tree ends with FAILURE at 0.300 s" in report
     assert "0.3 s  Drive  FAILURE" in report
     assert run(["verify", path, *mocks, "--explain"]) == 0
     assert "0.300 s  Drive" in capsys.readouterr().out

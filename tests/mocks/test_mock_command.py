@@ -161,12 +161,31 @@ def test_what_users_read(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
 
 
 def test_why_a_tree_fails_in_all_traces(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """No mock fails: the leaf that fails is a node of the library."""
-    path = tree(tmp_path, "<Sequence><Drive/><Fallback><AlwaysFailure/></Fallback></Sequence>")
+    """No mock fails: the leaf that fails is a node of the library. A table shows what each node returns."""
+    path = tree(tmp_path, "<Sequence><Drive/><Fallback><AlwaysFailure/></Fallback><Never/></Sequence>")
     run(["verify", path, "--mock", "*: 1 in 1 s"])
     before, _, trace = capsys.readouterr().out.partition("the shortest trace without success:")
-    assert re.search(r"because AlwaysFailure \(bt_\d+\) returns FAILURE \(.*tree\.xml:\d+\)$", before.strip())
+    assert re.search(r"because AlwaysFailure \(.*tree\.xml:\d+\) returns FAILURE$", before.strip())
     assert trace.splitlines()[1].split()[2:4] == ["AlwaysFailure", "FAILURE"]
+    # `Drive` is ticked 11 times, and then the other nodes once.
+    rows = re.findall(r"^  (\w+) \(.*\) +(\d+) +(\d+) +(\d+) +(\d+) +(\d+)$", trace, re.MULTILINE)
+    assert rows == [
+        ("Sequence", "11", "0", "1", "10", "0"),
+        ("Drive", "11", "1", "0", "10", "0"),
+        ("Fallback", "1", "0", "1", "0", "0"),
+        ("AlwaysFailure", "1", "0", "1", "0", "0"),
+    ]
+    assert "\n  never ticked: Never\n" in trace
+
+
+def test_a_node_that_decides_otherwise_than_its_leaf(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tree(tmp_path, "<Inverter><Drive/></Inverter>")
+    run(["verify", path, "--mock", "*: 1 in 1 s"])
+    assert re.search(
+        r"^the tree ends with FAILURE at 1\.100 s, because Inverter \(\S+\) returns FAILURE after Drive ",
+        capsys.readouterr().out,
+        re.MULTILINE,
+    )
 
 
 def test_a_trace_of_a_tree_that_always_fails(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

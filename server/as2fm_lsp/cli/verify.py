@@ -488,7 +488,8 @@ class _Verification:
         succeeds = next((result for result in self.results if result.name == SUCCEEDS), None)
         story = None if succeeds is None or has_story else self._unwanted_story(succeeds)
         if story is not None:
-            text += tree_report.story_as_text(mocked, story, self._place, is_whole=is_verbose())
+            always_fails = outcome is not None and outcome.success.value == 0
+            text += tree_report.story_as_text(mocked, story, self._place, has_table=always_fails, is_whole=is_verbose())
         return f"{text}{tree_report.assumptions(mocked)}\n"
 
     def _unwanted_story(self, result: Result) -> Story | None:

@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable, Iterator
 from typing import Any
 
+from as2fm_lsp.verification.status_table import status_table
 from roaml.durations import AT_ONCE
 from roaml.lower.programs.nodes import EVENT_PROBABILITY
 from roaml.mocks.network import MockedTree
@@ -124,11 +125,16 @@ def _interval(measured: Measured) -> str:
     return f"{value:.4g} in [{bounds.lower:.4g}, {upper}]"
 
 
-def story_as_text(mocked: MockedTree, story: Story, place_of: PlaceOf, *, is_whole: bool = False) -> str:
+def story_as_text(
+    mocked: MockedTree, story: Story, place_of: PlaceOf, *, has_table: bool = False, is_whole: bool = False
+) -> str:
     """Why the tree succeeds or fails in a trace, in one sentence, and the statuses that leaves return.
 
     The statuses are in the order of the trace, with their times. Successes of leaves that always succeed are omitted.
     Of more than `MAX_LINES` statuses, the middle ones are omitted unless `is_whole`.
+
+    Args:
+        has_table: whether a table follows with the statuses that each node returns.
     """
     nodes = {node.automaton: node for node in mocked.tree.nodes}
     uncertain = {leaf.node.automaton for leaf in mocked.leaves if leaf.probability < 1}
@@ -162,7 +168,8 @@ def story_as_text(mocked: MockedTree, story: Story, place_of: PlaceOf, *, is_who
     article = "a" if number == SELECTED else "the shortest"
     head = f"{article} trace {outcome} success{f' (trace {number})' if number >= 0 else ''}:"
     why = cause(story, place_of)
-    return "".join(f"{line}\n" for line in (*([why] if why else []), head, *lines))
+    table = status_table(story, mocked.tree.nodes, place_of, is_whole=is_whole) if has_table else []
+    return "".join(f"{line}\n" for line in (*([why] if why else []), head, *lines, *table))
 
 
 def _has_ended(turn: Turn) -> bool:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 
 from roaml.jani.node import Origin
+from roaml.regex import regex
 from roaml.scxml.names import FAILS, SUCCEEDS, TREE_ROOT_PREFIX
 from roaml.smc.end import End
 from roaml.smc.program import FALSE, TRUE
@@ -15,6 +16,7 @@ from roaml.views.turn_words import chance, details, draws, what
 from roaml.views.turns import Turn, turns
 
 _ENDS = ("SUCCESS", "FAILURE")
+_NUMBER = regex(r" \(bt_\d+\)$")
 _OTHER_ENDS: Mapping[End, str] = MappingProxyType(
     {
         End.STUCK: "because machines wait for each other",
@@ -47,8 +49,7 @@ def cause(story: Story, place_of: Callable[[Origin], str]) -> str:
         return f"{subject}{_at(story.clock[-1])}, {_OTHER_ENDS[story.recording.end]}"
     root = next((turn for turn in reversed(all_turns) if turn.ends and _is_root(turn)), None)
     if root is not None:
-        node = _responsible(all_turns[: all_turns.index(root)])
-        why = "" if node is None else f", because {node.who} {_returned(node)}{_place(node, place_of)}"
+        why = _why_tree_ends(all_turns[: all_turns.index(root)], root.result, place_of)
         end = f"the tree ends with {root.result}"
         is_about_tree = story.property in (SUCCEEDS, FAILS)
         return f"{end}{_at(root.time)}{why}" if is_about_tree else f"{subject}{_at(root.time)}: {end}{why}"
@@ -79,6 +80,27 @@ def _responsible(before: Sequence[Turn]) -> Turn | None:
         if not turn.is_answered:
             break
     return lowest
+
+
+def _why_tree_ends(before: Sequence[Turn], result: str, place_of: Callable[[Origin], str]) -> str:
+    """The node because of which the tree ended, and the node above it that decided otherwise, if there is one."""
+    node = _responsible(before)
+    if node is None:
+        return ""
+    cause_ = f"{_node(node, place_of)} {_returned(node)}"
+    if node.status == result:
+        return f", because {cause_}"
+    above = (turn for turn in before[before.index(node) :] if turn.status == result and turn.time == node.time)
+    decided = next(above, None)
+    if decided is None:
+        return f", because {cause_}"
+    return f", because {_node(decided, place_of)} returns {result} after {cause_}"
+
+
+def _node(turn: Turn, place_of: Callable[[Origin], str]) -> str:
+    """A node of the tree, with its place, which is clearer than its number."""
+    place = _place(turn, place_of)
+    return f"{_NUMBER.sub('', turn.who)}{place}" if place else turn.who
 
 
 def _returned(turn: Turn) -> str:
