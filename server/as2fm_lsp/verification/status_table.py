@@ -26,7 +26,7 @@ def status_table(
         is_whole: whether the table may have more than `MAX_NODES` nodes.
     """
     returned = _returned(story)
-    rows = [("node", "ticks", *COLUMNS)]
+    rows: list[tuple[str, ...]] = [("node", "ticks", *COLUMNS)]
     idle = []
     for node in nodes:
         counts = returned.get(node.number, Counter())
