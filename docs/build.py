@@ -12,6 +12,7 @@ import argparse
 import importlib
 import json
 import re
+import subprocess
 import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -300,8 +301,9 @@ def main() -> int:
     # Each is read when the program starts, and the next one follows from it.
     steps = (lambda: not update(libraries(), check=is_check), lambda: update_schema(is_check))
     if not all(step() for step in (*steps, lambda: not update(grammars(), check=is_check))):
-        state = "have drifted" if is_check else "are new; start docs/build.py again"
-        print(f"the tables or the schema of trees {state}", file=sys.stderr)
+        if not is_check:
+            return subprocess.run([sys.executable, *sys.argv], check=False).returncode
+        print("the tables or the schema of trees have drifted", file=sys.stderr)
         return 1
     stale = list(drifted())
     if is_check:

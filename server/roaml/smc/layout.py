@@ -195,10 +195,6 @@ def _storages(
     return tuple(storages)
 
 
-def _is_between(value: Number, low: Number | None, high: Number | None) -> bool:
-    return (low is None or value >= low) and (high is None or value <= high)
-
-
 def _storage(name: str, type_: Type, value: Value) -> Storage:
     return Storage(name, type_, kind_of(type_), shape_of(value) if isinstance(type_, ArrayType) else ())
 

@@ -120,20 +120,6 @@ class ClientProtocols(Record, frozen=True, eq=False, dict=True):
         known = self.system.events.get(step.event.name)
         return bool(known and known.senders) or self.system.may(GapAct.SENDS, step.event.name)
 
-    def sends_again(self, event: ProtocolEvent) -> bool:
-        """Whether a request or goal may be sent more than once, or by several clients."""
-        if self.system is None:
-            return False
-        for automaton in self.automata:
-            clients = list(self._clients(automaton, event))
-            if len(clients) > 1 and clients[0].automaton is not clients[1].automaton:
-                return True
-            for client in clients:
-                sent = ProtocolEvent(event.part, client.use.handle)
-                if any(dict(chart.repeats).get(sent) for chart in client.automaton.outline.charts):
-                    return True
-        return False
-
 
 def due(configuration: ChartConfiguration) -> Iterator[Duty]:
     """The answers that a machine owes as a server."""
