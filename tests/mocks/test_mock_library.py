@@ -7,12 +7,14 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from random_trees import COUNTS, OF_OLD_VERSIONS, WITH_WORLD, Drawn, as_xml, trees
+from translated_trees import with_mocks
 from tree_comparison import difference_with_mocks
 
 from examples import TIMES, examples
-from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, library
+from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, library, library_node
 from roaml.libraries.programs.assembly import programs
 from roaml.libraries.version import NEWEST_VERSION, Version, read_version
+from roaml.lower.programs.refusal import TreeRefusal
 
 TICKS = 14
 DECORATED = WITH_WORLD.decorators
@@ -47,6 +49,26 @@ def test_each_node_does_what_the_library_does(name: str) -> None:
     for number in range(max(2, *map(len, NODES[name].values()), 2)):
         ports = tuple((key, values[number % len(values)]) for key, values in NODES[name].items())
         compare(Drawn(name, ports, tuple(leaves)), number, happens=number % 2 == 1)
+
+
+CHOICES = [
+    (node.name, port.name)
+    for node in filter(None, map(library_node, sorted(NODES)))
+    for port in node.ports
+    if port.type in ("bool", "NodeStatus") and not port.direction.writes
+]
+
+
+@pytest.mark.parametrize(("name", "chosen"), CHOICES)
+def test_a_choice_in_an_entry_is_refused(name: str, chosen: str) -> None:
+    """The translation of a node has only the branches of one choice."""
+    ports = {key: values[0] for key, values in NODES[name].items()} | {chosen: "{choice}"}
+    leaves = [Drawn(f"Act{number}") for number in range(1 if name in DECORATED else COUNTS.get(name, (3, 3))[1])]
+    write = Drawn("Script", (("code", "choice := 1"),))
+    tree = Drawn("Sequence", (), (write, Drawn(name, tuple(ports.items()), tuple(leaves))))
+    with pytest.raises(TreeRefusal) as refused:
+        with_mocks(as_xml(tree), {}, 3)
+    assert f"`{chosen}` must be a constant" in refused.value.reason
 
 
 def test_every_node_with_children_has_a_program() -> None:
