@@ -53,6 +53,10 @@ def test_an_experiment_grows(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     assert last["rows"][0]["setting"] == {"p": "0.1", "q": "0", "tries": "2"}
     assert points[0]["value"] == pytest.approx(0.19)
     assert last["model"] == model
+    assert [len(line["files"]["csv"].splitlines()) for line in (first, last)] == [1, 7]
+    (svg,) = last["files"]["svg"]
+    assert {"tries = 2", "tries = 3"} <= set(ET.fromstring(svg).itertext())
+    assert last["files"]["html"].count("<tr>") == 1 + len(last["rows"]) == 7
 
 
 def test_a_heat_map_grows(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -16,7 +16,7 @@ export function editing(stage: Stage): void {
         await window.squiggles.first().waitFor({ state: "detached" });
         await window.save();
         const file = path.join(window.folder, "nodes/battery.ascxml");
-        await window.until(() => fs.readFileSync(file, "utf8").includes('location="level" expr="100"'));
+        await window.until(() => fs.readFileSync(file, "utf8").includes('location="level" expr="capacity"'));
     });
 
     stage.test("completion after _msg. lists the fields", mended, async (window) => {

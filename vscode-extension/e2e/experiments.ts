@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** An experiment, as a new user finds it: from the delivery robot to the plot that says which battery it needs. */
 
+import assert from "node:assert/strict";
 import * as fs from "node:fs";
 import * as path from "node:path";
 import type { Frame, Locator } from "playwright-core";
@@ -27,20 +28,32 @@ export function experiments(stage: Stage): void {
                 await window.openFile("main.xml");
                 await window.running();
                 await lens(window, "Experiment").first().click();
-                await choose(window, "Which number is varied?", 'id="level"');
+                await choose(window, "Which number is varied?", 'id="capacity"');
                 // The number is declared in the system file, and its proposed values can be changed.
-                await window.answer("Values of initial_level (now 50)", "20:120:20");
+                await window.answer("Values of initial_capacity (now 100)", "20:120:10");
                 await window.question("Which properties are computed?").waitFor();
                 await window.screenshot("experiment-properties");
                 await pick(window, "all_delivered");
-                await window.answer("Which value of all_delivered is enough?", ">= 0.5");
+                await window.answer("Which value of all_delivered is enough?", ">= 0.99");
                 const view = await page(window);
-                await view.locator(".answers p", { hasText: "all_delivered ≥ 0.5 is met" }).waitFor();
-                await view.locator(".status", { hasText: "6 points" }).waitFor();
+                const enough = "all_delivered ≥ 0.99 is met from initial_capacity = 40 on";
+                await view.locator(".answers p", { hasText: enough }).waitFor();
+                await view.locator(".status", { hasText: "11 points" }).waitFor();
                 await view.locator(".point[data-key]").first().waitFor();
                 await window.screenshot(`experiment-${look}`);
+                // What is shown is saved, without computing it again.
+                await view.getByRole("button", { name: "Save…" }).click();
+                const table = path.join(window.folder, "main.csv");
+                const input = window.page.locator(".quick-input-widget:visible input[type=text]").first();
+                await input.fill(table);
+                await window.press("Enter");
+                const text = await window.until(() => (fs.existsSync(table) ? fs.readFileSync(table, "utf8") : ""));
+                const lines = text.trim().split("\n");
+                assert.match(lines[1] ?? "", /^20,all_delivered,0,/);
+                assert.equal(lines.length, 12);
+                await window.page.locator('.tab[data-resource-name="main.csv"] .codicon-close').first().click();
                 // A point leads to a run with its values.
-                await view.locator('[data-key="all_delivered initial_level=20"]').first().click();
+                await view.locator('[data-key="all_delivered initial_capacity=20"]').first().click();
                 await window.page.locator(".debug-toolbar").waitFor();
                 await window.screenshot("experiment-run");
             },
@@ -67,7 +80,7 @@ export function experiments(stage: Stage): void {
 function long(): string {
     const folder = sample(MEND);
     const main = fs.readFileSync(path.join(folder, "main.xml"), "utf8");
-    const declared = '<parameter name="capacity" type="int32" value="100" min="20" max="200" />';
+    const declared = '<parameter name="charge" type="uint8" value="100" min="20" max="200" />';
     const section = `<parameter_declarations>${declared}</parameter_declarations>`;
     write(
         path.join(folder, "main.xml"),
@@ -75,14 +88,14 @@ function long(): string {
     );
     const battery = path.join(folder, "nodes/battery.ascxml");
     const text = fs.readFileSync(battery, "utf8");
-    write(battery, text.replace('location="level" expr="100"', 'location="level" expr="capacity"'));
+    write(battery, text.replace('location="level" expr="capacity"', 'location="level" expr="charge"'));
     write(path.join(folder, EXPERIMENT), file("20:200:1"));
     return folder;
 }
 
 function file(values: string): string {
     const lines = ['model = "main.xml"', 'property = ["all_delivered"]', 'method = "adaptive"', "epsilon = 0.005"];
-    return [...lines, "", "[set]", `capacity = "${values}"`, ""].join("\n");
+    return [...lines, "", "[set]", `charge = "${values}"`, ""].join("\n");
 }
 
 function lens(window: Window, title: string): Locator {

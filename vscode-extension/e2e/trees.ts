@@ -8,20 +8,25 @@ import type { Window } from "./support/window";
 import { temporaryFolder, write } from "./support/workbench";
 
 const EXAMPLE = path.join(ROOT, "examples/fetch_tree");
-/** Trees of Nav2, which may be in a folder beside the project: a small one, and one with all kinds of its nodes. The
- * tests in Python verify and debug all of them. */
-const NAV2 = ["follow_point.xml", "navigate_to_pose_w_replanning_and_recovery.xml"];
-const NAV2_FOLDERS = ["../../shared", "../shared"].map((shared) =>
-    path.resolve(ROOT, shared, "conformance/trees/nav2"),
-);
+/** The trees of Nav2, which may be in a folder beside the project. */
+const NAV2 = ["../../shared", "../shared"]
+    .map((shared) => path.resolve(ROOT, shared, "conformance/trees/nav2"))
+    .find((folder) => fs.existsSync(folder));
 
-/** Trees without mocks: those of Nav2 if they are at hand, and that of an example. */
+/** Trees without mocks, side by side as in the folder of Nav2: its own if they are at hand, and that of an example. */
 function trees(): string {
     const folder = temporaryFolder("trees");
-    const nav2 = NAV2_FOLDERS.flatMap((source) => NAV2.map((name) => path.join(source, name)));
-    for (const source of [path.join(EXAMPLE, "fetch.xml"), ...nav2.filter((file) => fs.existsSync(file))])
+    const nav2 = NAV2 === undefined ? [] : fs.readdirSync(NAV2).map((name) => path.join(NAV2, name));
+    if (NAV2 === undefined) console.log("The trees of Nav2 are not at hand: only the tree of an example is tested.");
+    for (const source of [path.join(EXAMPLE, "fetch.xml"), ...nav2.filter((file) => file.endsWith(".xml"))])
         fs.copyFileSync(source, path.join(folder, path.basename(source)));
     return folder;
+}
+
+/** Those files that contain a tree, and not only models of nodes. */
+function treesIn(folder: string): string[] {
+    const hasTree = (name: string) => fs.readFileSync(path.join(folder, name), "utf8").includes("<BehaviorTree ");
+    return fs.readdirSync(folder).filter((name) => name.endsWith(".xml") && hasTree(name));
 }
 
 function mocksOf(window: Window, tree: string): string {
@@ -31,15 +36,18 @@ function mocksOf(window: Window, tree: string): string {
 export function loneTrees(stage: Stage): void {
     stage.use();
 
-    stage.test("a tree alone is verified with one click and debugged with F5", trees, async (window) => {
+    stage.test("trees alone are verified with one click each and debugged with F5", trees, async (window) => {
         const { page } = window;
-        for (const tree of fs.readdirSync(window.folder).filter((name) => name.endsWith(".xml"))) {
+        for (const tree of treesIn(window.folder)) {
             await window.closeAll(); // the lenses of the tree before, which are visible until those of this one come
             await window.openFile(tree);
             await window.running();
             const lens = (text: string | RegExp) => page.locator(".codelens-decoration a", { hasText: text }).first();
             await lens(/^Run$/).waitFor();
-            await window.repeat(() => lens(/^Verify$/).click(), lens(/^Verify · /));
+            // A second click would begin again.
+            const begun = lens(/^Verify · /).or(window.statusItem("Verifying"));
+            await window.repeat(() => lens(/^Verify$/).click(), begun);
+            await lens(/^Verify · /).waitFor();
             await window.until(() => Promise.resolve(fs.existsSync(mocksOf(window, tree))));
             await page.keyboard.press("F5");
             await page.locator(".debug-toolbar").waitFor();
@@ -50,7 +58,7 @@ export function loneTrees(stage: Stage): void {
             await page.keyboard.press("Shift+F5");
             await page.locator(".debug-toolbar").waitFor({ state: "hidden" });
         }
-        await window.screenshot("tree-verified");
+        await window.screenshot("trees-verified");
     });
 
     const example = (theme = "Default Light Modern") => {

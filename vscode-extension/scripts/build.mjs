@@ -77,6 +77,6 @@ const sample = path.join(dist, "sample");
 fs.cpSync(path.join(root, "server/as2fm_lsp/templates/delivery_robot"), sample, { recursive: true });
 const mistaken = path.join(sample, "nodes/battery.ascxml");
 const text = fs.readFileSync(mistaken, "utf8");
-const changed = text.replace('location="level" expr="100"', 'location="levle" expr="100"');
+const changed = text.replace('location="level" expr="capacity"', 'location="levle" expr="capacity"');
 if (changed === text) throw new Error("the mistake of the sample finds no place");
 fs.writeFileSync(mistaken, changed);

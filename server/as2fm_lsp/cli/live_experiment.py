@@ -14,6 +14,7 @@ Each line is an object with the whole state:
 | `rows` | a row for each setting: `setting`, and for each property its point, or null if it is not known |
 | `notes` | sentences: what the values mean |
 | `answers` | sentences: which values of a parameter are enough; empty without `--find`, and before the end |
+| `files` | what an editor saves: the texts `csv` and `html`, and `svg`, one text for each plot |
 
 A point has a `key`, which is `data-key` of its mark in the plots, the name of its `property`, its `text`, and its
 `value`: null if it has none, a text if it is infinite.
@@ -31,7 +32,7 @@ from typing import Any
 from as2fm_lsp.cli.output import print_text
 from roaml.experiments.points import ExperimentPoint
 from roaml.experiments.results import ExperimentResult, cell
-from roaml.figures.plot import HeatMap, LinePlot, description, drawing_of, with_guide
+from roaml.figures.plot import HeatMap, LinePlot, description, drawing_of, plot_page, plot_svg, with_guide
 from roaml.figures.svg import MARGIN, svg_scene
 
 INTERVAL_S = 0.2
@@ -67,10 +68,11 @@ class LiveExperiment:
             answers: sentences below the plots.
         """
         plots = result.plots(self._units, is_growing=True)
+        plots = plots if guide is None else with_guide(plots, *guide)
         line = {
             **self._common,
             "done": len(result.points),
-            "plots": [_plot(plot) for plot in (plots if guide is None else with_guide(plots, *guide))],
+            "plots": [_plot(plot) for plot in plots],
             "columns": [*(sweep.name for sweep in result.sweeps), *result.properties],
             "rows": [
                 {"setting": dict(setting), "points": [points.get(name) for name in result.properties]}
@@ -78,6 +80,11 @@ class LiveExperiment:
             ],
             "notes": result.notes(),
             "answers": list(answers),
+            "files": {
+                "csv": result.to_csv(),
+                "html": plot_page(result.page_title, plots, result.to_html_table()),
+                "svg": [plot_svg(plot) for plot in plots],
+            },
         }
         print_text(json.dumps(line, ensure_ascii=True) + "\n")
         sys.stdout.flush()

@@ -169,21 +169,28 @@ class ExperimentPanel {
         });
     }
 
-    /** Save the plot or the table, or the experiment, so that it can be run again. */
+    /** Save what is shown: the plots, or the points as a table. */
     private async save(): Promise<void> {
         const { live } = this;
         if (!live) return;
         const base = live.model.replace(/\.\w+$/, "");
-        const filters = { SVG: ["svg"], CSV: ["csv"], HTML: ["html"], PDF: ["pdf"] };
+        const filters = { SVG: ["svg"], CSV: ["csv"], HTML: ["html"] };
         const target = await vscode.window.showSaveDialog({ defaultUri: vscode.Uri.file(`${base}.svg`), filters });
         if (!target) return;
-        const output = target.fsPath.endsWith(".csv") ? ["--format=csv", "--output"] : ["--plot"];
-        const { command, args } = this.program;
-        const all = [...args, "experiment", ...this.experiment.arguments, ...output, target.fsPath];
-        const ended = await run(command, all);
-        if (ended.status === 0 || ended.status === 1) await vscode.commands.executeCommand("vscode.open", target);
-        else void vscode.window.showErrorMessage(ended.err.trim());
+        const saved = filesOf(live, target);
+        for (const [uri, text] of saved) await vscode.workspace.fs.writeFile(uri, new TextEncoder().encode(text));
+        const [first] = saved;
+        if (first) await vscode.commands.executeCommand("vscode.open", first[0]);
     }
+}
+
+/** The files with their texts. Several plots have numbers behind the name of the file, as on the command line. */
+function filesOf({ files }: Live, target: vscode.Uri): (readonly [uri: vscode.Uri, text: string])[] {
+    if (target.path.endsWith(".csv")) return [[target, files.csv]];
+    if (target.path.endsWith(".html")) return [[target, files.html]];
+    if (files.svg.length === 1) return files.svg.map((text) => [target, text]);
+    const stem = target.path.replace(/\.svg$/, "");
+    return files.svg.map((text, index) => [target.with({ path: `${stem}_${index + 1}.svg` }), text]);
 }
 
 /** Which run shows the property at a point. Only probabilities are about runs that satisfy or contradict a property. */

@@ -36,6 +36,8 @@ export interface Live {
     readonly rows: readonly Row[];
     readonly notes: readonly string[];
     readonly answers: readonly string[];
+    /** What can be saved; `svg` contains one text for each plot. */
+    readonly files: { readonly csv: string; readonly html: string; readonly svg: readonly string[] };
 }
 
 /** The texts of the page, in the language of the user. */
