@@ -23,7 +23,9 @@ from roaml.figures.plot import (
     plot_svg,
 )
 from roaml.figures.scales import ScaleKind, scale_of
+from roaml.figures.text import SMALL
 from roaml.figures.themes import THEMES
+from roaml.record import replace
 
 NUMBERS = st.floats(-1e9, 1e9, allow_nan=False).filter(lambda number: number == 0 or abs(number) > 1e-6)
 
@@ -85,6 +87,19 @@ def test_all_themes_and_formats() -> None:
             assert root.find("{http://www.w3.org/2000/svg}desc") is not None
             assert not re.search(r"var\(|nan|inf", plot_svg(picture, theme).replace("notation", ""))
         assert plot_pdf(picture) == plot_pdf(picture)
+
+
+def test_the_name_of_a_guide_does_not_cover_that_of_the_axis() -> None:
+    for number, is_above in ((0.99, False), (0.5, True)):
+        plot = LinePlot("t", PlotAxis("x"), PlotAxis("probability", limits=(0, 1)), (line((0, 0.2), (1, 0.9)),))
+        drawing = drawing_of(replace(plot, guides=((number, "≥ p"),)))
+        (guide,) = (group for group in drawing.groups if group.role == "guide-line")
+        stroke = next(item for item in guide.items if isinstance(item, Polyline))
+        name = next(item for item in guide.items if isinstance(item, TextItem))
+        assert (name.y < stroke.points[0].y) == is_above
+        texts = [item for group in drawing.groups for item in group.items if isinstance(item, TextItem)]
+        axis = next(item for item in texts if item.text == "probability")
+        assert name.y - axis.y >= SMALL
 
 
 def test_points_lie_inside_the_drawing() -> None:

@@ -239,13 +239,15 @@ def _lines(plot: LinePlot) -> Drawing:
     for value, name in plot.guides:
         if y.shows(value):
             at = placed(x.low, value).y
+            height = LINE_HEIGHT * SMALL
+            is_at_top = at - area.y < height  # above the line, its name would cover that of the axis
             groups.append(
                 Group(
                     "guide-line",
                     Tone.PLAIN,
                     (
                         Polyline((Point(area.x, at), Point(area.right, at)), role="guide"),
-                        TextItem(name, area.x + 6, at - 4, SMALL, "muted"),
+                        TextItem(name, area.x + 6, at + height if is_at_top else at - 4, SMALL, "muted"),
                     ),
                 )
             )
