@@ -20,6 +20,9 @@ function trees(): string {
     if (NAV2 === undefined) console.log("The trees of Nav2 are not at hand: only the tree of an example is tested.");
     for (const source of [path.join(EXAMPLE, "fetch.xml"), ...nav2.filter((file) => file.endsWith(".xml"))])
         fs.copyFileSync(source, path.join(folder, path.basename(source)));
+    // Exploring many states takes minutes here, because the tests compile the kernel without optimization.
+    const settings = { "as2fm.verify.exactIfSmall": false, "as2fm.verify.epsilon": 0.1 };
+    write(path.join(folder, ".vscode/settings.json"), JSON.stringify(settings));
     return folder;
 }
 
