@@ -7,6 +7,7 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -93,15 +94,21 @@ def qvbs() -> list[Row]:
     return found
 
 
-def systems() -> list[Row]:
-    """All properties of the conformance systems, of a real project, and of the examples."""
-    found = []
+def complete_systems() -> Iterator[tuple[str, Path, list[str]]]:
+    """Name, system file and interface folders of the conformance systems, of a real project, and of the examples."""
     for path in conformance.systems():
-        options = ("--ros-path", str(conformance.INTERFACES))
-        found += rows("systems, as asked", conformance.label(path), str(path), *options)
+        yield conformance.label(path), path, [str(conformance.INTERFACES)]
     for path in [REAL / "uc3_mended" / "main.xml", *sorted(EXAMPLES.glob("*/main*.xml"))]:
         if path.is_file():
-            found += rows("systems, as asked", f"{path.parent.name}/{path.name}", str(path))
+            yield f"{path.parent.name}/{path.name}", path, []
+
+
+def systems() -> list[Row]:
+    """All properties of all complete systems."""
+    found = []
+    for name, path, folders in complete_systems():
+        options = [argument for folder in folders for argument in ("--ros-path", folder)]
+        found += rows("systems, as asked", name, str(path), *options)
     return found
 
 
