@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.model.behavior.explore import Behavior, ChartConfiguration
 from roaml.model.behavior.phases import AWAITED_ANSWER, Phase, Subject
-from roaml.model.machine import Handler, ReturnStatus, State, statements
+from roaml.model.machine import Handler, If, ReturnStatus, RosSend, State, statements
 from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
@@ -29,29 +29,46 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 def _dead_waits(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
     waiting = {s.id.value: s for s in behavior.chart.states if s.id is not None and _waits_for_answers(context, s)}
+    in_vain = [_waits_in_vain(context, waiting.get(c.state), c) for c in behavior.configurations]
+    elsewhere = {c.state for c, is_vain in zip(behavior.configurations, in_vain, strict=True) if not is_vain}
     reported: set[Handler] = set()
     for step in behavior.steps:
         target = behavior.configurations[step.target]
         state = waiting.get(target.state)
         if state is None or state.id is None or step.handler in reported or not step.certain:
             continue
-        if behavior.configurations[step.source].state == target.state or _owes(target):
+        if not in_vain[step.target] or _owes(target):
             continue  # another rule reports the answer that the machine owes
-        if any(target.phase(AWAITED_ANSWER[part], name) is not None for part, name in _awaited(context, state)):
-            continue
+        if behavior.configurations[step.source].state == target.state and in_vain[step.source]:
+            continue  # the step that leads to the state is reported
+        if _serves(state) and target.state not in elsewhere:
+            continue  # a state that serves requests waits for an answer only if it is requested on another path
         reported.add(step.handler)
         message = (
             f"the machine waits for ever in the state `{target.state}`: on this path, it has not requested any of the "
             "answers that the state waits for"
         )
-        related = [Related(state.id.span, "this state handles only answers")]
+        what = "this state handles only answers, and requests" if _serves(state) else "this state handles only answers"
+        related = [Related(state.id.span, what)]
         yield RULE.at(step.handler.element.name_span, message, related=related)
 
 
+def _waits_in_vain(context: MachineContext, state: State | None, configuration: ChartConfiguration) -> bool:
+    """Whether `state`, in which only answers end the waiting, is entered without a request for one of them."""
+    return state is not None and not any(
+        configuration.phase(AWAITED_ANSWER[part], name) is not None for part, name in _awaited(context, state)
+    )
+
+
 def _waits_for_answers(context: MachineContext, state: State) -> bool:
-    """Whether only answers end a state, besides halts. A tick that returns RUNNING and stays there does not end it."""
+    """Whether only answers end a state, besides halts. A tick that returns RUNNING and stays there does not end it. In
+    a state that answers requests meanwhile, requests do not end the waiting, but an answer must."""
     handlers = [h for h in state.handlers if h.effective and h.trigger is not ProtocolPart.BT_HALT]
     waiting = [h for h in handlers if not _keeps_running(state, h)]
+    if _serves(state):
+        waiting = [h for h in waiting if h.trigger is not ProtocolPart.REQUEST]
+        if all(_stays(state, h) for h in waiting if h.trigger in AWAITED_ANSWER):
+            return False
     return any(h.trigger in AWAITED_ANSWER for h in waiting) and all(
         handler.trigger in _WAITING and find_handle(context.machine, handler) is not None for handler in waiting
     )
@@ -61,11 +78,34 @@ def _keeps_running(state: State, handler: Handler) -> bool:
     """Whether a handler of ticks stays in its state and returns only RUNNING."""
     if handler.trigger is not ProtocolPart.BT_TICK:
         return False
-    stays = all(
+    inside = [s for target in handler.targets for s in statements(target.body) if isinstance(s, ReturnStatus)]
+    return (
+        _stays(state, handler)
+        and bool(inside)
+        and all(s.status is not None and s.status.value == "RUNNING" for s in inside)
+    )
+
+
+def _serves(state: State) -> bool:
+    """Whether a state only answers some request and stays, as a skill that returns RUNNING while it waits."""
+    return any(
+        handler.effective
+        and handler.trigger is ProtocolPart.REQUEST
+        and _stays(state, handler)
+        and all(
+            isinstance(statement, If) or (isinstance(statement, RosSend) and statement.part is ProtocolPart.RESPONSE)
+            for target in handler.targets
+            for statement in statements(target.body)
+        )
+        for handler in state.handlers
+    )
+
+
+def _stays(state: State, handler: Handler) -> bool:
+    """Whether a handler leads only to its own state."""
+    return all(
         t.state is not None and state.id is not None and t.state.value == state.id.value for t in handler.targets
     )
-    inside = [s for target in handler.targets for s in statements(target.body) if isinstance(s, ReturnStatus)]
-    return stays and bool(inside) and all(s.status is not None and s.status.value == "RUNNING" for s in inside)
 
 
 def _awaited(context: MachineContext, state: State) -> Iterator[tuple[ProtocolPart, str]]:
