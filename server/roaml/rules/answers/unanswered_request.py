@@ -8,10 +8,10 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.model.behavior.explore import Behavior
 from roaml.model.behavior.phases import Duty, DutyKind
-from roaml.model.machine import Handler
+from roaml.model.machine import Handler, State
 from roaml.model.ros import InterfaceType
 from roaml.model.value_types import find_handle
-from roaml.roles import ProtocolPart
+from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.answers import (
     OpenPath,
@@ -39,6 +39,48 @@ def check(context: MachineContext) -> Iterator[Finding]:
             duty = Duty(DutyKind.REQUEST, name)
             if answered_in(context.machine, duty) == {behavior.chart.scope} and is_spelled(context, duty):
                 yield from _missed(context, behavior, duty, handler)
+        yield from _waiting(context, behavior)
+
+
+def _waiting(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
+    """Report a state that handles one of two requests of a client and waits for nothing else, although all other states
+    that handle this request handle both: the client that sends the other request waits for ever."""
+    entered = {configuration.state for configuration in behavior.configurations}
+    requests = {state: _requests(context, state) for state in behavior.chart.states}
+    for state, handled in requests.items():
+        if state.id is None or state.id.value not in entered or len(handled) != 1 or not _handles_only_requests(state):
+            continue
+        (name,) = handled
+        others = [names for other, names in requests.items() if other is not state and name in names]
+        for missing in sorted(frozenset.intersection(*others) - {name}) if len(others) > 1 else ():
+            if _clients(context, name) & _clients(context, missing):
+                message = (
+                    f"a request for `{missing}` that arrives in the state `{state.id.value}` is never answered: the "
+                    f"state handles only `{name}`, and all other states that handle `{name}` handle both; add a "
+                    "`<ros_service_handle_request>`"
+                )
+                yield RULE.at(state.id.span, message, severity=Severity.WARNING)
+
+
+def _requests(context: MachineContext, state: State) -> frozenset[str]:
+    """The services whose requests a state handles in any case."""
+    handlers = (h for h in state.handlers if h.effective and h.trigger is ProtocolPart.REQUEST and h.cond is None)
+    declarations = (find_handle(context.machine, handler) for handler in handlers)
+    return frozenset(d.handle.value for d in declarations if d is not None and d.handle is not None)
+
+
+def _handles_only_requests(state: State) -> bool:
+    return all(h.trigger is ProtocolPart.REQUEST and h.cond is None for h in state.handlers if h.effective)
+
+
+def _clients(context: MachineContext, name: str) -> frozenset[str]:
+    """The paths of the machines that send requests to the service with the handle `name`."""
+    clients: set[str] = set()
+    for automaton in context.automata:
+        use = automaton.outline.use(SymbolKind.SERVICE_SERVER, name)
+        channel = context.system.channel(automaton, use) if context.system is not None and use is not None else None
+        clients |= {endpoint.automaton.path for endpoint in channel.users} if channel is not None else set()
+    return frozenset(clients)
 
 
 def _missed(context: MachineContext, behavior: Behavior, duty: Duty, handler: Handler) -> Iterator[Finding]:
