@@ -39,7 +39,8 @@ def _dead_waits(context: MachineContext, behavior: Behavior) -> Iterator[Finding
             continue
         if not in_vain[step.target] or _owes(target):
             continue  # another rule reports the answer that the machine owes
-        if behavior.configurations[step.source].state == target.state and in_vain[step.source]:
+        is_inside = behavior.configurations[step.source].state == target.state
+        if is_inside and (in_vain[step.source] or not _serves(state)):
             continue  # the step that leads to the state is reported
         if _serves(state) and target.state not in elsewhere:
             continue  # a state that serves requests waits for an answer only if it is requested on another path
