@@ -24,7 +24,7 @@ class Answers:
         states: of Storm's model.
         searched: minimum and maximum; `None` if the search does not answer, for the reason `undecided`.
         uniform: the value under uniform choices, if the search computed it.
-        bounds: of the estimate.
+        bounds: of the estimate; 0 and 1 if there are too many states.
         open: the traces that the end of time left undecided; Storm takes them for satisfied.
     """
 
@@ -67,11 +67,13 @@ def answers(
     """
     verifier = api.verifier(source, [name])
     result = verifier.exhaustive(verifier.checker.compiled_properties[0], api.StateLimits(max_states))
+    undecided = result.outcome.reason if isinstance(result.outcome, api.Undecided) else ""
+    if undecided.startswith("stopped"):
+        return Answers(None, 0, None, None, undecided, api.Bounds(0.0, 1.0), 0)
     (sampled,) = api.verify(source, [name], SAMPLING, only_uniform=True)
     assert sampled.answer is not None, sampled.outcome
-    undecided = result.outcome.reason if isinstance(result.outcome, api.Undecided) else ""
     exact = result.exact
-    storm = None if undecided.startswith("stopped") else storms_answer(_model(source, name), name)
+    storm = storms_answer(_model(source, name), name)
     return Answers(
         None if storm is None else (storm.least, storm.greatest),
         0 if storm is None else storm.states,
