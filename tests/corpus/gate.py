@@ -38,7 +38,8 @@ import conformance
 import prefork
 from both_kernels import difference
 from corpus.generated import generate
-from corpus.parts import compose
+from corpus.parts import PARTS, compose
+from corpus.robots import Make
 from roaml import api
 from roaml.durations import ANY_TIME, AT_ONCE, ReactionTime
 from roaml.jani.reaction import reacting
@@ -56,8 +57,8 @@ TRUE_MISTAKES = (
     "PeopleDetectorFilterComponent.ascxml:51",
 )
 """The mistakes in `uc3` that its authors made; an answer is missing where the request is lost."""
-COMPOSED = 6
-"""The number of systems of independent parts."""
+COMPOSED = 40
+"""The number of systems of several independent parts."""
 TOLERANCE = 1e-6
 MAX_SECONDS = 1800
 """The time in s after which a command counts as one that does not end."""
@@ -194,6 +195,7 @@ def systems(folder: Path, sizes: Mapping[int, int]) -> Iterator[System]:
     for main in sorted((ROOT / "examples").glob("*/main*.xml")):
         yield System(f"{main.parent.name}/{main.name}", main)
     yield from generated(folder, sizes)
+    yield from alone(folder, PARTS)
     yield from composed(folder, range(COMPOSED))
     for main in conformance.systems():
         yield System(conformance.label(main), main, is_large=True)
@@ -207,6 +209,14 @@ def generated(folder: Path, sizes: Mapping[int, int]) -> Iterator[System]:
         made = generate(seed, guides)
         main = made.write(folder / f"generated_{seed}")
         yield System(f"generated {seed} with {guides} guides", main, made.values, is_large=guides > 5)
+
+
+def alone(folder: Path, parts: Iterable[Make]) -> Iterator[System]:
+    """A system of each part alone, which is small enough for Storm."""
+    for make in parts:
+        name = make.__name__.strip("_")
+        made = compose(1, make)
+        yield System(f"part {name}", made.write(folder / f"part_{name}"), made.values)
 
 
 def composed(folder: Path, seeds: Iterable[int]) -> Iterator[System]:

@@ -9,35 +9,18 @@ Each part announces one number at its end, which follows from its construction. 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from random import Random
-from typing import NamedTuple
 
 from corpus.generated import Generated, _and, _equals, _eventually, _property
+from corpus.robots import MACHINES, TREES, Make, SystemPart, announced, announcer, machine
 
 
-class SystemPart(NamedTuple):
-    """A part of a system.
-
-    Attributes:
-        machines: file name -> the machine.
-        number: the number that the part publishes on its topic.
-        structs: the struct declarations in XML.
-        tree, plugins: the behavior tree, and the machines of its leaves.
-    """
-
-    machines: dict[str, str]
-    number: int
-    structs: str = ""
-    tree: str = ""
-    plugins: tuple[tuple[str, str], ...] = ()
-
-
-def compose(seed: int) -> Generated:
-    """A system of two to five parts."""
+def compose(seed: int, only: Make | None = None) -> Generated:
+    """A system of two to five parts, or of one part."""
     random = Random(seed)
-    chosen = random.sample(PARTS, random.randint(2, 5))
-    older = random.random() < OLDER and _tree not in chosen
+    chosen = [only] if only else random.sample(PARTS, random.randint(2, 5))
+    chosen = [make for make in chosen if make not in ALL_TREES] + [make for make in chosen if make in ALL_TREES][:1]
+    older = random.random() < OLDER and chosen[-1] not in ALL_TREES
     parts = [make(random, number) for number, make in enumerate(chosen)]
     files: dict[str, str] = {}
     for part in parts:
@@ -51,6 +34,7 @@ def compose(seed: int) -> Generated:
     inputs += [("data_declarations", "xml", "types.xml")] if structs else []
     inputs += [("properties", "jani", "properties.jani")]
     files |= plugins
+    files |= dict(file for part in parts for file in part.included)
     files |= {"types.xml": f"<types>{structs}</types>"} if structs else {}
     files |= {"tree.xml": tree} if tree else {}
     names = [f"p_{make.__name__.strip('_')}_{number}" for number, make in enumerate(chosen)]
@@ -101,28 +85,12 @@ def _older(files: dict[str, str]) -> dict[str, str]:
     return result
 
 
-def _machine(name: str, declared: str, states: str, initial: str = "start") -> str:
-    return f"""<ascxml name="{name}" version="1.0" initial="{initial}">
-{declared}
-{states}
-</ascxml>
-"""
-
-
-def _announced(expr: str) -> str:
-    return f'<ros_topic_publish name="end"><field name="data" expr="{expr}" /></ros_topic_publish>'
-
-
-def _end(number: int) -> str:
-    return f'<ros_topic_publisher name="end" topic="/end_{number}" type="std_msgs/Int32" />'
-
-
 def _service(random: Random, number: int) -> SystemPart:
     """A client that adds the numbers of a list by a service, in an order that another array states."""
     values = [random.randint(-9, 9) for _ in range(random.randint(2, 5))]
     order = random.sample(range(len(values)), len(values))
     service = f"/calc_{number}/add"
-    client = _machine(
+    client = machine(
         f"Client{number}",
         f"""  <datamodel>
     <data id="values" type="int32[{len(values)}]" expr="{values}" />
@@ -145,11 +113,11 @@ def _service(random: Random, number: int) -> SystemPart:
   </state>
   <state id="next">
     <transition cond="at &lt; {len(values)}" target="start" />
-    <transition target="done">{_announced("sum")}</transition>
+    <transition target="done">{announced("sum")}</transition>
   </state>
   <state id="done" />""",
     )
-    server = _machine(
+    server = machine(
         f"Adder{number}",
         f"""  <datamodel>
     <data id="a" type="int64" expr="0" /><data id="b" type="int64" expr="0" />
@@ -176,13 +144,13 @@ def _action(random: Random, number: int) -> SystemPart:
     while len(sequence) <= order:
         sequence.append(sequence[-1] + sequence[-2])
     declaration = f'action_name="/fibonacci_{number}" type="example_interfaces/Fibonacci" />'
-    client = _machine(
+    client = machine(
         f"Asker{number}",
         f"""  <datamodel>
     <data id="result" type="int32[]" expr="[]" /><data id="heard" type="int32" expr="0" />
   </datamodel>
   <ros_action_client name="act" {declaration}
-  {_end(number)}""",
+  {announcer(number)}""",
         f"""  <state id="start">
     <onentry>
       <ros_action_send_goal name="act"><field name="order" expr="{order}" /></ros_action_send_goal>
@@ -195,7 +163,7 @@ def _action(random: Random, number: int) -> SystemPart:
     </ros_action_handle_feedback>
     <ros_action_handle_success_result name="act" target="done">
       <assign location="result" expr="_wrapped_result.result.sequence" />
-      {_announced(f"result[{order}]")}
+      {announced(f"result[{order}]")}
     </ros_action_handle_success_result>
   </state>
   <state id="done" />""",
@@ -206,7 +174,7 @@ def _action(random: Random, number: int) -> SystemPart:
         f'<assign location="busy[{thread}]" expr="true" /><assign location="thread" expr="{thread}" />'
         for thread in range(threads)
     )
-    server = _machine(
+    server = machine(
         f"Actor{number}",
         f"""  <ros_action_server name="act" {declaration}
   <ros_action_thread name="act" n_threads="{threads}" initial="idle">
@@ -279,7 +247,7 @@ def _structs(random: Random, number: int) -> SystemPart:
     </struct>
     <struct id="{point}"><member id="x" type="int32" /><member id="frame" type="string" /></struct>"""
     points = ", ".join(f"{{'x': {x + n}, 'frame': '{frame}'}}" for n in range(3))
-    sender = _machine(
+    sender = machine(
         f"Planner{number}",
         f"""  <datamodel>
     <data id="path" type="{path}" expr="{{'points': [{points}], 'name': 'home'}}" />
@@ -294,17 +262,17 @@ def _structs(random: Random, number: int) -> SystemPart:
   <state id="done" />""",
     )
     good = f"got.points[0].x == {x} &amp;&amp; got.points[1].frame == '{frame}' &amp;&amp; got.name != 'away'"
-    receiver = _machine(
+    receiver = machine(
         f"Driver{number}",
         f"""  <datamodel>
     <data id="got" type="{path}" expr="{{'points': [{points}], 'name': 'away'}}" />
   </datamodel>
-  {_end(number)}""",
+  {announcer(number)}""",
         f"""  <state id="start">
     <transition event="planned_{number}" target="look"><assign location="got" expr="_event.data.path" /></transition>
   </state>
   <state id="look">
-    <transition cond="{good}" target="done">{_announced("got.points[1].x")}</transition>
+    <transition cond="{good}" target="done">{announced("got.points[1].x")}</transition>
     <transition cond="!({good})" target="done" />
   </state>
   <state id="done" />""",
@@ -322,7 +290,7 @@ def _words(random: Random, number: int) -> SystemPart:
         for n, word in enumerate(words)
     )
     either = " || ".join(f"_msg.data == '{_text(word)}'" for word in words)
-    speaker = _machine(
+    speaker = machine(
         f"Speaker{number}",
         f"""  <ros_topic_publisher name="say" topic="/say_{number}" type="std_msgs/String" />
   <ros_time_rate name="wait" rate_hz="1" />""",
@@ -333,18 +301,18 @@ def _words(random: Random, number: int) -> SystemPart:
   </state>
   <state id="done" />""",
     )
-    listener = _machine(
+    listener = machine(
         f"Listener{number}",
         f"""  <datamodel>
     <data id="word" type="string" expr="''" /><data id="code" type="int32" expr="0" />
   </datamodel>
   <ros_topic_subscriber name="say" topic="/say_{number}" type="std_msgs/String" />
-  {_end(number)}""",
+  {announcer(number)}""",
         f"""  <state id="start">
     <ros_topic_callback name="say" cond="{either}" target="done">
       <assign location="word" expr="_msg.data" />
       {chain}<else /><assign location="code" expr="-1" /></if>
-      {_announced("code")}
+      {announced("code")}
     </ros_topic_callback>
   </state>
   <state id="done" />""",
@@ -360,7 +328,7 @@ def _text(word: str) -> str:
 def _timers(random: Random, number: int) -> SystemPart:
     """A machine with several timers, one of which stops it."""
     fast, ticks = random.choice((2, 4, 5, 10)), random.randint(2, 9)
-    machine = _machine(
+    clock = machine(
         f"Clock{number}",
         f"""  <datamodel>
     <data id="fast" type="uint8" expr="0" /><data id="slow" type="float64" expr="0.0" />
@@ -368,7 +336,7 @@ def _timers(random: Random, number: int) -> SystemPart:
   </datamodel>
   <ros_time_rate name="fast" rate_hz="{fast}" />
   <ros_time_rate name="slow" rate_hz="0.5" />
-  {_end(number)}""",
+  {announcer(number)}""",
         f"""  <state id="start">
     <onentry><assign location="slow" expr="Math.pow(2.0, 3.0) / 2" /></onentry>
     <onexit><assign location="stopped" expr="fast &gt;= {ticks}" /></onexit>
@@ -379,12 +347,12 @@ def _timers(random: Random, number: int) -> SystemPart:
     <ros_rate_callback name="slow" target="start"><assign location="slow" expr="slow * 0.5" /></ros_rate_callback>
   </state>
   <state id="done">
-    <onentry>{_announced("fast")}</onentry>
+    <onentry>{announced("fast")}</onentry>
     <ros_rate_callback name="fast" target="done" />
     <ros_rate_callback name="slow" target="done" />
   </state>""",
     )
-    return SystemPart({f"clock_{number}.ascxml": machine}, ticks)
+    return SystemPart({f"clock_{number}.ascxml": clock}, ticks)
 
 
 def _tree(random: Random, number: int) -> SystemPart:
@@ -393,19 +361,19 @@ def _tree(random: Random, number: int) -> SystemPart:
     node = f'<Action ID="Work{number}" name="work" needed="{needed}" />'
     for _ in range(random.randint(1, 4)):
         node = random.choice(WRAPPERS).format(node)
-    leaf = _machine(
+    leaf = machine(
         f"Work{number}",
         f"""  <bt_declare_port_in key="needed" type="int8" />
   <datamodel>
     <data id="ticks" type="int32" expr="0" />
     <data id="needed" type="int8"><expr><bt_get_input key="needed" /></expr></data>
   </datamodel>
-  {_end(number)}""",
+  {announcer(number)}""",
         f"""  <state id="start">
     <bt_tick target="start">
       <assign location="ticks" expr="ticks + 1" />
       <if cond="ticks &lt; needed"><bt_return_status status="RUNNING" />
-      <else />{_announced("ticks")}<bt_return_status status="SUCCESS" />
+      <else />{announced("ticks")}<bt_return_status status="SUCCESS" />
       </if>
     </bt_tick>
     <bt_halt target="start"><bt_return_halted /></bt_halt>
@@ -431,6 +399,7 @@ WRAPPERS = (
     "<WhileDoElse><AlwaysSuccess />{}<AlwaysFailure /></WhileDoElse>",
 )
 
-PARTS: tuple[Callable[[Random, int], SystemPart], ...] = (_service, _action, _structs, _words, _timers, _tree)
+ALL_TREES = (_tree, *TREES)
+PARTS: tuple[Make, ...] = (_service, _action, _structs, _words, _timers, *MACHINES, *ALL_TREES)
 OLDER = 0.2
 """The share of the systems without a tree that are written in the older dialect."""

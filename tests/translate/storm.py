@@ -4,17 +4,13 @@
 from __future__ import annotations
 
 import json
+import os
 import resource
-import subprocess
-import sys
-import tempfile
-from pathlib import Path
 from typing import NamedTuple
 
 import stormpy
 from fixed_point import NotExactError, in_fixed_point
 
-from roaml import api
 from roaml.jani.model import Model
 from roaml.jani.writer import write
 
@@ -56,19 +52,40 @@ def exact_within(model: Model, name: str, limits: StormLimits) -> Exact:
     Raises:
         TooLargeError, RefusedError: there is no answer.
     """
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "model.jani"
-        file.write_text("".join(write(model)), encoding="utf-8")
-        ended = subprocess.run(
-            [sys.executable, __file__, file, name], capture_output=True, check=False, text=True, preexec_fn=limits.apply
-        )
-    if ended.returncode == REFUSED:
-        raise RefusedError(ended.stderr.strip())
-    if ended.returncode < 0 or ended.returncode == MEMORY_USED_UP:
+    reading, writing = os.pipe()
+    process = os.fork()  # a new interpreter would import Storm first, which takes longer than most answers
+    if process == 0:
+        os.close(reading)
+        limits.apply()
+        status, text = _answered(model, name)
+        os.write(writing, text.encode()[-4096:])
+        os._exit(status)
+    os.close(writing)
+    with os.fdopen(reading, encoding="utf-8", errors="replace") as answer:
+        text = answer.read()
+    status = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
+    if status == REFUSED:
+        raise RefusedError(text)
+    if status < 0 or status == MEMORY_USED_UP:
         raise TooLargeError
-    if ended.returncode:
-        raise AssertionError(ended.stderr)
-    return Exact(*json.loads(ended.stdout.splitlines()[-1]))
+    if status:
+        raise AssertionError(text)
+    return Exact(*json.loads(text))
+
+
+def _answered(model: Model, name: str) -> tuple[int, str]:
+    """The exit status of a process that asks Storm, and what it writes."""
+    try:
+        return 0, json.dumps(exact(model, name))
+    except MemoryError:
+        return MEMORY_USED_UP, ""
+    except NotExactError as error:
+        return REFUSED, f"a real variable: {error}"
+    except RuntimeError as error:
+        reason = str(error).strip() or type(error).__name__
+        return (MEMORY_USED_UP, "") if "bad_alloc" in reason else (REFUSED, reason.splitlines()[-1])
+    except BaseException as error:  # the fork must not return
+        return 1, f"{type(error).__name__}: {error}"
 
 
 def read(model: Model) -> stormpy.JaniModel:
@@ -99,25 +116,3 @@ def _checked(model: Model, name: str, operator: str) -> tuple[float, int]:
     built = stormpy.build_model(parsed, properties)
     result = stormpy.model_checking(built, properties[0], only_initial_states=True)
     return result.get_value(built.initial_states[0]), built.nr_states
-
-
-def main(file: str, name: str) -> int:
-    """Print Storm's answer; the exit status states why there is none."""
-    try:
-        print(json.dumps(exact(api.read_jani(file)[0], name)))
-    except MemoryError:
-        return MEMORY_USED_UP
-    except NotExactError as error:
-        return _refused(f"a real variable: {error}")
-    except RuntimeError as error:
-        return MEMORY_USED_UP if "bad_alloc" in str(error) else _refused(str(error))
-    return 0
-
-
-def _refused(reason: str) -> int:
-    print(reason.splitlines()[-1], file=sys.stderr)
-    return REFUSED
-
-
-if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:]))
