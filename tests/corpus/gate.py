@@ -4,8 +4,9 @@ draw, and the start of the debugger. The results are compared with each other, w
 Python, and with the values that are known. Internal errors, refusals of systems without errors, and differences are
 printed, and the exit status is then 1.
 
-The systems are the examples, generated ones of several sizes, and those beside the project, if they are present: the
-conformance models and the museum guide; with --networks also random networks in JANI, which have only the step `storm`.
+The systems are the examples, generated ones of several sizes, trees without a system, and those beside the project, if
+they are present: the conformance models and the museum guide; with --networks also random networks in JANI, which have
+only the steps `kernels` and `storm`.
 
 The step `storm` compares the minimum and the maximum of each property for the reaction times `any`, `instant`, and one
 and two steps of the clock. What is too large for it, or is refused by Storm, is printed and counted. All conformance
@@ -37,6 +38,7 @@ from dap_client import Client
 import conformance
 import prefork
 from both_kernels import difference
+from corpus.forest import grow
 from corpus.generated import generate
 from corpus.parts import PARTS, compose
 from corpus.robots import Make
@@ -59,6 +61,10 @@ TRUE_MISTAKES = (
 """The mistakes in `uc3` that its authors made; an answer is missing where the request is lost."""
 COMPOSED = 40
 """The number of systems of several independent parts."""
+TREES = 100
+"""The number of trees without a system."""
+OF_TREES = ("exhaustive", "default", "fixed")
+"""The methods of trees: the exact value, if there is one, is compared with the estimates."""
 TOLERANCE = 1e-6
 MAX_SECONDS = 1800
 """The time in s after which a command counts as one that does not end."""
@@ -151,19 +157,28 @@ class System:
         return [ANY_TIME, ReactionTime(2 * step), ReactionTime(step), AT_ONCE]
 
 
+class LoneTree(System):
+    """A tree without a system, with mocks in the file beside it (`forest`)."""
+
+
 class RandomNetwork(System):
     """A random network with a clock (`clocked_networks`)."""
 
-    def __init__(self, number: int, model: api.Model) -> None:
+    def __init__(self, number: int, model: api.Model, *, is_local: bool) -> None:
         super().__init__(f"network {number}", Path())
-        self.model = model
+        self.model, self.is_local = model, is_local
 
     def subject(self, time: ReactionTime) -> api.Model:
         return reacting(self.model, time)
 
+    @cached_property
+    def times(self) -> list[ReactionTime]:
+        """Durations only if guards read only variables of their automaton, as in systems."""
+        return super().times if self.is_local else [ANY_TIME, AT_ONCE]
+
 
 def networks(count: int) -> Iterator[RandomNetwork]:
-    """The same networks each time, in which guards of an automaton read only its own variables, as in systems."""
+    """The same networks each time."""
     if not count:
         return
     from clocked_networks import clocked  # noqa: PLC0415 - imports hypothesis
@@ -173,17 +188,16 @@ def networks(count: int) -> Iterator[RandomNetwork]:
     models: list[api.Model] = []
 
     @seed(1)
-    @settings(max_examples=3 * count, database=None, deadline=None, phases=[Phase.generate],
+    @settings(max_examples=count, database=None, deadline=None, phases=[Phase.generate],
               suppress_health_check=list(HealthCheck))  # fmt: skip
     @given(clocked())
     def collect(model: api.Model) -> None:
-        if is_local(model):
-            # Storm refuses vectors in which no automaton takes part.
-            vectors = tuple(sync for sync in model.system.syncs if sync.participants)
-            models.append(replace(model, system=replace(model.system, syncs=vectors)))
+        # Storm refuses vectors in which no automaton takes part.
+        vectors = tuple(sync for sync in model.system.syncs if sync.participants)
+        models.append(replace(model, system=replace(model.system, syncs=vectors)))
 
     collect()
-    yield from (RandomNetwork(number, model) for number, model in enumerate(models[:count]))
+    yield from (RandomNetwork(number, model, is_local=is_local(model)) for number, model in enumerate(models))
 
 
 def systems(folder: Path, sizes: Mapping[int, int]) -> Iterator[System]:
@@ -197,6 +211,7 @@ def systems(folder: Path, sizes: Mapping[int, int]) -> Iterator[System]:
     yield from generated(folder, sizes)
     yield from alone(folder, PARTS)
     yield from composed(folder, range(COMPOSED))
+    yield from lone_trees(folder, range(TREES))
     for main in conformance.systems():
         yield System(conformance.label(main), main, is_large=True)
     if REAL.is_dir():
@@ -217,6 +232,11 @@ def alone(folder: Path, parts: Iterable[Make]) -> Iterator[System]:
         name = make.__name__.strip("_")
         made = compose(1, make)
         yield System(f"part {name}", made.write(folder / f"part_{name}"), made.values)
+
+
+def lone_trees(folder: Path, seeds: Iterable[int]) -> Iterator[LoneTree]:
+    for seed in seeds:
+        yield LoneTree(f"tree {seed}", grow(seed).write(folder / f"tree_{seed}"), is_large=True)
 
 
 def composed(folder: Path, seeds: Iterable[int]) -> Iterator[System]:
@@ -268,7 +288,7 @@ def verify(system: System, names: tuple[str, ...] = tuple(METHODS)) -> Iterator[
     known: dict[str, list[tuple[str, float, float]]] = {
         name: [("by construction", value, value)] for name, value in system.values.items()
     }
-    for name in names:
+    for name in OF_TREES if isinstance(system, LoneTree) else names:
         arguments = [*METHODS[name], *system.limits(name)]
         out, problem = run("verify", str(system.main), *system.paths, "--format", "json", *arguments, accepted=(0, 1))
         if problem:
@@ -309,7 +329,7 @@ def simulate(system: System) -> Iterator[str]:
 
 
 def draw(system: System) -> Iterator[str]:
-    for form in ("--graph", "--machines"):
+    for form in ("--tree",) if isinstance(system, LoneTree) else ("--graph", "--machines"):
         out, problem = run("draw", str(system.main), form, "-o", "-")
         if problem or "<svg" not in out:
             yield f"{form}: {problem or 'no picture'}"
@@ -409,11 +429,14 @@ JUDGE = [JudgeLimits()]
 
 
 def problems(system: System, steps: Mapping[str, Step] = STEPS) -> Iterator[str]:
-    """What fails for a system. A system with mistakes is only checked and drawn; a network has only the last step."""
+    """What fails for a system. A system with mistakes is only checked and drawn; a network has only the last steps,
+    and a tree is not a system that is translated."""
     for name, step in steps.items():
         if system.mistakes and name not in ("check", "draw"):
             continue
         if isinstance(system, RandomNetwork) and name not in ("kernels", "storm"):
+            continue
+        if isinstance(system, LoneTree) and name in ("translate", "kernels", "storm"):
             continue
         begun = time.monotonic()
         try:

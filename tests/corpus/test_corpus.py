@@ -7,8 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from corpus.gate import STEPS, composed, generated, problems
+from corpus.forest import grow
+from corpus.gate import STEPS, composed, generated, lone_trees, problems
 from corpus.parts import PARTS, compose
+from roaml import api
 
 
 def test_a_small_system_goes_through_every_step(tmp_path: Path) -> None:
@@ -27,6 +29,19 @@ def test_services_actions_structs_and_trees(tmp_path: Path, seed: int) -> None:
     (system,) = composed(tmp_path, [seed])
     steps = {name: STEPS[name] for name in ("check", "translate", "simulate", "draw", "debug")}
     assert list(problems(system, steps)) == []
+
+
+def test_a_tree_without_a_system(tmp_path: Path) -> None:
+    (tree,) = lone_trees(tmp_path, [3])
+    assert list(problems(tree)) == []
+
+
+@pytest.mark.parametrize("seeds", [range(start, start + 25) for start in range(0, 100, 25)], ids=str)
+def test_public_forms_of_trees_have_no_errors(tmp_path: Path, seeds: range) -> None:
+    for seed in seeds:
+        main = grow(seed).write(tmp_path / str(seed))
+        errors = [d for d in api.check([str(main.parent)]).diagnostics if d.severity is api.Severity.ERROR]
+        assert errors == [], seed
 
 
 def test_composed_systems_contain_what_real_ones_contain() -> None:
