@@ -17,7 +17,7 @@ from roaml.mocks.mock import Mock
 from roaml.mocks.network import MockedTree, MockOptions, mocked
 from roaml.model.tree import build_tree_file
 from roaml.record import replace
-from roaml.scxml.names import sent_by
+from roaml.scxml.names import MOCK_FAILURES, MOCK_SUCCESSES, sent_by
 from roaml.smc.model import ModelChecker
 from roaml.smc.record import Recorder, Recording
 from roaml.to_jani import translate
@@ -82,7 +82,7 @@ def observe(tree: MockedTree, seed: int) -> Observed:
     seen = Observed([], [], {name: [] for name in leaves.values()}, False)
     pending = False
     for step in recorder.walk(Recording(0)):
-        if any(change.variable.name in ("successes", "failures") for change in step.changes):
+        if any(change.variable.name in (MOCK_SUCCESSES, MOCK_FAILURES) for change in step.changes):
             drawn |= {
                 int(part.automaton.split("_")[2]) for part in step.parts if part.automaton.startswith("BT_plugin_")
             }
