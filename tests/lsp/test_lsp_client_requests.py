@@ -79,7 +79,7 @@ async def test_pictures(tmp_path: Path) -> None:
         "details": [],
         "parent": "",
         "initial": True,
-        "place": {"uri": uri, "range": {"start": {"line": 12, "character": 4}, "end": {"line": 22, "character": 12}}},
+        "place": {"uri": uri, "range": {"start": {"line": 14, "character": 4}, "end": {"line": 24, "character": 12}}},
         "actions": ["addState", "addTransition", "rename", "deleteTransition", "delete"],
         "use": None,
         "useActions": [],
@@ -90,7 +90,7 @@ async def test_pictures(tmp_path: Path) -> None:
         "kind": "ros",
         "labels": ["/dock", "/ docked := _msg.data"],
         "probabilistic": False,
-        "place": {"uri": uri, "range": {"start": {"line": 19, "character": 8}, "end": {"line": 21, "character": 29}}},
+        "place": {"uri": uri, "range": {"start": {"line": 21, "character": 8}, "end": {"line": 23, "character": 29}}},
         "actions": ["delete"],
     }
     assert [drawing["scene"].count("data-node=") for drawing in machine["drawings"]] == [2, 2]

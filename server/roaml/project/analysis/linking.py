@@ -15,6 +15,7 @@ from roaml.model.expand import TreeFileOutline, expand
 from roaml.model.gaps import Gap
 from roaml.model.globals import GlobalVariable, event_parameters, global_variables
 from roaml.model.kinds import FileKind
+from roaml.model.machine import Machine
 from roaml.model.outline import MachineOutline
 from roaml.model.property_links import LinkedFile, link
 from roaml.model.property_ports import observed_names
@@ -70,7 +71,7 @@ class Linking:
         self._machines = machines
         self._gaps = gaps
         self._linked: dict[str, System | None] = {}
-        self._typed: dict[tuple[str, str | None], TypedMachine] = {}
+        self._typed: dict[tuple[str, str | None], tuple[Machine | None, TypedMachine]] = {}
 
     def system(self, path: str) -> System | None:
         """The linked system of a system file; `None` if the file cannot be read, or is not a system file."""
@@ -202,11 +203,15 @@ class Linking:
     def typed_in(self, path: str, system: str | None) -> TypedMachine:
         """The machine in the file `path` with its types, as a part of `system`. If `system` is `None`, the machine is
         not in a system."""
-        if (path, system) not in self._typed:
+        # The result refers to parts of the machine, which may be read again in the same moment.
+        machine = self._sources.machine(path)
+        known = self._typed.get((path, system))
+        if known is None or known[0] is not machine:
             linked = self.system(system) if system else None
             structs, events = self._machines.structs(system), linked.event_data if linked else {}
-            self._typed[path, system] = self._machines.typed(path, system, structs, events)
-        return self._typed[path, system]
+            known = machine, self._machines.typed(path, system, structs, events)
+            self._typed[path, system] = known
+        return known[1]
 
     def environment(self, system: str | None) -> Environment:
         """The types that the machines of a system can use. A machine without a system can use only ROS types."""
