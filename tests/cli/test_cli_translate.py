@@ -291,9 +291,9 @@ def test_map(command: Command, robot: Path) -> None:
     for place in everything:
         lines = (robot / place["file"]).read_text().splitlines()
         assert lines[place["line"] - 1][place["column"] - 1 :], place
-    level = next(a for a in places["automata"] if a["name"] == "Battery")["variables"][0]
+    battery = next(a for a in places["automata"] if a["name"] == "Battery")
+    level = next(v for v in battery["variables"] if v["name"] == "level")
     text = (robot / level["file"]).read_text().splitlines()[level["line"] - 1][level["column"] - 1 :]
-    assert level["name"] == "level"
     assert text.startswith('<data id="level"')
 
 
