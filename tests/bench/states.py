@@ -51,7 +51,7 @@ def spent(simulator: Simulator, count: int) -> tuple[float, int]:
     before = time.process_time()
     steps = done = 0
     while done < count and time.process_time() - before < LIMIT_S:
-        task = Task(Payload("", b""), 0, done, min(BATCH_TRACES, count - done), MAX_STEPS)
+        task = Task(Payload(None), 0, done, min(BATCH_TRACES, count - done), MAX_STEPS)
         outcome = run_on(simulator, task)
         steps += sum(outcome.questions[0].steps)
         done += task.size

@@ -23,7 +23,7 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.program import Compiled, merged
 
 FOLDER = Path(roaml.smc.__file__).parent
-NO_PAYLOAD = Payload("", b"")
+NO_PAYLOAD = Payload(None)  # type: ignore[arg-type]
 
 
 def results(outcome: BatchOutcome) -> str:
