@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 
-import conformance
 from as2fm_lsp.cli.main import run
 from roaml import api
 from roaml.api.trees import LoadedTree, load_tree
@@ -24,7 +23,6 @@ from roaml.verification.tree_outcome import Measured, TreeOutcome, measure
 
 HEAD = '<root BTCPP_format="4" main_tree_to_execute="Main">'
 FETCH = Path(__file__).resolve().parents[2] / "examples/fetch_tree/fetch.xml"
-NAV2 = conformance.ROOT / "trees/nav2"
 FETCH_MOCKS = {
     "ComputePathToPose": (0.98, "200 ms"),
     "FollowPath": (0.9, "2 s"),
@@ -132,19 +130,6 @@ def test_an_exception_of_the_library(tmp_path: Path) -> None:
 def test_too_many_states_have_no_values() -> None:
     model = loaded(str(FETCH), *fetch_mocks())
     assert measure_exactly(model.mocked, model.target, replace(SHARED_LIMITS, states=50)) is None
-
-
-@pytest.mark.parametrize("name", ["follow_point", "navigate_w_replanning_time", "odometry_calibration"])
-def test_reaction_times_do_not_change_success(name: str) -> None:
-    path = str(NAV2 / f"{name}.xml")
-    mocks = (read_mock("*: 0.9 in 1 s"),)
-    at_once = load_tree(path, MockOptions(mocks, counts=True))
-    any_time = load_tree(path, MockOptions(mocks, counts=True, reaction_time=ANY_TIME))
-    (found,) = api.verify(any_time.target, ["succeeds"], exact_if_small=True)
-    assert found.exact is not None
-    outcome = exact(at_once)
-    assert found.exact.least == pytest.approx(outcome.success.value, abs=1e-9)
-    assert found.exact.greatest == pytest.approx(outcome.success.value, abs=1e-9)
 
 
 def test_nodes_react_at_once_unless_a_setting_says_otherwise() -> None:
