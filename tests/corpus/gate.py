@@ -294,7 +294,10 @@ def verify(system: System, names: tuple[str, ...] = tuple(METHODS)) -> Iterator[
         if problem:
             yield f"{name}: {problem}"
             continue
-        for row in json.loads(out)["results"]:
+        rows = json.loads(out)["results"]
+        if not rows:
+            yield f"{name}: no property has a result"
+        for row in rows:
             yield from (f"{name}: {problem}" for problem in _contradictions(row, name, known))
 
 

@@ -5,7 +5,8 @@
 Each mutant is a copy of the checkout in which one entry of a table has another value: a declaration of a node, a
 statement of a program, or a name or number in a table in Python. The tables that follow from the declarations are
 written again, so a test that only compares these notices nothing. A mutant that all tests accept is listed, and the
-exit status is then 1. The tests of the copy do not find the files beside the checkout (`../shared`).
+exit status is then 1. The tests of the copy do not find the files beside the checkout (`../shared`). All tests must
+pass without a mutant; otherwise nothing is judged, and the exit status is 2.
 """
 
 from __future__ import annotations
@@ -60,8 +61,8 @@ _DECLARED = (
     (re.compile(r'(?<=min=")-?[0-9]+(?=")'), "+1"),
     (re.compile(r'(?<=above=")-?[0-9]+(?=")'), "+1"),
     (re.compile(r'(?<=children=")[0-9]+'), "+1"),
-    (re.compile(r"(?<=<)in(?= name)"), "out"),
-    (re.compile(r"(?<=<)out(?= name)"), "in"),
+    (re.compile(r"(?<=<)in(?= name[^>]*/>)"), "out"),
+    (re.compile(r"(?<=<)out(?= name[^>]*/>)"), "in"),
 )
 """Part of a declaration -> what replaces it. `+1` is the number plus one."""
 
@@ -139,24 +140,29 @@ def copied(folder: Path) -> None:
             shutil.copy2(ROOT / name, folder / name)
 
 
+def fails(folder: Path, *command: str) -> bool:
+    """Whether a command of Python fails in a copy of the checkout."""
+    environment = {**os.environ, "PYTHONPATH": str(folder / "server"), "PYTHONDONTWRITEBYTECODE": "1"}
+    arguments = [sys.executable, *command]
+    return subprocess.run(arguments, cwd=folder, env=environment, capture_output=True, check=False).returncode != 0
+
+
+def failing(folder: Path) -> str:
+    """The first of the tests that fail in a copy; "" if none does."""
+    return next((tests[0] for tests in TESTS if fails(folder, "-m", "pytest", "-x", "-n", "0", *tests)), "")
+
+
 def killed_by(folder: Path, mutant: Mutant) -> str:
     """The tests that fail with a mutant; "" if none does."""
     path = folder / mutant.path
     before = path.read_text("utf-8")
-    environment = {**os.environ, "PYTHONPATH": str(folder / "server"), "PYTHONDONTWRITEBYTECODE": "1"}
-
-    def fails(*command: str) -> bool:
-        arguments = [sys.executable, *command]
-        return subprocess.run(arguments, cwd=folder, env=environment, capture_output=True, check=False).returncode != 0
 
     def write(text: str) -> bool:
         path.write_text(text, "utf-8")
-        return path.suffix == ".xml" and fails("docs/build.py")
+        return path.suffix == ".xml" and fails(folder, "docs/build.py")
 
     try:
-        if write(mutant.changed(before)):
-            return "docs/build.py"
-        return next((tests[0] for tests in TESTS if fails("-m", "pytest", "-x", "-n", "0", *tests)), "")
+        return "docs/build.py" if write(mutant.changed(before)) else failing(folder)
     finally:
         write(before)
 
@@ -181,6 +187,9 @@ def main() -> int:
         folder = Path(name)
         if not arguments.list:
             copied(folder)
+            if broken := failing(folder):
+                print(f"{broken} fails without a mutant, so it cannot judge one; mend it first", file=sys.stderr)
+                return 2
         for mutant, _ in zip(turns, range(arguments.count), strict=False):
             shown = mutant.described(texts[mutant.path])
             if arguments.list:
