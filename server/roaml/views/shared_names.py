@@ -54,7 +54,7 @@ def _name(variable: str, automata: Mapping[str, str]) -> str:
 
 def field_name(event: str, field: str, automata: Mapping[str, str]) -> str:
     """The name of a field of an event, without the client of a service or action, such as `/arm/command.data`,
-    `/hand_over response.success` and, for a plain event, `event.parameter`; "" if it is no event of the user's model.
+    `/hand_over response.success` and, for a plain event, `event.parameter`; "" if the event is not in the user's model.
 
     Args:
         field: the name of the field in JANI; "" for the event itself.
