@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import pickle
 from typing import Any
 
 import pytest
@@ -171,7 +170,7 @@ def test_known_states_change_no_result(edges: list[Json]) -> None:
     task = Task(payload, 3, 0, 20, 50_000, 0, (0, 1, 2))
     results = []
     for memory in (0, MAX_BYTES):
-        simulator = Simulator(pickle.loads(payload.data), memory)
+        simulator = Simulator(payload.compiled, memory)
         if memory and simulator.batch is not None:
             simulator.batch.use_nodes()
         outcome = run_on(simulator, task)
