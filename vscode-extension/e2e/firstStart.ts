@@ -21,7 +21,7 @@ export function firstStart(stage: Stage): void {
         await problem.waitFor();
         assert.match((await problem.textContent()) ?? "", /there is no variable `levle`; did you mean `level`\?/);
         await problem.getByText("there is no variable").first().click();
-        await window.statusItem("Ln 28, Col 40").waitFor();
+        await window.statusItem(window.positionOf("nodes/battery.ascxml", '" expr="capacity"')).waitFor();
         await window.squiggles.first().waitFor();
         await window.screenshot("mistake");
     });

@@ -24,7 +24,7 @@ export function pictures(stage: Stage): void {
         const inside = picture.locator('.node[data-label="driving"] .edge.is-ros');
         assert.match((await inside.textContent()) ?? "", /timer second.*publish \/battery/);
         await picture.locator('.node[data-label="charging"]').click();
-        await window.statusItem("Ln 25, Col 5").waitFor();
+        await window.statusItem(window.positionOf("nodes/battery.ascxml", '<state id="charging"')).waitFor();
         await picture.locator('.node.here[data-label="charging"]').waitFor();
         await window.screenshot("machine");
         await window.goBehind("nodes/battery.ascxml", "Math.max(");
@@ -93,7 +93,7 @@ export function pictures(stage: Stage): void {
 
             // The keyboard opens the menu of the selected node.
             await picture.locator('.node[data-label="resting"]').click();
-            await window.statusItem("Ln 25, Col 5").waitFor();
+            await window.statusItem(window.positionOf("nodes/battery.ascxml", '<state id="charging"')).waitFor();
             const shortcut = () => picture.locator("svg.picture").press("Shift+F10");
             await window.repeat(shortcut, menuItem(page, "Add Transition…"));
             const focused = page.locator(".monaco-menu .action-item.focused", { hasText: "Add Transition…" });

@@ -73,7 +73,7 @@ export function systems(stage: Stage): void {
         await window.run("AS2FM: Translate to JANI");
         await window.notification("main.xml has 1 error and was not translated.").waitFor();
         await window.page.locator('.tab.active[data-resource-name="battery.ascxml"]').waitFor();
-        await window.statusItem("Ln 28, Col").waitFor();
+        await window.statusItem(`Ln ${window.placeIn("nodes/battery.ascxml", "levle")[0]}, Col`).waitFor();
         assert.ok(!fs.existsSync(path.join(window.folder, "main.jani")));
     });
 
@@ -88,8 +88,9 @@ export function systems(stage: Stage): void {
         await window.screenshot("lens-errors");
         const broken = window.page.locator('.tab.active[data-resource-name="battery.ascxml"]');
         await window.repeat(() => lens.click(), broken);
-        await window.statusItem("Ln 28, Col").waitFor();
-        await window.notification("battery.ascxml:28: there is no variable").waitFor();
+        const [line] = window.placeIn("nodes/battery.ascxml", "levle");
+        await window.statusItem(`Ln ${line}, Col`).waitFor();
+        await window.notification(`battery.ascxml:${line}: there is no variable`).waitFor();
         await window.openFile("properties.jani");
         await window.page
             .locator(".codelens-decoration a", { hasText: "1 error in main.xml: cannot be verified" })

@@ -122,8 +122,19 @@ export class Window {
 
     /** Moves the caret after the first occurrence of a text in a file of the workspace. */
     async goBehind(file: string, text: string): Promise<void> {
-        const [line, column] = placeOf(fs.readFileSync(path.join(this.folder, file), "utf8"), text);
+        const [line, column] = this.placeIn(file, text);
         await this.goTo(line, column + text.length);
+    }
+
+    /** What the status bar shows if the caret is in front of a text of a file of the folder. */
+    positionOf(file: string, text: string): string {
+        const [line, column] = this.placeIn(file, text);
+        return `Ln ${line}, Col ${column}`;
+    }
+
+    /** The line and the column, both from 1, at which a text of a file of the folder begins. */
+    placeIn(file: string, text: string): [number, number] {
+        return placeOf(fs.readFileSync(path.join(this.folder, file), "utf8"), text);
     }
 
     /** Closes what a test has opened: editors, without saving them, the panel, and notifications. */
