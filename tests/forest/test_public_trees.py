@@ -75,6 +75,75 @@ def test_a_file_of_version_3_need_not_state_it(node: str, tmp_path: Path, capsys
     assert success(capsys, tmp_path / "tree.xml", "--mock", "*: 1") == 1.0
 
 
+INCLUDING = """<root{form} main_tree_to_execute="Main"><include path="sub.xml"/>
+<BehaviorTree ID="Main">{tree}</BehaviorTree></root>"""
+INCLUDED = '<root{form}><BehaviorTree ID="Sub">{tree}</BehaviorTree></root>'
+OLD_PART = '<RetryUntilSuccesful num_attempts="2"><Is here="{here}"/></RetryUntilSuccesful>'
+CALL = '<Sequence><SetBlackboard output_key="place" value="3"/><SubTree ID="Sub" here="place"/></Sequence>'
+MIXED = "no version reads both"
+
+
+@pytest.mark.parametrize(
+    ("main", "sub", "reported"),
+    [
+        (("", CALL), ("", OLD_PART), {"main.xml": "belongs to the same tree", "sub.xml": "is written for version 3"}),
+        ((' BTCPP_format="3"', CALL), ("", "<A/>"), {"main.xml": "is written for", "sub.xml": "to the same tree"}),
+        (("", CALL), (' BTCPP_format="3"', "<A/>"), {"main.xml": "to the same tree", "sub.xml": "is written for"}),
+        ((' BTCPP_format="4"', CALL), ("", OLD_PART), {"sub.xml": MIXED}),
+        ((' BTCPP_format="4"', CALL), (' BTCPP_format="3"', "<A/>"), {"sub.xml": MIXED}),
+        (("", '<SubTree ID="Sub" _skipIf="false"/>'), ("", OLD_PART), {"main.xml": "is missing", "sub.xml": MIXED}),
+        (("", CALL), ("", '<SequenceStar><A _skipIf="false"/></SequenceStar>'), {"main.xml": "same", "sub.xml": MIXED}),
+        (("", CALL), (' BTCPP_format="4"', "<A/>"), {"main.xml": "is missing"}),
+        (("", CALL), ("", "<A/>"), {"main.xml": "is missing", "sub.xml": "is missing"}),
+    ],
+)
+def test_files_that_are_read_together_have_one_version(
+    main: tuple[str, str], sub: tuple[str, str], reported: dict[str, str], tmp_path: Path
+) -> None:
+    """A program reads the files that include each other with one version, whichever of them shows it."""
+    for name, form, (written, tree) in (("main.xml", INCLUDING, main), ("sub.xml", INCLUDED, sub)):
+        (tmp_path / name).write_text(form.format(form=written, tree=tree))
+    findings = [d for d in api.check([str(tmp_path)]).diagnostics if d.code == "tree-format"]
+    assert {Path(d.path).name for d in findings} == {*reported}
+    assert all(reported[Path(d.path).name] in d.message for d in findings), findings
+    assert run(["verify", str(tmp_path / "main.xml"), "--mock", "*: 1", "--max-traces", "5"]) == 0
+
+
+@pytest.mark.parametrize(("value", "expected"), [("3", 1.0), ("4", 0.0)])
+def test_a_file_is_executed_in_the_version_of_its_tree(
+    value: str, expected: float, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The value of the `SubTree` is the name of an entry, because the included file is of version 3."""
+    part = f'<BlackboardCheckInt value_A="{{here}}" value_B="{value}" return_on_mismatch="FAILURE"><A/>'
+    (tmp_path / "main.xml").write_text(INCLUDING.format(form="", tree=CALL))
+    (tmp_path / "sub.xml").write_text(INCLUDED.format(form="", tree=f"{part}</BlackboardCheckInt>"))
+    assert success(capsys, tmp_path / "main.xml", "--mock", "A: 1") == expected
+
+
+@pytest.mark.parametrize(
+    ("node", "is_refused"),
+    [
+        ("<RoundRobin><A/><B/></RoundRobin>", False),
+        ("<PipelineSequence><A/><B/></PipelineSequence>", False),
+        ('<Control ID="RoundRobin" name="try"><A/><B/></Control>', False),
+        ('<RateController hz="2"><A/></RateController>', False),
+        ('<RoundRobin order="random"><A/><B/></RoundRobin>', True),
+        ("<Shuffle><A/><B/></Shuffle>", True),
+        ('<Wait seconds="2"/>', False),
+        ('<Wait wait_duration="2"/>', False),
+    ],
+)
+def test_a_tree_with_one_node_of_nav2(
+    node: str, is_refused: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """All commands recognise a node of Nav2 with children, because a program seldom has an own one of this name."""
+    tree = f'<root BTCPP_format="4"><BehaviorTree ID="Main">{node}</BehaviorTree></root>'
+    assert not [text for _, _, text in found(tmp_path, {"tree.xml": tree}) if "`A`" not in text and "`B`" not in text]
+    for command in ("verify", "simulate"):
+        assert run([command, str(tmp_path / "tree.xml"), "--mock", "*: 1"]) == is_refused, command
+    assert ("but its behaviour is not known" in capsys.readouterr().err) is is_refused
+
+
 def test_the_only_tree_of_a_file_needs_no_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     tree = '<root BTCPP_format="4"><BehaviorTree><Sequence><A/><B/></Sequence></BehaviorTree></root>'
     assert found(tmp_path, {"tree.xml": tree}) == []

@@ -15,9 +15,10 @@ from functools import cached_property
 from typing import TypeAlias
 
 from roaml.forest.cpp_types import ANY
-from roaml.forest.forest import OLD_ATTRIBUTES, Forest, port_type
+from roaml.forest.forest import Forest, port_type
 from roaml.forest.ports import ports_of
 from roaml.forest.scripts import scripts_of
+from roaml.forest.written_for import OLD_ATTRIBUTES
 from roaml.libraries import Node, Port
 from roaml.libraries.programs.assembly import programs
 from roaml.libraries.scripts import SCRIPT
@@ -198,7 +199,7 @@ def _of_subtree(forest: Forest, path: str, own: str, node: TreeNode) -> Iterator
     inner = node.plugin.value if node.plugin else ""
     known = inner in forest.trees
     for setting in ports_of(node):
-        name = entry_of(setting)
+        name = bound_entry(forest, node, setting)
         if name is None:
             key = setting.attribute.name
             yield Use(path, inner, key, False, True, True, ANY, False, False, node, setting.value.span)
@@ -235,11 +236,11 @@ def _joined(forest: Forest, uses: tuple[Use, ...]) -> Mapping[Key, Key]:
     calls = list(_calls(forest))
     for outer, inner, node in calls:
         for setting in ports_of(node):
-            name = entry_of(setting)
+            name = bound_entry(forest, node, setting)
             if name is not None:
                 names.setdefault(outer, set()).add(name)
                 join((inner, setting.attribute.name), key_of(outer, name))
-    for inner, outer, name in _taken_over(calls, names):
+    for inner, outer, name in _taken_over(forest, calls, names):
         join((inner, name), (outer, name))
     used = {inner for _, inner, _ in calls}
     for tree in forest.trees:
@@ -249,11 +250,13 @@ def _joined(forest: Forest, uses: tuple[Use, ...]) -> Mapping[Key, Key]:
     return roots
 
 
-def _taken_over(calls: list[tuple[str, str, TreeNode]], names: dict[str, set[str]]) -> Iterator[tuple[str, str, str]]:
+def _taken_over(
+    forest: Forest, calls: list[tuple[str, str, TreeNode]], names: dict[str, set[str]]
+) -> Iterator[tuple[str, str, str]]:
     """The names that automatic remapping unifies, as inner tree, outer tree and name. Adds them to `names`."""
     users: dict[str, list[tuple[str, frozenset[str]]]] = {}
     for outer, inner, node in calls:
-        if is_autoremapped(node):
+        if is_autoremapped(node, version_3=forest.is_of_version_3(node)):
             given = frozenset(setting.attribute.name for setting in ports_of(node))
             users.setdefault(inner, []).append((outer, given))
     pending = [(tree, name) for tree in users for name in sorted(names.get(tree, ()))]
@@ -286,8 +289,9 @@ def is_autoremapped(node: TreeNode, *, version_3: bool = False) -> bool:
     return any(attribute is not None and attribute.value.strip() in _TRUE for attribute in given)
 
 
-def old_entry_of(node: TreeNode, setting: PortSetting) -> str | None:
-    """The name of the entry that an attribute of a subtree is bound to in a file of version 3; `None` if it is a
-    constant. There, the values of a `SubTree` are names of entries without braces."""
+def bound_entry(forest: Forest, node: TreeNode, setting: PortSetting) -> str | None:
+    """The name of the entry that an attribute of a subtree is bound to; `None` if it is a constant. In a file of
+    version 3, the values of a `SubTree` are names of entries without braces."""
     name = setting.value.value.strip()
-    return name if node.element.name == "SubTree" and _NAME.match(name) else entry_of(setting)
+    is_name = forest.is_of_version_3(node) and node.element.name == "SubTree" and _NAME.match(name)
+    return name if is_name else entry_of(setting)

@@ -14,6 +14,7 @@ from functools import cached_property
 from roaml.forest.cpp_types import normal
 from roaml.forest.ports import ports_of
 from roaml.forest.settings import TreeSettings
+from roaml.forest.written_for import Signs, files_of_version_3, signs_of
 from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Absent, Library, Node, Port, library, library_node
 from roaml.libraries.version import first_patch
 from roaml.model.kinds import PROJECT_EXTENSION
@@ -33,14 +34,8 @@ _COMMON_NAMES = frozenset(
         *("GoalUpdated", "InitialPoseReceived"),
     )
 )
-"""Names of library nodes that are also common in other programs: their use alone does not show that the library is
-used."""
-
-OLD_ATTRIBUTES = ("__autoremap", "__shared_blackboard")
-_OLD_TAGS = (
-    *("SubTreePlus", *CPP.renamed, *(name for name, node in CPP.nodes.items() if node.until)),
-    *(name for name in CPP.absent if name.startswith("BlackboardCheck")),
-)
+"""Names of library nodes that are also common in other programs: one leaf with such a name does not show that the
+library is used."""
 
 
 class Forest(Record, frozen=True, eq=False, dict=True):
@@ -80,10 +75,34 @@ class Forest(Record, frozen=True, eq=False, dict=True):
         main = self.files[0][1].main
         return main.value if main else None
 
-    @cached_property
+    @property
     def is_version_3(self) -> bool:
-        """Whether the file declares version 3, or declares no version and uses names that only version 3 has."""
-        return is_version_3(self.file)
+        """Whether the file that is analysed is written for version 3; `False` in a system."""
+        return self.path in self.files_of_version_3
+
+    @cached_property
+    def files_of_version_3(self) -> frozenset[str]:
+        """The files that are written for version 3; those of systems may have the names of both versions."""
+        return frozenset() if self.system is not None else files_of_version_3(self.signs)
+
+    @cached_property
+    def signs(self) -> Mapping[str, Signs]:
+        """Path -> what shows the version, for each file with trees, except files of models that the settings name."""
+        return {
+            path: signs_of(file)
+            for path, file in self.files
+            if file.trees and (path == self.path or path not in self.settings.models)
+        }
+
+    @cached_property
+    def _nodes_of_version_3(self) -> frozenset[TreeNode]:
+        """The nodes in `files_of_version_3`."""
+        files = self.files_of_version_3
+        return frozenset(node for path, _, node in self.all_nodes if path in files) if files else frozenset()
+
+    def is_of_version_3(self, node: TreeNode) -> bool:
+        """Whether the file of a node is written for version 3."""
+        return node in self._nodes_of_version_3
 
     @cached_property
     def trees(self) -> Mapping[str, tuple[str, Tree]]:
@@ -177,19 +196,26 @@ class Forest(Record, frozen=True, eq=False, dict=True):
                     if name not in _COMMON_NAMES:
                         return True
                     if all(entry.port(setting.attribute.name) for setting in ports_of(node)):
+                        if node.children and entry.children[1]:
+                            return True  # programs seldom have own nodes with children
                         names.add(name)
         return len(names) > 1
 
-    def node(self, name: str) -> Node | None:
+    def node(self, name: str, *, version_3: bool | None = None) -> Node | None:
         """The declaration of the node type `name`; `None` if there is none. In a file of version 3, the names of
-        version 3 are known, too."""
+        version 3 are known, too.
+
+        Args:
+            version_3: whether the file is written for version 3; by default, as the file that is analysed.
+        """
+        is_old = self.is_version_3 if version_3 is None else version_3
         if self.system is not None:
             path, outline = self.system.plugin(name)
             declared = None if outline is None else node_of_machine(outline) if path else library_node(name)
             return None if declared is None else self._with_defaults(declared)
-        renamed = CPP.renamed.get(name) if self.is_version_3 else None
+        renamed = CPP.renamed.get(name) if is_old else None
         declaration = CPP.nodes.get(renamed.now if renamed else name)
-        is_known = declaration is not None and (self.is_version_3 or not declaration.until)
+        is_known = declaration is not None and (is_old or not declaration.until)
         if declaration is not None and is_known and not self.is_newer_than_used(declaration):
             return declaration
         declaration = self._described.get(name)
@@ -301,7 +327,11 @@ class Forest(Record, frozen=True, eq=False, dict=True):
         """The declaration of the type of a node; `None` for subtrees and for types without a declaration."""
         if node not in self._known_nodes:
             is_tree = node.is_subtree or node.plugin is None or self.names_tree(node)
-            self._known_nodes[node] = None if is_tree or node.plugin is None else self.node(node.plugin.value)
+            self._known_nodes[node] = (
+                None
+                if is_tree or node.plugin is None
+                else self.node(node.plugin.value, version_3=self.is_of_version_3(node))
+            )
         return self._known_nodes[node]
 
     @cached_property
@@ -318,26 +348,6 @@ class Forest(Record, frozen=True, eq=False, dict=True):
     def names_tree(self, node: TreeNode) -> bool:
         """Whether a node in compact form has the name of a tree, which is then executed as a subtree."""
         return node.compact and node.plugin is not None and node.plugin.value in self.trees
-
-
-def is_version_3(file: TreeFile) -> bool:
-    """Whether a file declares version 3 of BehaviorTree.CPP, or declares no version and uses names that only version 3
-    has."""
-    if file.format:
-        return file.format == "3"
-    return any(_is_old(node) for tree in file.trees for node in nodes(tree))
-
-
-def _is_old(node: TreeNode) -> bool:
-    name = node.plugin.value if node.plugin else ""
-    if name == "Parallel":
-        ports = (CPP.nodes[name].port(attribute.name) for attribute in node.element.attributes)
-        return any(port is not None and port.alias_of for port in ports)
-    return (
-        node.element.name in _OLD_TAGS
-        or (not node.compact and not node.is_subtree and name in _OLD_TAGS)
-        or (node.is_subtree and any(node.element.get(attribute) for attribute in OLD_ATTRIBUTES))
-    )
 
 
 def is_model_of(model: Node, node: Node) -> bool:

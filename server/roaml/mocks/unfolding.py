@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 
-from roaml.forest.entries import entry_of, is_autoremapped, old_entry_of
+from roaml.forest.entries import bound_entry, is_autoremapped
 from roaml.forest.forest import Forest
 from roaml.forest.ports import ports_of
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree, FrameNames, TreeLinks, identifier
@@ -98,9 +98,9 @@ def _check(forest: Forest, tree: Tree, expansion: Expansion, links: TreeLinks) -
     if not expansion.instances:
         reason = f"the tree is too large: at most {MAX_NODES} nodes and {MAX_SUBTREES} subtrees inside each other"
         raise TreeRefusal(Location(forest.path, tree.element.name_span), reason)
-    for instance in expansion.instances if forest.is_version_3 else ():
+    for instance in expansion.instances:
         node = links.source(instance.source)
-        if instance.plugin == "Parallel" and node.element.get("threshold"):
+        if instance.plugin == "Parallel" and node.element.get("threshold") and forest.is_of_version_3(node):
             reason = "`threshold` is the name of the port before version 3.5; write `success_threshold`"
             raise TreeRefusal(Location(instance.source.path, node.element.name_span), reason)
 
@@ -137,9 +137,9 @@ def _read(forest: Forest, node: TreeNode) -> Written:
     """A node of a forest. The attributes of a `<SubTree>` are those of version 4; others are not needed."""
     if not node.is_subtree and not forest.names_tree(node):
         return False, ()
-    is_old = forest.is_version_3
-    attributes = [(AUTOREMAP, "true")] if is_autoremapped(node, version_3=is_old) else []
+    is_autoremap = is_autoremapped(node, version_3=forest.is_of_version_3(node))
+    attributes = [(AUTOREMAP, "true")] if is_autoremap else []
     for setting in ports_of(node):
-        bound = old_entry_of(node, setting) if is_old else entry_of(setting)
+        bound = bound_entry(forest, node, setting)
         attributes.append((setting.attribute.name, setting.value.value if bound is None else f"{{{bound}}}"))
     return True, tuple(attributes)

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal, rename_tag
-from roaml.forest.forest import CPP
+from roaml.forest.forest import CPP, Forest
 from roaml.language import BEHAVIOR_TREE
 from roaml.model.tree import TreeNode, nodes
 from roaml.regex import regex
@@ -31,7 +31,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     root, version = context.file.element, context.file.element.get("BTCPP_format")
     if context.forest.is_version_3:
         span = version.value_span if version else root.name_span
-        message = "this file is written for version 3 of BehaviorTree.CPP; version 4 reads it differently"
+        message = _reason(context.forest)
         fix = Fix("Convert to version 4", functools.partial(_plan, context), preferred=True)
         yield RULE.at(span, message, fix)
     elif version is None and context.file.trees and not _is_misspelled(root):
@@ -41,6 +41,31 @@ def check(context: TreeContext) -> Iterator[Finding]:
     elif version is not None and context.file.format != CURRENT:
         fix = Fix(f"Change to `{CURRENT}`", (TextEdit(version.value_span, CURRENT),), preferred=True)
         yield RULE.at(version.value_span, f"the format must be `3` or `4`, not `{version.value}`", fix)
+
+
+def _reason(forest: Forest) -> str:
+    """Why a file is written for version 3. A program reads all files of a tree with the same version."""
+    own, others = forest.signs[forest.path], {p: signs for p, signs in forest.signs.items() if p != forest.path}
+    unreadable = "no version reads both"
+    if not own.format and own.old and own.new:
+        both = f"the file uses `{own.old}` of version 3 of BehaviorTree.CPP and `{own.new}` of version 4"
+        return f"{both}; {unreadable}"
+    newer = next((path for path, signs in others.items() if signs.is_version_3 is False), None)
+    if newer is not None:
+        name = _file_name(newer)
+        return f"this file is written for version 3 of BehaviorTree.CPP, but `{name}` for version 4; {unreadable}"
+    if own.is_version_3 is None:
+        older = next(path for path, signs in others.items() if signs.is_version_3)
+        name = _file_name(older)
+        return (
+            f"`{name}`, which belongs to the same tree, is written for version 3 of BehaviorTree.CPP; version 4 reads "
+            "both differently"
+        )
+    return "this file is written for version 3 of BehaviorTree.CPP; version 4 reads it differently"
+
+
+def _file_name(path: str) -> str:
+    return path.replace("\\", "/").rpartition("/")[2]
 
 
 def _is_misspelled(root: Element) -> bool:

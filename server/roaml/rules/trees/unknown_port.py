@@ -7,8 +7,9 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
 from roaml.edit.elements import removal
-from roaml.forest.forest import OLD_ATTRIBUTES, Forest
+from roaml.forest.forest import Forest
 from roaml.forest.ports import ports_of, probable_ports
+from roaml.forest.written_for import OLD_ATTRIBUTES
 from roaml.libraries import Node
 from roaml.libraries.node import EVENT_ATTRIBUTE
 from roaml.libraries.programs.assembly import reads_world
