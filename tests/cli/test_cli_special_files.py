@@ -83,6 +83,37 @@ def test_named_files(tmp_path: Path, make, arguments: tuple[str, ...]) -> None: 
     assert "Traceback" not in done.err
 
 
+UNREADABLE = ("/proc/kmsg", "/proc/self/mem", "/dev/zero", "/")
+"""Paths of files without text. The first is a regular file whose content is `None` while the kernel writes nothing, or
+that must not be read; reading the second one fails."""
+
+
+@pytest.mark.parametrize("path", UNREADABLE)
+@pytest.mark.parametrize("replaced", ["clock.ascxml", "properties.jani"])
+def test_files_that_a_system_names(tmp_path: Path, path: str, replaced: str) -> None:
+    clock.write(tmp_path, main=clock.MAIN.replace(replaced, path))
+    for arguments in (("--check", "."), ("--check", "main.xml"), ("translate",), ("verify",), ("simulate",)):
+        done = run(tmp_path, *arguments, *(() if arguments[0] == "--check" else ("main.xml",)))
+        assert done.status == 1, done.err
+        assert f"error: `{path}` " in done.out + done.err, arguments
+        assert "Traceback" not in done.err
+
+
+@pytest.mark.parametrize("path", UNREADABLE)
+def test_files_that_a_tree_includes(tmp_path: Path, path: str) -> None:
+    tree = '<BehaviorTree ID="Main"><AlwaysSuccess/></BehaviorTree>'
+    (tmp_path / "tree.xml").write_text(f'<root BTCPP_format="4"><include path="{path}"/>{tree}</root>')
+    for arguments in (
+        ("--check", "."),
+        ("--check", "tree.xml"),
+        ("verify", "tree.xml"),
+        ("draw", "tree.xml", "--tree"),
+    ):
+        done = run(tmp_path, *arguments)
+        assert "Traceback" not in done.err
+        assert ("missing-include" in done.out + done.err) == (arguments[0] != "draw"), done
+
+
 def test_a_large_configuration(tmp_path: Path) -> None:
     clock.write(tmp_path)
     (tmp_path / "as2fm.toml").write_text("#" * (MAX_CHARACTERS + 1))
