@@ -143,6 +143,14 @@ def test_open_extremes_are_shown_for_instant_reactions(tmp_path: Path, capsys: p
     assert conditional["exact"]["least"] == 1
 
 
+def test_requested_traces_are_not_extended_by_a_search(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = written(tmp_path, LAMP, COUNTER)
+    assert run(["verify", path, "--method", "fixed", "--max-traces", "50"]) == 0
+    shown = capsys.readouterr().out
+    assert "under uniform choices" in shown
+    assert "if machines react at once" not in shown
+
+
 @pytest.mark.parametrize("machines", [(LAMP, IDLER), (LAMP, COUNTER, IDLER)])
 def test_time_stops(tmp_path: Path, capsys: pytest.CaptureFixture[str], machines: tuple[str, ...]) -> None:
     """A machine that never rests: no light is sent, and all traces repeat for ever."""

@@ -198,7 +198,8 @@ class Verifier(Record, frozen=True):
 
     Attributes:
         only_uniform: whether only uniform choices are considered, not the minimum or maximum over all schedulers.
-        exact_if_small: whether the result of a property contains exact values if the model has few states (`small`).
+        exact_if_small: whether the result of a property contains exact values if the model has few states (`small`),
+            and if schedulers may disagree, those for machines that react at once (`reactions`).
         example_traces: the number of traces that are generated for a result with exact values; `None` for the number
             that an estimate needs.
         explorations: the exact values that several properties share.
@@ -424,7 +425,8 @@ class Verifier(Record, frozen=True):
             else:
                 choices = choices_of(small, NO_NONDETERMINISM if self.checker.is_deterministic else "")
         result = self._with_verdicts(property_, answer, choices, time.monotonic() - began, self._shown(small))
-        return self._with_reactions(property_, result, began)
+        # Traces that are requested are not extended by a search, which may take longer than they do.
+        return self._with_reactions(property_, result, began) if self.exact_if_small else result
 
     def _considers_choices(self, property_: CompiledProperty) -> bool:
         """Whether the question is about all schedulers, not only about uniform choices."""
