@@ -51,7 +51,9 @@ export class Window {
     /** Enters a text, or accepts the suggested one, in the quick input that asks a question. */
     async answer(question: string, text?: string): Promise<void> {
         await this.question(question).waitFor();
-        if (text !== undefined) await this.page.locator(".quick-input-widget input").first().fill(text);
+        const input = this.page.locator(".quick-input-widget input[type=text]").first();
+        if (text !== undefined) await input.fill(text);
+        await input.focus(); // a picture may have taken it back
         await this.quickInputFocus.first().waitFor();
         await this.page.keyboard.press("Enter");
     }

@@ -172,6 +172,8 @@ const SETTINGS = {
     "update.mode": "none",
     "git.enabled": false,
     "editor.minimap.enabled": false,
+    // In a browser, changes would be saved after a second, perhaps while a test restores the files of its folder.
+    "files.autoSave": "off",
     "files.simpleDialog.enable": true,
     "security.workspace.trust.banner": "never",
     "terminal.integrated.gpuAcceleration": "off",

@@ -9,6 +9,9 @@ import type { PicturePanels } from "./picturePanels";
 import { jump } from "./pictureSource";
 import type { LanguageServer } from "./server";
 
+/** A picture takes the focus back when its menu closes. This must not close a question that is already open. */
+const LASTING = { ignoreFocusOut: true };
+
 export class PictureActions implements vscode.Disposable {
     private readonly commands: readonly vscode.Disposable[];
 
@@ -69,7 +72,7 @@ export class PictureActions implements vscode.Disposable {
 async function chooseOne<Part extends { readonly label: string }>(parts: readonly Part[]): Promise<Part | undefined> {
     if (parts.length < 2) return parts[0];
     const items = parts.map((part) => ({ label: part.label, part }));
-    return (await vscode.window.showQuickPick(items, { title: vscode.l10n.t("Which part?") }))?.part;
+    return (await vscode.window.showQuickPick(items, { title: vscode.l10n.t("Which part?"), ...LASTING }))?.part;
 }
 
 /** Ask the user a question. `problem` returns why a text is not a valid answer, or an empty text. */
@@ -79,8 +82,9 @@ async function put(
 ): Promise<string | undefined> {
     if (options.length > 0) {
         const items = options.map(({ label, description, answer }) => ({ label, description, answer }));
-        return (await vscode.window.showQuickPick(items, { title: text, matchOnDescription: true }))?.answer;
+        return (await vscode.window.showQuickPick(items, { title: text, matchOnDescription: true, ...LASTING }))
+            ?.answer;
     }
     const validateInput = async (written: string) => (written === proposal ? undefined : await problem(written));
-    return vscode.window.showInputBox({ title: text, value: proposal, validateInput });
+    return vscode.window.showInputBox({ title: text, value: proposal, validateInput, ...LASTING });
 }
