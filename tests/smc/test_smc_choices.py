@@ -10,6 +10,7 @@ from both_kernels import plain_kernel
 from explorer import Explorer
 from roaml.record import replace
 from roaml.smc import kernel
+from roaml.smc.batch import Rows, Simulator, Task, run_on
 from roaml.smc.choices import Choices, ExtremeMethod
 from roaml.smc.lss import FAVOUR, MEMORY, STARVE, candidates, described
 from roaml.smc.model import ModelChecker
@@ -218,3 +219,23 @@ def test_goals_of_several_parts() -> None:
     written["properties"] = [{"name": "p", "expression": probability(both)}]
     choices = looked_at(written)
     assert choices.agreement == "all 11 states were explored"
+
+
+@pytest.mark.parametrize("chance", [False, True])
+@pytest.mark.parametrize("scheduler", [1, 2, *candidates(2, per_automaton=1, memoryless=1, memory=1)])
+def test_traces_without_chance_are_repeated(scheduler: int, chance: bool) -> None:
+    """A batch of traces under a scheduler is equal to batches of one trace each, of which none is repeated."""
+    checker = ModelChecker(model(starving(5, chance=chance, steps=3)))
+    payload = checker.payload(*checker.compiled_properties)
+
+    def rows(first: int, size: int) -> Rows:
+        outcome = run_on(Simulator(payload.compiled), Task(payload, 3, first, size, 40, scheduler))
+        assert outcome.problem is None
+        return outcome.questions[0]
+
+    single = [rows(trace, 1) for trace in range(7, 27)]
+    for name in ("verdicts", "ends", "steps", "activities", "rewards"):
+        columns = [list(getattr(row, name)) for row in single]
+        assert [value for column in columns for value in column] == list(getattr(rows(7, 20), name))
+    if chance and scheduler in (1, 2):
+        assert len({row.steps[0] for row in single}) > 1

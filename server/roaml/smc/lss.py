@@ -241,13 +241,13 @@ def probe(
             break
     if not shares:
         return None
-    answers = []
-    for best in (min(shares, key=shares.__getitem__), max(shares, key=shares.__getitem__)):
+    least_by, greatest_by = min(shares, key=shares.__getitem__), max(shares, key=shares.__getitem__)
+    answers: dict[int, Answer] = {}
+    for best in dict.fromkeys((least_by, greatest_by)):
         max_traces = max(20, min(400, int(budget / 2 / max(1.0, lengths[best]))))
         fixed = replace(options, method=EstimationMethod.FIXED, max_traces=max_traces, max_steps=longest)
-        answers.append((answer(payload, question, fixed, pool, pulse=pulse, scheduler=best), best))
-    (least, least_by), (greatest, greatest_by) = answers
-    return Extremes(least, greatest, least_by, greatest_by, len(shares))
+        answers[best] = answer(payload, question, fixed, pool, pulse=pulse, scheduler=best)
+    return Extremes(answers[least_by], answers[greatest_by], least_by, greatest_by, len(shares))
 
 
 def _best(
