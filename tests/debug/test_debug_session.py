@@ -51,17 +51,16 @@ def test_a_session_from_its_start_to_its_end(real_client: Client) -> None:
     threads = {thread["name"]: thread["id"] for thread in client.ask("threads")["threads"]}
     assert threads == {"tree": 1, "Arm": 2}
     assert client.top(2) == ("arm.ascxml", _line(ARM, '<state id="still">'))
-    client.ask("setExceptionBreakpoints", filters=["end"])
     stopped = client.move()
-    assert (stopped["reason"], stopped["text"]) == ("exception", "tree finished")
-    assert client.ask("exceptionInfo")["exceptionId"] == "end"
+    assert (stopped["reason"], stopped["description"]) == ("end of the run", "Paused: tree finished")
+    assert "has not stopped at an exception" in client.refusal("exceptionInfo")
 
 
 def test_the_dropped_block_and_the_other_choice(client: Client) -> None:
     client.launch(BUG, property="never_placed_empty", against=1, seed=3)
     line = _line(ARM, '<target id="moving">')
     assert _break(client, ARM, line)["verified"]
-    client.ask("setExceptionBreakpoints", filters=["violated", "end"])
+    client.ask("setExceptionBreakpoints", filters=["violated"])
     client.ask("configurationDone")
     stopped = client.event("stopped")
     assert stopped["reason"] == "breakpoint"
@@ -70,8 +69,9 @@ def test_the_dropped_block_and_the_other_choice(client: Client) -> None:
     violated = client.move()
     assert violated["reason"] == "exception"
     assert violated["text"] == "violated: never_placed_empty"
-    reason, sentence, message = client.ask("exceptionInfo")["description"].splitlines()
-    assert reason == violated["text"]
+    shown = client.ask("exceptionInfo")
+    assert shown["exceptionId"] == "the property never_placed_empty is violated"
+    sentence, message = shown["description"].splitlines()
     assert sentence == "The gripper is not opened at the goal without a block in it."
     assert re.fullmatch(r"a message on the topic `/block/placed`: \{data: false\}, sent by Arm in step \d+", message)
     back = client.move("reverseContinue")
@@ -239,7 +239,7 @@ def test_filters_of_exceptions(client: Client) -> None:
     client.ask("configurationDone")
     client.event("stopped")
     chance = client.move()
-    assert (chance["reason"], chance["text"]) == ("exception", "the next step is decided by chance")
+    assert (chance["reason"], chance["text"]) == ("chance", "the next step is decided by chance")
     client.ask("setExceptionBreakpoints", filters=[], filterOptions=[{"filterId": "time", "condition": "time >= 7"}])
     assert client.move()["text"] == "time advances to 7 s"
     client.ask("setExceptionBreakpoints", filters=["satisfied"])

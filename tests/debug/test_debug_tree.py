@@ -116,14 +116,15 @@ def test_breakpoints_in_a_subtree_and_statuses_in_the_picture(client: Client) ->
     assert "Script" in {labels[name] for name, node in active.items() if node["look"] == "success"}
 
 
-@pytest.mark.parametrize(("chance", "name", "filter_"), [(1, "", "end"), (0, "", "violated"), (0, "fails", "end")])
+@pytest.mark.parametrize(
+    ("chance", "name", "reason"), [(1, "", "end of the run"), (0, "", "exception"), (0, "fails", "end of the run")]
+)
 def test_a_run_stops_as_violated_only_if_its_own_property_is(
-    client: Client, chance: int, name: str, filter_: str
+    client: Client, chance: int, name: str, reason: str
 ) -> None:
     client.begin(FETCH, mocks=[f"*: {chance} in 200 ms"], property=name)
-    client.ask("setExceptionBreakpoints", filters=["violated", "end"])
-    client.move()
-    assert client.ask("exceptionInfo", threadId=1)["exceptionId"] == filter_
+    client.ask("setExceptionBreakpoints", filters=["violated"])
+    assert client.move()["reason"] == reason
 
 
 def test_the_attributes_of_launch_declare_the_mocks(client: Client, tree: Path) -> None:
@@ -131,7 +132,7 @@ def test_the_attributes_of_launch_declare_the_mocks(client: Client, tree: Path) 
     attributes = {"mocks": ["grasp*: 1", "Unused: 0"], "mocksFile": "slow.mocks", "entries": {"load": 5}}
     client.launch(tree, tickRate=2.5, maxTime="10 s", **attributes)
     assert "the mock `Unused` matches no node of the tree" in _outputs(client)
-    client.ask("setExceptionBreakpoints", filters=["satisfied", "violated", "end"])
+    client.ask("setExceptionBreakpoints", filters=["satisfied", "violated"])
     client.ask("configurationDone")
     client.event("stopped")
     assert client.move()["text"] == "satisfied: succeeds"

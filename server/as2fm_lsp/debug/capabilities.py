@@ -12,7 +12,6 @@ _FILTERS = {
     ExceptionFilter.SATISFIED: ("A property is satisfied", "A property is decided, and holds in this run", False),
     ExceptionFilter.FAILURE: ("A node fails", "A node of the behavior tree returns FAILURE", False),
     ExceptionFilter.CHANCE: ("Chance decides", "The next step is drawn by probabilities of the model", False),
-    ExceptionFilter.END: ("The run ends", "No further step changes the state", True),
     ExceptionFilter.TIME: ("Time passes", "The time of the model has advanced", False),
 }
 

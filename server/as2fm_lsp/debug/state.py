@@ -95,8 +95,8 @@ class StateRequests:
         stop = self._session.stop
         if stop is None or stop.reason is not StopReason.EXCEPTION:
             raise RequestError("the run has not stopped at an exception")
-        description = self._session.stopped.explanation(stop)
-        return {"exceptionId": stop.filter, "description": description, "breakMode": "always"}
+        happened, details = self._session.stopped.explanation(stop)
+        return {"exceptionId": happened, "description": details, "breakMode": "always"}
 
     def _loaded_sources(self, arguments: Arguments) -> Body:
         debugger = self._session.debugger

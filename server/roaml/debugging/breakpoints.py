@@ -36,13 +36,12 @@ class Line(NamedTuple):
 
 class ExceptionFilter(enum.Enum):
     """A reason to stop that is independent of places in the sources: a property is violated or satisfied, a node
-    returns FAILURE, the next step is decided by chance, the run ends, or time advances."""
+    returns FAILURE, the next step is decided by chance, or time advances."""
 
     VIOLATED = "violated"
     SATISFIED = "satisfied"
     FAILURE = "failure"
     CHANCE = "chance"
-    END = "end"
     TIME = "time"
 
 
@@ -297,10 +296,6 @@ class Matcher:
         if time is not None and _passes_time(self._session, step):
             hits.append((time, first))
         return hits
-
-    @property
-    def end(self) -> Breakpoint | None:
-        return self._filters.get(ExceptionFilter.END)
 
 
 def _fails(step: TraceStep) -> bool:

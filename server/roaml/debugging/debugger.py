@@ -59,7 +59,13 @@ class StopReason(enum.Enum):
     DATA_BREAKPOINT = "data breakpoint"
     EXCEPTION = "exception"
     GOTO = "goto"
+    CHANCE = "chance"
+    TIME = "time"
     END = "end of the run"
+
+
+# A client shows the other filters as exceptions. These are no mistakes of the model.
+_REASONS = {ExceptionFilter.CHANCE: StopReason.CHANCE, ExceptionFilter.TIME: StopReason.TIME}
 
 
 class Stop(Record, frozen=True):
@@ -69,7 +75,8 @@ class Stop(Record, frozen=True):
         thread: the number of the thread that takes the next step, or that has reached the breakpoint.
         text: a description of what has happened, if the reason alone is not enough.
         breakpoints: the numbers of the breakpoints that were reached.
-        filter: the name of the exception filter, or `fault` for an undefined operation, if the reason is an exception.
+        filter: the name of the exception filter that stopped the run, or `fault` for an undefined operation; empty
+            for all other reasons.
     """
 
     reason: StopReason
@@ -395,11 +402,7 @@ class Debugger:
 
     def _end(self) -> Stop:
         end = self.session.end
-        text = "no step is possible" if end is None else end.text
-        breakpoint_ = self._match().end
-        if breakpoint_ is not None:
-            return self._stop(StopReason.EXCEPTION, text, filter_=ExceptionFilter.END.value)
-        return self._stop(StopReason.END, text)
+        return self._stop(StopReason.END, "no step is possible" if end is None else end.text)
 
     def _stop_at(self, reached: list[tuple[Breakpoint, int]]) -> Stop:
         breakpoints = self.breakpoints
@@ -408,7 +411,8 @@ class Debugger:
         first = reached[0][0]
         filter_ = self._filter_of(first)
         if filter_ is not None:
-            return self._stop(StopReason.EXCEPTION, self._text(filter_), numbers, filter_.value, instance)
+            reason = _REASONS.get(filter_, StopReason.EXCEPTION)
+            return self._stop(reason, self._text(filter_), numbers, filter_.value, instance)
         reason = StopReason.BREAKPOINT
         if any(breakpoint_ is first for _, breakpoint_ in breakpoints.names):
             reason = StopReason.FUNCTION_BREAKPOINT
@@ -421,19 +425,25 @@ class Debugger:
         filters = self.breakpoints.filters.items()
         return next((filter_ for filter_, of_filter in filters if of_filter is breakpoint_), None)
 
-    def explanation(self, stop: Stop) -> str:
-        """Why the run has stopped, for readers: what has happened, what the decided properties require, and the last
-        messages that they read, in lines."""
-        lines = [stop.text]
-        if stop.filter in (ExceptionFilter.VIOLATED.value, ExceptionFilter.SATISFIED.value):
-            verdict = TraceVerdict.FAILED if stop.filter == ExceptionFilter.VIOLATED.value else TraceVerdict.PASSED
-            decided = [p for p in self._verdicts.at(self.session.position) if p.verdict is verdict]
-            comments = self.sources.comments
-            lines += [comments[property_.name] for property_ in decided if property_.name in comments]
-            variables = {name for property_ in decided for name in property_.variables}
-            entries = self.values.messages_read(variables)
-            lines += [f"{entry.name}: {shown(entry.value)}, {entry.type}" for entry in entries]
-        return "\n".join(lines)
+    def explanation(self, stop: Stop) -> tuple[str, str]:
+        """Why the run has stopped, for readers.
+
+        Returns:
+            What has happened, as a clause, and further lines: what the decided properties require, and the last
+            messages that they read.
+        """
+        if stop.filter not in (ExceptionFilter.VIOLATED.value, ExceptionFilter.SATISFIED.value):
+            return stop.text, ""
+        verdict = TraceVerdict.FAILED if stop.filter == ExceptionFilter.VIOLATED.value else TraceVerdict.PASSED
+        decided = [p for p in self._verdicts.at(self.session.position) if p.verdict is verdict]
+        comments = self.sources.comments
+        lines = [comments[property_.name] for property_ in decided if property_.name in comments]
+        variables = {name for property_ in decided for name in property_.variables}
+        entries = self.values.messages_read(variables)
+        lines += [f"{entry.name}: {shown(entry.value)}, {entry.type}" for entry in entries]
+        names = ", ".join(property_.name for property_ in decided)
+        subject = f"the property {names} is" if len(decided) == 1 else f"the properties {names} are"
+        return f"{subject} {stop.filter}", "\n".join(lines)
 
     def _text(self, filter_: ExceptionFilter) -> str:
         decided = self._verdicts.at(self.session.position)
@@ -453,8 +463,6 @@ class Debugger:
                 return "the next step is decided by chance"
             case ExceptionFilter.TIME:
                 return f"time advances to {self.session.time:g} s"
-            case ExceptionFilter.END:
-                return "no further step changes the state"
 
     def _stop(
         self,
