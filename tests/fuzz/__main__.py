@@ -43,7 +43,7 @@ def main() -> int:
     parser.add_argument("--pairs", type=int, metavar="N", help="this many pairs of mistakes instead, from --seed on")
     parser.add_argument("--slowest", type=int, default=3, metavar="N", help="name the slowest cases (3)")
     arguments = parser.parse_args()
-    spare_the_collector()  # as the command does
+    spare_the_collector()  # as the server does
     if arguments.case is not None:
         name, _, seed = arguments.case.rpartition(":")
         if name not in strategies() or not seed.isdecimal():
