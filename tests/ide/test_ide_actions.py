@@ -275,6 +275,70 @@ def test_the_file_of_a_plugin_that_is_not_listed() -> None:
     assert '<input type="bt-plugin-ascxml" src="other/home.ascxml" />' in after["main.xml"]
 
 
+CALLS = """\
+-- main.xml --
+<roaml>
+    <parameters><max_time value="10" unit="s" /></parameters>
+    <node_models>
+        <input type="node-ascxml" src="robot.ascxml" />
+        <input type="node-ascxml" src="timer.ascxml" />
+    </node_models>
+    <properties><input type="jani" src="p.jani" /></properties>
+</roaml>
+-- robot.ascxml --
+<ascxml name="Robot" version="1.0" initial="a">
+    <ros_service_client name="speak" service_name="/Narrator/‸Narrate" type="std_srvs/Empty" />
+    <state id="a"><onentry><ros_service_send_request name="speak" /></onentry>
+        <ros_service_handle_response name="speak" target="b" />
+    </state>
+    <state id="b" />
+</ascxml>
+-- timer.ascxml --
+<ascxml name="Timer" version="1.0" initial="a">
+    <ros_service_server name="stop" service_name="/Navigator/Start" type="std_srvs/Empty" />
+    <state id="a">
+        <ros_service_handle_request name="stop" target="a"><ros_service_send_response name="stop" />
+        </ros_service_handle_request>
+    </state>
+</ascxml>
+-- p.jani --
+{"properties": []}
+"""
+NARRATOR = """\
+-- nodes/narrator.ascxml --
+<ascxml name="Narrator" version="1.0" initial="a">
+    <ros_service_server name="speak" service_name="/Narrator/Narrate" type="std_srvs/Empty" />
+    <state id="a">
+        <ros_service_handle_request name="speak" target="a"><ros_service_send_response name="speak" />
+        </ros_service_handle_request>
+    </state>
+</ascxml>
+"""
+
+
+def test_the_file_of_a_server_that_is_not_listed() -> None:
+    assert not offered(CALLS, QUICK_FIX), "a server whose name is not similar"
+    after = done(CALLS + NARRATOR, "List `narrator.ascxml` in `main.xml`")
+    assert list(after) == ["main.xml"]
+    assert '<input type="node-ascxml" src="nodes/narrator.ascxml" />' in after["main.xml"]
+
+
+def test_a_fix_that_adds_a_finding_is_not_offered() -> None:
+    """Two of three machines agree on a type. Only a change of the third one adds no finding."""
+    machine = '<ascxml name="{0}" version="1.0" initial="a"><ros_topic_{1} name="p" topic="/p" type="std_msgs/{2}" />'
+    machine += '<state id="a" /></ascxml>\n'
+    inputs = system_file(*(f"node_models node-ascxml {name}.ascxml" for name in "abc"))
+
+    def written(caret: str) -> str:
+        nodes = {"a": ("publisher", "Int32"), "b": ("subscriber", "Int32"), "c": ("subscriber", "Int16")}
+        files = {name: machine.format(name, *node) for name, node in nodes.items()}
+        files[caret] = files[caret].replace("std_msgs", "‸std_msgs")
+        return f"-- main.xml --\n{inputs}\n" + "".join(f"-- {n}.ascxml --\n{text}" for n, text in files.items())
+
+    assert [action.title for action in offered(written("c"), QUICK_FIX)] == ["Change to `std_msgs/Int32`"]
+    assert not offered(written("a"), QUICK_FIX)
+
+
 # ------------------------------------------------------------------ whole files
 
 OLDER = """\

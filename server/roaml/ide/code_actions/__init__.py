@@ -3,17 +3,17 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 
-from roaml.diagnostics import Diagnostic, Fix, Severity
+from roaml.diagnostics import Diagnostic, Fix
 from roaml.ide.code_actions.action import EXTRACT, FIX_ALL, QUICK_FIX, REWRITE, CodeAction, WorkspaceEdit, text_edits
+from roaml.ide.code_actions.harmless import harmless
 from roaml.ide.code_actions.quick_fixes import repairs
 from roaml.ide.code_actions.refactorings import refactorings
 from roaml.project.fixing import Choice, fix_all, preferred_fix, safe_fix
 from roaml.project.workspace import Snapshot
-from roaml.text import Span, apply_edits
+from roaml.text import Span
 
 
 def actions(snapshot: Snapshot, path: str, place: Span, is_requested: Callable[[str], bool]) -> Iterator[CodeAction]:
@@ -39,42 +39,20 @@ def actions(snapshot: Snapshot, path: str, place: Span, is_requested: Callable[[
 
 
 def quick_fixes(snapshot: Snapshot, path: str, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """All fixes of a diagnostic: first those of its rule, then those of `code_actions.quick_fixes`, which a rule cannot
-    offer."""
-    for fix in diagnostic.fixes:
-        if diagnostic.code in _CHECKED_BEFORE and _adds_findings(snapshot, path, fix):
-            continue
-        yield CodeAction(fix.title, QUICK_FIX, partial(_made, path, fix), diagnostic, fix.preferred)
+    """The fixes of a diagnostic that add no finding (`harmless`): those of its rule, and those of
+    `code_actions.quick_fixes`, which a rule cannot offer. The preferred ones of the latter come first, because they
+    know the other files of the workspace."""
+    yield from harmless(snapshot, diagnostic.code, _all_fixes(snapshot, path, diagnostic))
+
+
+def _all_fixes(snapshot: Snapshot, path: str, diagnostic: Diagnostic) -> Iterator[CodeAction]:
     titles = {fix.title for fix in diagnostic.fixes}
-    for action in repairs(snapshot, diagnostic):
-        if action.title not in titles:
-            yield action
-
-
-_CHECKED_BEFORE = frozenset(
-    (
-        *("unanswered-goal", "unanswered-halt", "unanswered-request", "unanswered-tick", "silent-client"),
-        *("discarded-answer", "silent-server", "undeclared-handle", "undeclared-variable", "unreachable-state"),
-        *("inexact-max-time", "self-assignment", "shadowed-transition"),
-    )
-)
-"""The rules whose fixes depend on other paths or other parts of the machine: a fix is offered if it adds no finding."""
-
-
-def _adds_findings(snapshot: Snapshot, path: str, fix: Fix) -> bool:
-    """Whether a file, or another one of its systems, has an additional error or warning after a fix."""
-    source = snapshot.analysis.source(path)
-    if source is None:
-        return False
-    after = snapshot.with_texts({path: apply_edits(source.text, tuple(sorted(fix.edits)))})
-    systems = snapshot.analysis.memberships.get(path, ())
-    paths = dict.fromkeys((path, *(member for system in systems for member in snapshot.analysis.files_of(system))))
-    return bool(_problems(after, paths) - _problems(snapshot, paths))
-
-
-def _problems(snapshot: Snapshot, paths: Iterable[str]) -> Counter[tuple[str, str]]:
-    found = ((path, d) for path in paths for d in snapshot.checker.diagnostics(path))
-    return Counter((path, d.code) for path, d in found if d.severity >= Severity.WARNING)
+    across = [action for action in repairs(snapshot, diagnostic) if action.title not in titles]
+    first = [action for action in across if action.preferred and not action.resources]
+    yield from first
+    for fix in diagnostic.fixes:
+        yield CodeAction(fix.title, QUICK_FIX, partial(_made, path, fix), diagnostic, fix.preferred and not first)
+    yield from (action for action in across if action not in first)
 
 
 def _made(path: str, fix: Fix) -> WorkspaceEdit:

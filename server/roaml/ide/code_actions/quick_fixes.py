@@ -163,6 +163,32 @@ def _unknown_node(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAc
         yield _action(diagnostic, title, make, creates=True)
 
 
+def _endpoint(kinds: tuple[SymbolKind, ...], snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
+    """An action that lists a machine of the system's folder that declares the missing side of a topic, service or
+    action.
+
+    Args:
+        kinds: the declarations that are missing, for example a server.
+    """
+    analysis, name = snapshot.analysis, _text_at(snapshot.analysis, diagnostic).strip("/")
+    for system in analysis.memberships.get(diagnostic.path, ())[:1] if name else ():
+        listed = {file.path for file in analysis.listed(system)}
+        for path in snapshot.listed:
+            if path not in listed and is_below(path, folder_of(system)) and _declares(analysis, path, kinds, name):
+                title = f"List `{name_of(path)}` in `{name_of(system)}`"
+                edits = add_input(analysis, system, SystemSection.NODE_MODELS, "node-ascxml", path)
+                yield _action(diagnostic, title, known(WorkspaceEdit({system: edits} if edits else {})), preferred=True)
+                return
+
+
+def _declares(analysis: Analysis, path: str, kinds: tuple[SymbolKind, ...], name: str) -> bool:
+    machine = analysis.machine(path) if analysis.kind(path) is FileKind.MACHINE else None
+    return machine is not None and any(
+        d.kind in kinds and isinstance(d.interface, Name) and d.interface.value.strip("/") == name
+        for d in machine.declarations
+    )
+
+
 def _is_machine(analysis: Analysis, path: str, name: str) -> bool:
     machine = analysis.machine(path)
     return machine is not None and machine.name is not None and machine.name.value == name
@@ -445,10 +471,14 @@ FIXES_ACROSS_FILES: dict[str, Callable[[Snapshot, Diagnostic], Iterator[CodeActi
     "input-count": _no_tree,
     "invalid-name": _name,
     "machine-name": _name,
+    "missing-client": partial(_endpoint, (SymbolKind.SERVICE_CLIENT, SymbolKind.ACTION_CLIENT)),
     "missing-element": _no_section,
     "missing-file": _missing_file,
     "missing-include": _missing_include,
+    "missing-server": partial(_endpoint, (SymbolKind.SERVICE_SERVER, SymbolKind.ACTION_SERVER)),
     "small-clock-step": _slower_timer,
+    "topic-without-publisher": partial(_endpoint, (SymbolKind.PUBLISHER,)),
+    "topic-without-subscriber": partial(_endpoint, (SymbolKind.SUBSCRIBER,)),
     "tree-element-in-node": _element_in_node,
     "unknown-node": _unknown_node,
     "unknown-port": _unknown_port,

@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
-from roaml.edit.elements import removal
+from roaml.edit.elements import last_in, level_of, removal
 from roaml.model.behavior.explore import Behavior, BehaviorStep, Fault, FaultKind
 from roaml.model.behavior.phases import OWED, Duty, DutyKind, ProtocolEvent
 from roaml.model.machine import Handler, If, ReturnHalted, ReturnStatus, RosSend, Statement, statements
@@ -93,7 +94,7 @@ def _finding(context: MachineContext, behavior: Behavior, step: BehaviorStep, fa
     shared = where == fault.statement.element.name_span and not _twice(step, fault)
     severity = Severity.INFORMATION if shared else None
     message = _message(behavior, step, fault, first)
-    return RULE.at(where, message, *_fixes(context, step, fault), severity=severity, related=related)
+    return RULE.at(where, message, *_fixes(context, step, fault, first), severity=severity, related=related)
 
 
 def _message(behavior: Behavior, step: BehaviorStep, fault: Fault, first: Statement | None) -> str:
@@ -211,7 +212,7 @@ _QUESTION = {
 }
 
 
-def _fixes(context: MachineContext, step: BehaviorStep, fault: Fault) -> Iterator[Fix]:
+def _fixes(context: MachineContext, step: BehaviorStep, fault: Fault, first: Statement | None) -> Iterator[Fix]:
     element = fault.statement.element
     if fault.kind is FaultKind.WRONG_KIND:
         right = (
@@ -220,8 +221,23 @@ def _fixes(context: MachineContext, step: BehaviorStep, fault: Fault) -> Iterato
             else '<bt_return_status status="SUCCESS" />'
         )
         yield Fix(f"Change to `{right}`", (TextEdit(element.span, right),), preferred=False)
+    elif (before := _if_before(step.handler, fault.statement, first)) is not None:
+        text = context.source.text[slice(*element.span)]
+        level = level_of(context.document)
+        added = last_in(context.document, before.element, "<else />", f"{level}{text}")
+        yield Fix("Move this answer into `<else />`", (added, removal(context.source.text, element.span)))
     elif _is_last(step.handler, fault.statement):
         yield Fix(f"Remove this `<{element.name}>`", (removal(context.source.text, element.span),), preferred=False)
+
+
+def _if_before(handler: Handler, statement: Statement, first: Statement | None) -> If | None:
+    """The `<if>` without `<else/>` directly before a statement, if the first answer is in one of its branches: the
+    second answer is probably that of the other paths."""
+    for target in handler.targets:
+        for before, after in itertools.pairwise(target.body):
+            if after is statement and isinstance(before, If) and before.otherwise is None and before.element.complete:
+                return before if any(inner is first for inner in statements((before,))) else None
+    return None
 
 
 def _is_last(handler: Handler, statement: Statement) -> bool:

@@ -17,6 +17,7 @@ from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support import misspelled
 from roaml.rules.support.answers import behaviors
+from roaml.text import Edit, TextEdit
 
 _ANSWER = "ros_action_canceled"
 _NEW_GOAL = (ProtocolPart.GOAL, ProtocolPart.THREAD_START)
@@ -97,8 +98,8 @@ def _cancels(machine: Machine, bodies: Iterable[tuple[Statement, ...]], declarat
 
 
 def _fixes(context: MachineContext, chart: Chart, handler: Handler, declaration: Declaration) -> Iterator[Fix]:
-    """A fix that ends the goal as canceled. No fix is offered unless exactly one variable of the chart holds ids of
-    goals of the action."""
+    """A fix that ends the goal as canceled: instead of otherwise, if the handler ends it. No fix is offered unless
+    exactly one variable of the chart holds ids of goals of the action."""
     ids = {
         statement.goal_id.tree.name
         for statement in chart.statements
@@ -108,8 +109,19 @@ def _fixes(context: MachineContext, chart: Chart, handler: Handler, declaration:
     places = [target.element or handler.element for target in handler.targets]
     if len(ids) == 1 and handler.handle and all(place.complete for place in places):
         line = f'<{_ANSWER} name="{handler.handle.value}" goal_id="{ids.pop()}" />'
-        edits = tuple(last_in(context.document, place, line) for place in places)
+        ends = [end for target in handler.targets for end in _ends(context.machine, target.body, declaration)]
+        if ends:
+            edits: tuple[Edit, ...] = tuple(TextEdit(end.element.span, line) for end in ends)
+        else:
+            edits = tuple(last_in(context.document, place, line) for place in places)
         yield Fix(f"End the goal with `<{_ANSWER}>`", edits, preferred=False)
+
+
+def _ends(machine: Machine, body: tuple[Statement, ...], declaration: Declaration) -> Iterator[RosSend]:
+    """The statements that end a goal of the action."""
+    sent = (statement for statement in statements(body) if isinstance(statement, RosSend))
+    results = (statement for statement in sent if statement.part is ProtocolPart.RESULT)
+    yield from (statement for statement in results if find_handle(machine, statement) is declaration)
 
 
 RULE = Rule(

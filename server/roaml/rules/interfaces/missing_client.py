@@ -9,8 +9,8 @@ from roaml.diagnostics import Finding, Severity
 from roaml.model.gaps import InterfaceAct
 from roaml.model.syntax import Name
 from roaml.roles import SymbolKind
-from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
-from roaml.rules.support.interfaces import declared, name_span, other_kind
+from roaml.rules.rule import MachineContext, Rule, did_you_mean
+from roaml.rules.support.interfaces import close_channels, declared, name_span, other_kind, renamings
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -25,10 +25,11 @@ def check(context: MachineContext) -> Iterator[Finding]:
         unserved = [c.name for c in channels.values() if c.users and not c.sources] if unused else []
         for declaration, channel in unused:
             if not system.may(InterfaceAct(other_kind(kind)), channel.name):
-                close = close_names(channel.name, unserved)
+                close = close_channels(channel.name, unserved)
                 message = f"no machine uses the {kind_name} `{channel.name}`, so the server is never called"
                 message += did_you_mean(close)
-                fixes = replacements(name_span(declaration), close if isinstance(declaration.interface, Name) else ())
+                names = close if isinstance(declaration.interface, Name) else ()
+                fixes = renamings(context, name_span(declaration), names)
                 yield RULE.at(name_span(declaration), message, *fixes)
 
 

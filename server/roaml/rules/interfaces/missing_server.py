@@ -7,13 +7,11 @@ from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.model.gaps import InterfaceAct
-from roaml.model.machine import Declaration, Handler, Machine, RosSend
 from roaml.model.system import System
-from roaml.model.value_types import CHANNEL_KINDS, find_handle
+from roaml.model.value_types import CHANNEL_KINDS
 from roaml.roles import SymbolKind
-from roaml.rules.rule import MachineContext, Rule, TreeContext, close_names, did_you_mean
-from roaml.rules.support.interfaces import Naming, named_here, other_kind
-from roaml.text import Span, TextEdit
+from roaml.rules.rule import MachineContext, Rule, TreeContext, did_you_mean
+from roaml.rules.support.interfaces import Naming, close_channels, named_here, other_kind, renamings
 
 
 def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
@@ -37,32 +35,13 @@ def _finding(context: MachineContext | TreeContext, system: System, naming: Nami
             )
             related = (Related(other.sources[0].symbol, "the server"), *naming.related)
             return RULE.at(span, message, *_rename(context, naming, (other.name,)), related=related)
-    close = close_names(channel.name, [c.name for c in served])
+    close = close_channels(channel.name, [c.name for c in served])
     message = f"no machine serves the {kind} `{channel.name}`, so its clients never get a response{did_you_mean(close)}"
     return RULE.at(span, message, *_rename(context, naming, close), related=naming.related)
 
 
 def _rename(context: MachineContext | TreeContext, naming: Naming, names: Iterable[str]) -> Iterator[Fix]:
-    """Fixes that rename an interface where it is declared, and where its name is used as the handle."""
-    if not naming.literal:
-        return
-    spans = [naming.span]
-    if isinstance(context, MachineContext):
-        declared = [d for d in context.machine.declarations if d.interface and d.interface.span == naming.span]
-        spans += [s for d in declared if d.handle is d.interface for s in _handle_spans(context.machine, d)]
-    for number, name in enumerate(names):
-        edits = tuple(TextEdit(span, name) for span in spans)
-        yield Fix(f"Change to `{name}`", edits, preferred=number == 0)
-
-
-def _handle_spans(machine: Machine, declaration: Declaration) -> Iterator[Span]:
-    """The places where the rest of the machine refers to a declaration."""
-    for chart in machine.charts:
-        users: list[Handler | RosSend] = [h for state in chart.states for h in state.handlers]
-        users += [s for s in chart.statements if isinstance(s, RosSend)]
-        for user in users:
-            if user.handle is not None and find_handle(machine, user) is declaration:
-                yield user.handle.span
+    yield from renamings(context, naming.span, names if naming.literal else ())
 
 
 RULE = Rule(

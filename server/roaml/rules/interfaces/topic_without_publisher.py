@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Severity
 from roaml.model.gaps import InterfaceAct
 from roaml.roles import ProtocolPart, SymbolKind
-from roaml.rules.rule import MachineContext, Rule, TreeContext, close_names, did_you_mean, replacements
-from roaml.rules.support.interfaces import has_publisher, named_here
+from roaml.rules.rule import MachineContext, Rule, TreeContext, did_you_mean
+from roaml.rules.support.interfaces import close_channels, has_publisher, named_here, renamings
 
 _PUBLISHES = InterfaceAct(SymbolKind.PUBLISHER, ProtocolPart.MESSAGE)
 
@@ -25,12 +25,12 @@ def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
         if not naming.use.receives or system.may(_PUBLISHES, topic.name):
             continue
         # A topic that is declared on both sides is unlikely to be misspelled.
-        close = close_names(topic.name, () if topic.sources else published)
+        close = close_channels(topic.name, () if topic.sources else published)
         silent = " (a publisher is declared but never publishes)" if topic.sources else ""
         message = (
             f"no machine publishes on the topic `{topic.name}`{silent}, so no message arrives{did_you_mean(close)}"
         )
-        fixes = replacements(naming.span, close if naming.literal else ())
+        fixes = renamings(context, naming.span, close if naming.literal else ())
         # A machine that never waits for this topic alone may have inputs that are not used in this system.
         needed = bool(close or topic.sources or naming.use.awaited)
         severity = Severity.ERROR if needed else Severity.WARNING

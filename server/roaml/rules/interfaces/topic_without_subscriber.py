@@ -9,8 +9,8 @@ from roaml.diagnostics import Finding, Severity
 from roaml.model.gaps import InterfaceAct
 from roaml.model.syntax import Name
 from roaml.roles import SymbolKind
-from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
-from roaml.rules.support.interfaces import declared, name_span
+from roaml.rules.rule import MachineContext, Rule, did_you_mean
+from roaml.rules.support.interfaces import close_channels, declared, name_span, renamings
 from roaml.scxml.names import topic_message
 
 
@@ -26,10 +26,11 @@ def check(context: MachineContext) -> Iterator[Finding]:
     unpublished = [t.name for t in system.topics.values() if t.users and not t.sources] if unheard else []
     for declaration, topic in unheard:
         if not system.may(InterfaceAct(SymbolKind.SUBSCRIBER), topic.name):
-            close = close_names(topic.name, unpublished)
+            close = close_channels(topic.name, unpublished)
             message = f"no machine subscribes to the topic `{topic.name}`, so its messages have no effect"
             message += did_you_mean(close)
-            fixes = replacements(name_span(declaration), close if isinstance(declaration.interface, Name) else ())
+            names = close if isinstance(declaration.interface, Name) else ()
+            fixes = renamings(context, name_span(declaration), names)
             yield RULE.at(name_span(declaration), message, *fixes)
 
 

@@ -23,12 +23,54 @@ from roaml.xml_syntax import Element
 
 def check(context: MachineContext) -> Iterator[Finding]:
     machine = context.machine
+    undeclared: dict[tuple[str, tuple[SymbolKind, ...]], list[tuple[Element, Name]]] = {}
+    used: set[str] = set()
     for element, handle, kinds in _uses(machine):
         right = [d.handle.value for d in machine.declarations if d.handle and d.kind in kinds]
         if handle is None:
             yield from _without_name(element, kinds, right)
-        elif handle.value not in right and not _may_be_declared(machine, handle.value, kinds):
-            yield _undeclared(context, element, handle, kinds, right)
+            continue
+        used.add(handle.value)
+        if handle.value not in right and not _may_be_declared(machine, handle.value, kinds):
+            undeclared.setdefault((handle.value, kinds), []).append((element, handle))
+    for (name, kinds), uses in undeclared.items():
+        right = [d.handle.value for d in machine.declarations if d.handle and d.kind in kinds]
+        unused = [d for d in machine.declarations if d.handle and d.kind in kinds and d.handle.value not in used]
+        wrong = _misspelled_declaration(context, name, unused, len(uses))
+        if wrong is not None:
+            yield _declared_otherwise(wrong, [handle for _, handle in uses])
+        else:
+            yield from (_undeclared(context, element, handle, kinds, right) for element, handle in uses)
+
+
+def _misspelled_declaration(
+    context: MachineContext, name: str, unused: list[Declaration], uses: int
+) -> Declaration | None:
+    """The declaration that is misspelled if an undeclared name is spelled correctly; `None` if the name is probably the
+    misspelled one. A declaration that nothing refers to is misspelled if several elements use the name, or if the other
+    machines know only the interface `name`."""
+    similar = close_names(name, [d.handle.value for d in unused if d.handle], 1)
+    for declaration in unused:
+        if declaration.handle is not None and declaration.handle.value in similar:
+            kind, declared = declaration.kind, declaration.handle.value
+            is_known = _elsewhere(context, name, kind) is not None
+            is_other_known = _elsewhere(context, declared, kind) is not None
+            if is_known > is_other_known or (uses > 1 and is_known == is_other_known):
+                return declaration
+    return None
+
+
+def _declared_otherwise(declaration: Declaration, uses: list[Name]) -> Finding:
+    assert declaration.handle is not None
+    handle, name = declaration.handle, uses[0].value
+    elements = "an element uses" if len(uses) == 1 else f"{len(uses)} elements use"
+    tag = DECLARING_ELEMENTS[declaration.kind]
+    message = (
+        f"nothing uses the `<{tag}>` `{handle.value}`, but {elements} `{name}`, which is not declared; did you mean "
+        f"`{name}`?"
+    )
+    related = (Related(use.span, "used here") for use in uses)
+    return RULE.at(handle.span, message, *replacements(handle.span, (name,)), related=related)
 
 
 def _without_name(element: Element, kinds: tuple[SymbolKind, ...], right: list[str]) -> Iterator[Finding]:

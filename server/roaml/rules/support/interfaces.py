@@ -3,23 +3,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
-from roaml.diagnostics import Related
+from roaml.diagnostics import Fix, Related
 from roaml.expr.types import leaves
 from roaml.expr.zero import zero_text
 from roaml.model.gaps import OTHER_SIDE
-from roaml.model.machine import Declaration
+from roaml.model.machine import Declaration, Handler, Machine, RosSend
 from roaml.model.outline import InterfaceUse
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
 from roaml.model.system import CLOCK_TOPIC, Channel, System, SystemAutomaton
 from roaml.model.tree import TreeNode
+from roaml.model.value_types import find_handle
 from roaml.record import Record
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, TreeContext
 from roaml.rules.support.instances import instances
-from roaml.text import Span
+from roaml.suggest import are_similar, close_names
+from roaml.text import Span, TextEdit
 
 
 class Naming(Record, frozen=True):
@@ -117,6 +119,45 @@ def name_span(declaration: Declaration) -> Span:
     if isinstance(declaration.interface, Name):
         return declaration.interface.span
     return declaration.handle.span if declaration.handle else declaration.element.name_span
+
+
+def close_channels(name: str, names: Iterable[str]) -> tuple[str, ...]:
+    """The names of topics, services or actions that are similar to `name`, the most similar first.
+
+    If two names have equally many parts between `/`, all parts must be similar: `/TimeComponent/Stop` is not a
+    misspelled `/DoorComponent/Open`.
+    """
+    parts = _parts(name)
+    return tuple(
+        close
+        for close in close_names(name, names)
+        if len(_parts(close)) != len(parts) or all(map(are_similar, parts, _parts(close)))
+    )
+
+
+def _parts(name: str) -> list[str]:
+    return name.strip("/").split("/")
+
+
+def renamings(context: MachineContext | TreeContext, span: Span, names: Iterable[str]) -> Iterator[Fix]:
+    """A fix for each of `names`, the first one preferred, that makes it the name of the topic, service or action at
+    `span`, also where the name is used as the handle."""
+    spans = [span]
+    if isinstance(context, MachineContext):
+        written = [d for d in context.machine.declarations if d.interface and d.interface.span == span]
+        spans += [s for d in written if d.handle is d.interface for s in _handle_spans(context.machine, d)]
+    for number, name in enumerate(names):
+        yield Fix(f"Change to `{name}`", tuple(TextEdit(s, name) for s in spans), preferred=number == 0)
+
+
+def _handle_spans(machine: Machine, declaration: Declaration) -> Iterator[Span]:
+    """The places where the rest of the machine refers to a declaration."""
+    for chart in machine.charts:
+        users: list[Handler | RosSend] = [h for state in chart.states for h in state.handlers]
+        users += [s for s in chart.statements if isinstance(s, RosSend)]
+        for user in users:
+            if user.handle is not None and find_handle(machine, user) is declaration:
+                yield user.handle.span
 
 
 def has_publisher(system: System, topic: Channel) -> bool:

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which fixes of a finding are offered: those that add no error and no warning to the systems of the changed files.
+
+Each fix is made in a copy of the workspace, which is checked. The result is remembered as long as the files stay the
+same, because editors request the fixes again whenever the caret moves.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+
+from roaml.diagnostics import Severity
+from roaml.ide.code_actions.action import CodeAction, WorkspaceEdit
+from roaml.project.workspace import Snapshot
+from roaml.text import Span, apply_edits
+
+_HIDING = frozenset(
+    (
+        *("xml-syntax", "duplicate-attribute", "undefined-entity", "stray-text", "foreign-namespace", "document-type"),
+        *("json-syntax", "json-schema", "jani-syntax", "jani-name", "jani-type", "toml-syntax", "invalid-setting"),
+        *("interface-syntax", "mock-syntax", "script-syntax", "script-name", "script-type", "expression-syntax"),
+        *("unknown-element", "unknown-attribute", "unknown-type", "unknown-field", "unknown-member", "unknown-node"),
+        *("unknown-port", "unknown-remap", "unknown-ros-type", "unknown-function", "unknown-event-parameter"),
+        *("unknown-property-port", "unknown-property-variable", "undeclared-port", "undeclared-parameter"),
+        *("missing-attribute", "missing-element", "missing-file", "missing-include", "missing-port", "missing-value"),
+        *("misplaced-element", "invalid-child", "invalid-location", "invalid-name", "machine-name", "node-kind"),
+        *("unsupported-event", "unsupported-expression", "unsupported-scxml-element", "deprecated-spelling"),
+        *("event-data-unavailable", "length-of-struct", "parameter-declaration", "struct-declaration"),
+        *("tree-format", "tree-name", "tree-structure", "wrong-file-kind", "input-count", "missing-type"),
+    )
+)
+"""The rules about parts that cannot be read, or only in part. What other rules say about such a part is hidden until it
+is fixed, so a fix may reveal findings."""
+
+
+def harmless(snapshot: Snapshot, code: str, actions: Iterable[CodeAction]) -> Iterator[CodeAction]:
+    """The fixes of a finding of the rule `code` that add no error and no warning, in their order. If each fix of a rule
+    about unreadable parts adds some, all of its fixes are offered, because they may only reveal them."""
+    actions = tuple(actions)
+    without = [action for action in actions if action.resources or not _adds_findings(snapshot, action)]
+    yield from without or (actions if code in _HIDING else ())
+
+
+def _adds_findings(snapshot: Snapshot, action: CodeAction) -> bool:
+    """Whether a file that a fix changes, or another one of its systems, has an additional error or warning after it."""
+    diagnostic = action.diagnostic
+    assert diagnostic is not None
+    members = _members(snapshot, (diagnostic.path,))
+    content = tuple(map(snapshot.analysis.source, members))
+    known: dict[tuple[str, Span, str, str], bool] = snapshot.analysis.memo.get(
+        "fixes that add findings", diagnostic.path, (members, content), dict
+    )
+    fix = (diagnostic.code, diagnostic.span, diagnostic.message, action.title)
+    if fix not in known:
+        known[fix] = _adds(snapshot, action.make())
+    return known[fix]
+
+
+def _adds(snapshot: Snapshot, change: WorkspaceEdit) -> bool:
+    sources = {path: snapshot.analysis.source(path) for path in change.edits}
+    texts = {path: apply_edits(s.text, tuple(sorted(change.edits[path]))) for path, s in sources.items() if s}
+    after = snapshot.with_texts(texts)
+    paths = dict.fromkeys((*_members(snapshot, texts), *_members(after, texts)))
+    return bool(_problems(after, paths) - _problems(snapshot, paths))
+
+
+def _members(snapshot: Snapshot, paths: Iterable[str]) -> tuple[str, ...]:
+    """The files, and all files of their systems."""
+    analysis = snapshot.analysis
+    paths = tuple(paths)
+    systems = dict.fromkeys(system for path in paths for system in analysis.memberships.get(path, ()))
+    return tuple(dict.fromkeys((*paths, *(member for system in systems for member in analysis.files_of(system)))))
+
+
+def _problems(snapshot: Snapshot, paths: Iterable[str]) -> Counter[tuple[str, str]]:
+    found = ((path, d) for path in paths for d in snapshot.checker.diagnostics(path))
+    return Counter((path, d.code) for path, d in found if d.severity >= Severity.WARNING)
