@@ -89,10 +89,16 @@ def _dead_ends(
     inside = [step for step in steps if step.source in lost and step.target in lost]
     following = [step for step in inside if follows(step)]
     going_on = backward({step.source for step in following if step.source != step.target}, inside)
-    if going_on >= lost:
-        going_on, following = set(), []  # the steps form endless cycles: report the steps that lead into them
     takers = (s for s in behavior.chart.states if any(h.trigger is TAKING[duty.kind] for h in s.handlers))
     ready = {state.id.value for state in takers if state.id}
+    if going_on >= lost:
+        # The steps form endless cycles: report the one that leads back to where the next event is handled, or the steps
+        # that lead into them.
+        back = [step for step in inside if _is_return(behavior, duty, step, ready)]
+        if len({step.handler for step in back}) == 1:
+            yield from back
+            return
+        going_on, following = set(), []
     early: list[BehaviorStep] = []
     late: list[BehaviorStep] = []
     for step in steps:
@@ -115,6 +121,12 @@ def _dead_ends(
     yield from early
     reported = forward({step.target for step in early}, inside)
     yield from (step for step in ends if step.source not in reported)
+
+
+def _is_return(behavior: Behavior, duty: Duty, step: BehaviorStep, ready: set[str]) -> bool:
+    """Whether a step leads from a state that does not handle the event of `duty` to one that does."""
+    source, target = behavior.configurations[step.source], behavior.configurations[step.target]
+    return target.state in ready and source.state not in ready and not _receives(duty, step)
 
 
 _RECEIVED_AS = {

@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
-from roaml.model.behavior.duties import backward
+from roaml.model.behavior.duties import backward, forward
 from roaml.model.behavior.explore import Behavior, BehaviorStep
-from roaml.model.behavior.phases import Phase
+from roaml.model.behavior.phases import Phase, ProtocolEvent
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.answers import behaviors, plugins
@@ -16,31 +16,53 @@ from roaml.rules.support.node_calls import statuses_at_halt
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report plugins that return RUNNING and then never SUCCESS or FAILURE, unless the tree can interrupt them."""
+    """Report plugins that return RUNNING and then never SUCCESS or FAILURE. If the tree can interrupt them, only those
+    are reported that have returned RUNNING with the prospect of another status before, and have none after a halt
+    either: a plugin that always returns RUNNING works until it is halted."""
     automata = plugins(context)
     if not automata or context.system is None:
         return
-    if any(Phase.RUNNING in statuses_at_halt(context.system, automaton) for automaton in automata):
-        return
+    halted = any(Phase.RUNNING in statuses_at_halt(context.system, automaton) for automaton in automata)
     for behavior in behaviors(context):
         if behavior.chart is context.machine.chart:
-            yield from _endless(behavior)
+            yield from _endless(behavior, halted)
 
 
-def _endless(behavior: Behavior) -> Iterator[Finding]:
-    steps = [step for step in behavior.steps if not (step.event and step.event.part is ProtocolPart.BT_HALT)]
-    ending = {step.source for step in steps if behavior.configurations[step.target].tree is Phase.ENDED}
-    endless = {n for n, c in enumerate(behavior.configurations) if c.tree is Phase.RUNNING} - backward(ending, steps)
-    first = next((step for step in steps if step.target in endless and step.source not in endless), None)
-    again = [step for step in steps if step.source in endless and _returns(behavior, step, endless)]
-    if again and first is not None and first.handler is not again[0].handler:
-        step = again[0]
+def _endless(behavior: Behavior, halted: bool) -> Iterator[Finding]:
+    steps = [step for step in behavior.steps if halted or not (step.event and step.event.part is ProtocolPart.BT_HALT)]
+    phases = [configuration.tree for configuration in behavior.configurations]
+    status = ProtocolEvent(ProtocolPart.BT_STATUS, "")
+    ending = {step.source for step in steps if phases[step.target] is Phase.ENDED and status in step.sent}
+    endless = {n for n, phase in enumerate(phases) if halted or phase is Phase.RUNNING} - backward(ending, steps)
+    if (
+        halted
+    ):  # a variable that keeps its value, such as that of a port, may decide that a plugin runs until it is halted
+        left = {c.state for n, c in enumerate(behavior.configurations) if n not in endless}
+        endless = {n for n in endless if behavior.configurations[n].state not in left}
+    inside = [step for step in steps if step.source in endless]
+    again = [step for step in inside if _returns(behavior, step, endless)]
+    entering = [step for step in steps if step.target in endless and step.source not in endless]
+    turning = next((s for s in entering if phases[s.source] is Phase.RUNNING and _then(s, inside, again)), None)
+    if turning is not None:
+        message = (
+            "after this, the plugin returns RUNNING at each tick and never SUCCESS or FAILURE, so the node never ends; "
+            "go on to a state that returns another status"
+        )
+        related = [Related(_then(turning, inside, again)[0].handler.element.name_span, "RUNNING is returned here")]
+        yield RULE.at(turning.handler.element.name_span, message, related=related)
+    elif again and entering and entering[0].handler is not again[0].handler:
         message = (
             "the plugin returns RUNNING here and never SUCCESS or FAILURE, so the node never ends; add a path that "
             "returns another status"
         )
-        related = [Related(first.handler.element.name_span, "the node begins here")]
-        yield RULE.at(step.handler.element.name_span, message, related=related)
+        related = [Related(entering[0].handler.element.name_span, "the node begins here")]
+        yield RULE.at(again[0].handler.element.name_span, message, related=related)
+
+
+def _then(step: BehaviorStep, inside: list[BehaviorStep], again: list[BehaviorStep]) -> list[BehaviorStep]:
+    """The steps of `again` that can be taken after `step`."""
+    reached = forward({step.target}, inside)
+    return [other for other in again if other.source in reached]
 
 
 def _returns(behavior: Behavior, step: BehaviorStep, endless: set[int]) -> bool:

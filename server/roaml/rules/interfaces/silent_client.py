@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Fix, Severity
+from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import removal
 from roaml.language import HL_SCXML
 from roaml.model.machine import Declaration, RosSend
@@ -40,12 +40,28 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     continue
                 if not {(declaration, element), (None, element)} & sent:
                     sent.add((declaration, element))
+                    accepted = _accepted(context, declaration) if handler.trigger is ProtocolPart.THREAD_START else None
+                    if accepted is not None:
+                        message = (
+                            "the goal that is accepted here is never given to a thread, so it is never executed; add "
+                            f"`<{element}>`, or remove the thread"
+                        )
+                        related = (Related(handler.element.name_span, "this thread waits for the goal"),)
+                        yield RULE.at(accepted.element.name_span, message, related=related)
+                        continue
                     message = (
                         f"this handler is never taken: there is no `<{element}>` for the "
                         f"`<{DECLARING_ELEMENTS[kind]}>` "
                     )
                     message += f"`{declaration.handle.value}`; add one, or remove the handler"
                     yield RULE.at(handler.element.name_span, message, _without(context, declaration, element))
+
+
+def _accepted(context: MachineContext, declaration: Declaration) -> RosSend | None:
+    """The first statement that accepts a goal of the action."""
+    sent = (s for chart in context.machine.charts for s in chart.statements if isinstance(s, RosSend))
+    accepting = (statement for statement in sent if statement.part is ProtocolPart.GOAL_ACCEPTED)
+    return next((s for s in accepting if find_handle(context.machine, s) is declaration), None)
 
 
 def _without(context: MachineContext, declaration: Declaration, sender: str) -> Fix:

@@ -170,4 +170,10 @@ def _uses(machine: Machine) -> Iterator[tuple[Element, Name | None, tuple[Symbol
         yield thread.element, thread.server, HL_SCXML.elements["ros_action_thread"].attributes["name"].refers
 
 
-RULE = Rule("undeclared-handle", Severity.ERROR, "A ROS interface or timer is used but not declared.", machine=check)
+RULE = Rule(
+    "undeclared-handle",
+    Severity.ERROR,
+    "A ROS interface or timer is used but not declared.",
+    machine=check,
+    whole=True,
+)

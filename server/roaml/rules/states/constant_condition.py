@@ -145,9 +145,14 @@ def _numbers_never_sent(context: MachineContext, reported: Collection[Span]) -> 
                     sent = _sent(context, value.place.handler, field, _FROM_SENDERS)
                     if sent is not None:
                         yield from _compared_with_sent(chart, node, field, other, tree, sent)
-                    elif node.operator is Operator.EQUAL and value.use in _CONDITIONS:
-                        names = stored[value.place.chart.scope]
+                        continue
+                    names = stored[value.place.chart.scope]
+                    if node.operator is Operator.EQUAL and value.use in _CONDITIONS:
                         yield from _never_chosen(context, value.place, chart, node, field, other, names)
+                    elif node.operator.kind is OperatorKind.ORDER and place_of(field) in names:
+                        known = chart.at(field)
+                        if known is not None:
+                            yield from _compared_with_sent(chart, node, field, other, tree, known)
 
 
 def _never_chosen(
