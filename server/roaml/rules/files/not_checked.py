@@ -8,20 +8,24 @@ from collections.abc import Callable, Iterator
 from roaml.diagnostics import Finding, Severity
 from roaml.expr.types import BASE_TYPES
 from roaml.interfaces.registry import NotFound
+from roaml.language import HL_SCXML
 from roaml.model.expand import node_at
 from roaml.model.gaps import Act, GapAct, InterfaceAct, answers
 from roaml.model.globals import global_variables
 from roaml.model.kinds import FileKind
+from roaml.model.machine import Machine
 from roaml.model.ros import InterfaceType
 from roaml.model.system import Fact, System, may_give_variable
 from roaml.model.system_file import SystemSection
-from roaml.model.vocabulary import FOREIGN_TYPES
+from roaml.model.vocabulary import DECLARING_ELEMENTS, FOREIGN_TYPES
 from roaml.record import Record
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule, SystemContext, TreeContext
 from roaml.rules.support.interfaces import has_publisher, named_by_ports, port_span
 from roaml.scxml.names import topic_message
+from roaml.suggest import close_names
 from roaml.text import Span
+from roaml.xml_syntax import Element
 
 _ANY_PLUGIN: set[Fact] = {(GapAct.PLUGIN, None)}
 """The facts that an unreadable file may contain if a system lists it as a plugin: a plugin with any name."""
@@ -31,22 +35,69 @@ _MAX_NAMED_QUESTIONS = 3
 
 
 def check(context: MachineContext | TreeContext | SystemContext) -> Iterator[Finding]:
-    if context.system is None:
-        return
-    if isinstance(context, MachineContext) and not context.all_structs:
-        yield from _unknown_types(context)
-    causes = list(_causes(context, context.system))
-    questions = list(_questions(context.system, context.interface)) if causes else []
     texts_at: dict[Span, list[str]] = {}
+    if isinstance(context, MachineContext) and context.system is not None and not context.all_structs:
+        yield from _unknown_types(context)
+    causes = list(_causes(context, context.system)) if context.system is not None else []
+    questions = list(_questions(context.system, context.interface)) if context.system is not None and causes else []
     for span, facts in causes:
         texts = texts_at.setdefault(span, [])
         texts += [question.text for question in questions if question.text not in texts and question.may_be(facts)]
+    if isinstance(context, MachineContext):
+        for element, span in _misspelled(context.machine):
+            texts_at.setdefault(span, []).extend(_of_machine(context, element))
     for span, texts in texts_at.items():
         if texts and _is_unresolved(context, span):
             reason, advice = "because a listed plugin cannot be read", "fix the errors of that plugin first"
             yield RULE.at(span, f"not checked, {reason}: {_listing(texts)}; {advice}")
         elif texts:
             yield RULE.at(span, f"not checked because of this error: {_listing(texts)}; fix the error first")
+
+
+def _misspelled(machine: Machine) -> Iterator[tuple[Element, Span]]:
+    """The elements of a machine that are unknown and similar to known ones, and those with an attribute of this kind,
+    each with the place of the wrong name."""
+    for element in machine.element.walk():
+        if element.prefix:
+            continue
+        type_ = HL_SCXML.elements.get(element.name)
+        if type_ is None:
+            if close_names(element.name, HL_SCXML.elements, 1):
+                yield element, element.name_span
+            continue
+        for attribute in element.attributes:
+            if attribute.name not in type_.attributes and close_names(attribute.name, type_.attributes, 1):
+                yield element, attribute.name_span
+
+
+def _of_machine(context: MachineContext, element: Element) -> Iterator[str]:
+    """The questions about a machine that a misspelled element, or its misspelled attribute, leaves open, as clauses."""
+    charts = context.machine.charts
+    handlers = [handler for chart in charts for state in chart.states for handler in state.handlers]
+    is_declaration = not any(state.element.span.contains(element.span.start) for c in charts for state in c.states)
+    if any(chart.data for chart in charts):
+        yield "which values the variables have"
+    asked = dict.fromkeys(_ASKED[handler.trigger] for handler in handlers if handler.trigger in _ASKED)
+    if asked:
+        yield f"whether each {_or(tuple(asked))} is answered"
+    if context.system is not None and is_declaration:
+        yield "which values machines send"
+        if DECLARING_ELEMENTS[SymbolKind.TIMER] in (element.name, *close_names(element.name, HL_SCXML.elements)):
+            yield "how the rates of the timers fit together"
+
+
+_ASKED = {
+    ProtocolPart.BT_TICK: "tick",
+    ProtocolPart.BT_HALT: "halt",
+    ProtocolPart.REQUEST: "request",
+    ProtocolPart.GOAL: "goal",
+    ProtocolPart.THREAD_START: "goal",
+}
+"""The kinds of events that require an answer -> what users call them."""
+
+
+def _or(words: tuple[str, ...]) -> str:
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} or {words[-1]}"
 
 
 def _is_unresolved(context: MachineContext | TreeContext | SystemContext, span: Span) -> bool:
