@@ -3,11 +3,13 @@
 
 A document has the sections What it does, Why, Fix, Bad and Good, without Fix if the rule offers none. The bad example
 has a finding of the rule and no other warning or error; the good one has no warning, no error and no finding of the
-rule. Each fix of the bad example is made: it removes its finding; a preferred one adds no error.
+rule, and is near to the bad one. Each fix of the bad example is made: it removes its finding; a preferred one adds no
+error.
 """
 
 from __future__ import annotations
 
+import difflib
 import re
 from pathlib import Path
 from types import ModuleType
@@ -79,6 +81,23 @@ def test_good_example(case: Case, checked: ModuleType, tmp_path: Path) -> None:
     diagnostics, _ = checked.check_text(tmp_path, case.text)
     bad = [d for d in diagnostics if d.code == case.subject or d.severity >= checked.Severity.WARNING]
     assert not bad, shown(bad)
+
+
+TOO_LARGE = {"nesting-too-deep", "tree-too-large"}
+"""Rules about sizes: what is small enough differs in most lines."""
+
+
+@pytest.mark.parametrize("code", [code for code in WITH_EXAMPLE if code not in TOO_LARGE])
+def test_the_good_example_is_near(code: str) -> None:
+    """Some good example has most words of a bad one, in their order: the reader sees what makes the difference."""
+    words = {title: [_WORD.findall(case.text) for case in examples(code, title)] for title in ("Bad", "Good")}
+    pairs = ((bad, good) for bad in words["Bad"] for good in words["Good"])
+    assert any(difflib.SequenceMatcher(None, *pair, autojunk=False).ratio() >= MIN_NEARNESS for pair in pairs)
+
+
+_WORD = re.compile(r"\w+|[^\w\s]")
+MIN_NEARNESS = 0.7
+"""The least part of the words that two examples have in common, from 0 to 1, as computed by `difflib`."""
 
 
 @BAD

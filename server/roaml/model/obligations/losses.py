@@ -92,10 +92,10 @@ def _dead_ends(
     takers = (s for s in behavior.chart.states if any(h.trigger is TAKING[duty.kind] for h in s.handlers))
     ready = {state.id.value for state in takers if state.id}
     if going_on >= lost:
-        # The steps form endless cycles: report the one that leads back to where the next event is handled, or the steps
-        # that lead into them.
+        # The steps form endless cycles: report the steps that lead into them or, for a goal, the one that leads back to
+        # where the next goal is received.
         back = [step for step in inside if _is_return(behavior, duty, step, ready)]
-        if len({step.handler for step in back}) == 1:
+        if duty.kind is DutyKind.RESULT and len({step.handler for step in back}) == 1:
             yield from back
             return
         going_on, following = set(), []
