@@ -89,7 +89,11 @@ class BuildWithMore(build_py):
 
 
 class BuildOrCarry(build_ext):
-    """Copies the C source of each module that does not compile into the wheel."""
+    """Compiles the modules in parallel, and copies the C source of each module that does not compile into the wheel."""
+
+    def finalize_options(self) -> None:
+        super().finalize_options()
+        self.parallel = self.parallel or True  # as many processes as the machine has cores
 
     def run(self) -> None:
         super().run()

@@ -9,12 +9,15 @@ fails, no module is replaced.
 
 from __future__ import annotations
 
+import os
 import shlex
 import subprocess
 import sys
 import sysconfig
 import tempfile
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 import roaml
@@ -42,7 +45,7 @@ class BuildError(Exception):
 
 
 def build(sources: Sequence[Path] = SOURCES) -> list[Path]:
-    """Compile the C code, and write each extension beside its source.
+    """Compile the C code on all cores, and write each extension beside its source.
 
     Returns:
         The paths of the extensions; each file is complete.
@@ -57,11 +60,9 @@ def build(sources: Sequence[Path] = SOURCES) -> list[Path]:
     if not linker:
         raise BuildError("this Python does not provide the compiler flags for extensions")
     targets = [source.with_name(f"{source.stem}{sysconfig.get_config_var('EXT_SUFFIX')}") for source in sources]
-    with tempfile.TemporaryDirectory() as folder:
-        made = [
-            _compiled(linker, source, Path(folder) / target.name)
-            for source, target in zip(sources, targets, strict=True)
-        ]
+    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(os.cpu_count()) as compilers:
+        outputs = [Path(folder) / target.name for target in targets]
+        made = list(compilers.map(partial(_compiled, linker), sources, outputs))
     for target, extension in zip(targets, made, strict=True):
         write_file(str(target), extension)
     return targets
