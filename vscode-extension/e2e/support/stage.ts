@@ -5,7 +5,7 @@ import * as path from "node:path";
 import { setTimeout as wait } from "node:timers/promises";
 import { after, before, test } from "node:test";
 import { inspect, isDeepStrictEqual } from "node:util";
-import { INSTALLATION_TIMEOUT_MS, type Window } from "./window";
+import { FIRST_TIMEOUT_MS, INSTALLATION_TIMEOUT_MS, TIMEOUT_MS, type Window } from "./window";
 import { EXTENSION } from "./paths";
 import { temporaryFolder, Workbench, write, type Options } from "./workbench";
 
@@ -90,15 +90,15 @@ export class Stage {
 
     /**
      * A test with a window. On a busy machine, a workbench may lose a key. So a test that fails is repeated once, in a
-     * new page.
+     * new page and with more time for each wait.
      */
     test(name: string, folder: SharedFolder | (() => string), run: (window: Window) => Promise<void>): void {
         test(name, async () => {
             try {
-                await this.attempt(name, folder, run);
+                await this.attempt(name, folder, run, FIRST_TIMEOUT_MS);
             } catch (error) {
                 console.log(`the first attempt of "${name}" failed: ${inspect(error)}`);
-                await this.attempt(name, folder, run);
+                await this.attempt(name, folder, run, TIMEOUT_MS);
             }
         });
     }
@@ -107,10 +107,12 @@ export class Stage {
         name: string,
         folder: SharedFolder | (() => string),
         run: (window: Window) => Promise<void>,
+        timeout: number,
     ): Promise<void> {
         let window: Window | undefined;
         try {
             window = await this.open(folder);
+            window.limit(timeout);
             await run(window);
         } catch (error) {
             await window?.screenshot(`failed-${name.replaceAll(/\W+/g, "-")}`);

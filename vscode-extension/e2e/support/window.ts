@@ -10,10 +10,18 @@ import type { Frame, Locator, Page } from "playwright-core";
 import { OUTPUT, VERSION } from "./paths";
 
 export class Window {
+    private timeout = TIMEOUT_MS;
+
     constructor(
         readonly page: Page,
         readonly folder: string,
     ) {}
+
+    /** Sets the time limit for each wait, in ms. */
+    limit(timeout: number): void {
+        this.timeout = timeout;
+        this.page.setDefaultTimeout(timeout);
+    }
 
     /** Opens a file by its name, as with Ctrl+P. */
     async openFile(name: string): Promise<void> {
@@ -210,7 +218,7 @@ export class Window {
     }
 
     /** Waits until the language server runs. */
-    async running(timeout = TIMEOUT_MS): Promise<void> {
+    async running(timeout = this.timeout): Promise<void> {
         await this.statusItem(`AS2FM: ${VERSION}`).waitFor({ timeout });
     }
 
@@ -227,7 +235,7 @@ export class Window {
 
     /** Waits for a condition that is not visible on the page; resolves to its value. */
     async until<T>(get: () => T | Promise<T>): Promise<NonNullable<T>> {
-        const end = Date.now() + TIMEOUT_MS;
+        const end = Date.now() + this.timeout;
         for (;;) {
             const value = await get();
             if (value) return value;
@@ -258,7 +266,7 @@ export class Window {
 
     /** The document of a diagram, inside the frames of its webview; if there are several, the one with content. */
     async picture(shown = "svg.picture"): Promise<Frame> {
-        const end = Date.now() + TIMEOUT_MS;
+        const end = Date.now() + this.timeout;
         while (Date.now() < end) {
             for (const frame of this.page.frames()) {
                 if (
@@ -291,6 +299,9 @@ export interface Clip {
 
 /** The time limit for a wait, in ms. It only prevents an endless wait. */
 export const TIMEOUT_MS = 120_000;
+
+/** The time limit for a wait of a test that will be repeated, in ms. What takes longer has probably been lost. */
+export const FIRST_TIMEOUT_MS = 60_000;
 
 /** The time limit for the installation of the server, in ms. Creating an environment may take minutes. */
 export const INSTALLATION_TIMEOUT_MS = 300_000;

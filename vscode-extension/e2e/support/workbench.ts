@@ -95,6 +95,7 @@ export class Workbench {
             this.page = await this.browser.newPage();
             this.page.on("dialog", (dialog) => void dialog.accept()); // whether to leave a page with changes
         }
+        this.page.setDefaultTimeout(TIMEOUT_MS);
         await this.page.goto(`${this.address}/?folder=${folder}`);
         await this.page.locator(".monaco-workbench").waitFor();
         return new Window(this.page, folder);
