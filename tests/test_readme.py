@@ -15,7 +15,24 @@ README = Path(__file__).resolve().parents[1] / "README.md"
 _FILE = re.compile(r"^\*\*`(\S+)`\*\*\n\n```\w+\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _TRANSLATE = re.compile(r"^\$ as2fm-lsp (translate main\.xml)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _VERIFY = re.compile(r"^\$ as2fm-lsp (verify main\.xml[^\n]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+_CHECK = re.compile(r"^\$ as2fm-lsp (--check \S+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _PROGRAM = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+def test_a_misspelled_variable(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run(["init", "my_robot"]) == 0
+    battery = tmp_path / "my_robot/nodes/battery.ascxml"
+    text = battery.read_text(encoding="utf-8")
+    wrong = text.replace('<assign location="level"', '<assign location="levle"', 1)
+    assert wrong != text
+    battery.write_text(wrong, encoding="utf-8")
+    capsys.readouterr()
+    ((command, printed),) = _CHECK.findall(README.read_text(encoding="utf-8"))
+    assert run(command.split()) == 1
+    assert capsys.readouterr().out == printed
 
 
 def test_the_battery_monitor(
