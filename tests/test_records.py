@@ -56,7 +56,7 @@ def test_a_replaced_field_must_exist() -> None:
         replace(Note("a"), title="b")
 
 
-@pytest.mark.parametrize("path", sorted(SERVER.rglob("*.py")), ids=lambda path: path.relative_to(SERVER).as_posix())
-def test_data_are_records(path: Path) -> None:
+def test_data_are_records() -> None:
     """The definition of a dataclass takes 30 times as long as that of a record (`roaml.record`)."""
-    assert not re.search(r"^(from|import) dataclasses", path.read_text(encoding="utf-8"), re.MULTILINE)
+    uses = re.compile(r"^(from|import) dataclasses", re.MULTILINE)
+    assert [path for path in SERVER.rglob("*.py") if uses.search(path.read_text(encoding="utf-8"))] == []
