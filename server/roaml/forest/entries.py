@@ -114,12 +114,6 @@ def entry_of(setting: PortSetting) -> str | None:
     return setting.attribute.name if name == "=" else name or None
 
 
-def names_entry(node: Node, port: str) -> bool:
-    """Whether the value of a port is the name of an entry even without braces."""
-    declared = node.port(port)
-    return declared is not None and declared.names_entry
-
-
 def find_entries(forest: Forest) -> Entries:
     uses = tuple(_uses(forest))
     return Entries(uses, _joined(forest, uses), frozenset(_remapped(forest)), frozenset(_intended(forest, uses)))
@@ -156,7 +150,7 @@ def _uses(forest: Forest) -> Iterator[Use]:
             for name, operator in names_in(use.attribute.value):
                 reads, writes = operator not in (":=", "="), operator != "read"
                 yield Use(path, own, name, reads, writes, operator == ":=", ANY, False, True, node, span)
-        if node.is_subtree or forest.names_tree(node):
+        if forest.calls_tree(node):
             yield from _of_subtree(forest, path, own, node)
         else:
             yield from _of_ports(forest, path, own, node)
@@ -273,7 +267,7 @@ def _taken_over(
 def _calls(forest: Forest) -> Iterator[tuple[str, str, TreeNode]]:
     """The uses of known trees, as outer tree, inner tree and node."""
     for _, tree, node in forest.all_nodes:
-        is_call = node.is_subtree or forest.names_tree(node)
+        is_call = forest.calls_tree(node)
         if is_call and node.plugin is not None and node.plugin.value in forest.trees:
             yield _name(tree), node.plugin.value, node
 

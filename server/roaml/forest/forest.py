@@ -8,7 +8,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 
 from roaml.forest.cpp_types import normal
@@ -19,8 +19,8 @@ from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Absent, Library, Node, 
 from roaml.libraries.version import first_patch
 from roaml.model.kinds import PROJECT_EXTENSION
 from roaml.model.outline import MachineOutline
-from roaml.model.system import CHILDREN_COUNT, System
-from roaml.model.tree import NodeModel, Tree, TreeFile, TreeNode, nodes
+from roaml.model.system import CHILDREN_COUNT, System, library_plugins
+from roaml.model.tree import NodeModel, PortSetting, Tree, TreeFile, TreeNode, nodes
 from roaml.record import Record, replace
 from roaml.roles import UNBOUNDED, Direction, NodeKind
 from roaml.suggest import close_names
@@ -116,12 +116,13 @@ class Forest(Record, frozen=True, eq=False, dict=True):
 
     @cached_property
     def subtrees(self) -> Mapping[str, frozenset[str]]:
-        """The name of each tree -> the names of the trees that it uses, including unknown ones."""
+        """The name of each tree -> the names of the trees that it uses, including unknown ones, and those whose names a
+        system does not accept as elements."""
         return {
             name: frozenset(
                 node.plugin.value
                 for node in nodes(tree)
-                if node.plugin is not None and (node.is_subtree or self.names_tree(node))
+                if node.plugin is not None and (node.is_subtree or (node.compact and node.plugin.value in self.trees))
             )
             for name, (_, tree) in self.trees.items()
         }
@@ -291,7 +292,10 @@ class Forest(Record, frozen=True, eq=False, dict=True):
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """The names of all declared nodes."""
+        """The names of all declared nodes, in a system those of the plugins and of the nodes that can be executed."""
+        if self.system is not None:
+            current = (name for name in library_plugins() if name not in CPP.renamed)
+            return (*(outline.name for _, outline in self.system.plugins), *current)
         own = (name for name, node in CPP.nodes.items() if not node.until)
         others = (node for known in self.libraries for node in known.nodes.values())
         return (*own, *self.models, *(node.name for node in others if not self._is_own(node)))
@@ -326,7 +330,7 @@ class Forest(Record, frozen=True, eq=False, dict=True):
     def known_node(self, node: TreeNode) -> Node | None:
         """The declaration of the type of a node; `None` for subtrees and for types without a declaration."""
         if node not in self._known_nodes:
-            is_tree = node.is_subtree or node.plugin is None or self.names_tree(node)
+            is_tree = node.plugin is None or self.calls_tree(node)
             self._known_nodes[node] = (
                 None
                 if is_tree or node.plugin is None
@@ -341,13 +345,23 @@ class Forest(Record, frozen=True, eq=False, dict=True):
 
     def declaration(self, node: TreeNode) -> Node | None:
         """The declaration of the type of a node; for a subtree, its description in a model. `None` if there is none."""
-        if node.plugin is not None and (node.is_subtree or self.names_tree(node)):
+        if node.plugin is not None and self.calls_tree(node):
             return self.subtree_models.get(node.plugin.value)
         return self.known_node(node)
 
-    def names_tree(self, node: TreeNode) -> bool:
-        """Whether a node in compact form has the name of a tree, which is then executed as a subtree."""
-        return node.compact and node.plugin is not None and node.plugin.value in self.trees
+    def port_settings(self, node: TreeNode) -> Iterable[PortSetting]:
+        """The attributes of a node that set ports. Plugins of a system may have ports that begin with `_`."""
+        return ports_of(node) if self.system is None else node.ports
+
+    def is_unknown(self, node: TreeNode) -> bool:
+        """Whether a node has a type without a declaration."""
+        return node.plugin is not None and not self.calls_tree(node) and self.known_node(node) is None
+
+    def calls_tree(self, node: TreeNode) -> bool:
+        """Whether a node executes a tree: a `<SubTree>`, and without a system also an element with the name of a
+        tree."""
+        named = node.plugin.value if node.compact and node.plugin is not None and self.system is None else None
+        return node.is_subtree or named in self.trees
 
 
 def is_model_of(model: Node, node: Node) -> bool:

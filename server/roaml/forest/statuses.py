@@ -88,7 +88,7 @@ class PossibleStatuses:
         known, version = self.forest.known_node(node), self.forest.settings.version
         settings = {s.key.value: s.value.value if entry_of(s) is None else None for s in ports_of(node)}
         scripts = [attribute.name for attribute in script_attributes(node)]
-        if node.is_subtree or self.forest.names_tree(node):
+        if self.forest.calls_tree(node):
             name = node.plugin.value if node.plugin else ""
             inner = self._tree(name) if name in self.forest.trees else ANY
             return replace(linked(None, {}, scripts, 0, inner, version), conditions=programs(version)["SubTree"])

@@ -117,11 +117,7 @@ def main_tree(forest: Forest) -> Tree:
         if file.main.value in forest.trees:
             return forest.trees[file.main.value][1]
         raise TreeRefusal(Location(forest.path, file.main.span), f"there is no tree `{file.main.value}`")
-    used = {
-        node.plugin.value
-        for _, _, node in forest.all_nodes
-        if node.plugin is not None and (node.is_subtree or forest.names_tree(node))
-    }
+    used = {node.plugin.value for _, _, node in forest.all_nodes if node.plugin is not None and forest.calls_tree(node)}
     candidates = named if len(named) == 1 else [tree for tree in named if tree.id and tree.id.value not in used]
     if len(candidates) == 1:
         return candidates[0]
@@ -135,7 +131,7 @@ def main_tree(forest: Forest) -> Tree:
 
 def _read(forest: Forest, node: TreeNode) -> Written:
     """A node of a forest. The attributes of a `<SubTree>` are those of version 4; others are not needed."""
-    if not node.is_subtree and not forest.names_tree(node):
+    if not forest.calls_tree(node):
         return False, ()
     is_autoremap = is_autoremapped(node, version_3=forest.is_of_version_3(node))
     attributes = [(AUTOREMAP, "true")] if is_autoremap else []

@@ -3,43 +3,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity, Symbol
 from roaml.edit.elements import remove, rename_tag
 from roaml.forest.cpp_types import SIMPLE_TYPES, normal
-from roaml.forest.forest import CPP
-from roaml.libraries import Node, library_node
-from roaml.model.outline import MachineOutline
+from roaml.forest.forest import Forest
+from roaml.libraries import Port
+from roaml.model.syntax import Name
 from roaml.model.tree import NodeModel, PortModel
 from roaml.roles import Direction, SymbolKind
 from roaml.rules.rule import Rule, TreeContext, did_you_mean, listing, replacements
-from roaml.rules.support.forest import forest_of, probably_meant
+from roaml.rules.support.forest import probably_meant, trees_of
 from roaml.suggest import close_names
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    if context.system is None and forest_of(context) is None:
-        return
-    for model in context.file.models:
-        if model.is_subtree:
-            yield from _subtree(context, model)
+    trees = trees_of(context)
+    for model in context.file.models if trees is not None else ():
+        assert trees is not None
         for port in model.ports:
             yield from _type(port)
-        if model.id is not None and not model.is_subtree:
-            yield from _ports(context, model, model.id.value)
+        if model.id is not None and model.is_subtree:
+            yield from _subtree(context, trees, model.id)
+        elif model.id is not None:
+            yield from _ports(context, trees, model, model.id.value)
 
 
-def _subtree(context: TreeContext, model: NodeModel) -> Iterator[Finding]:
-    trees = [tree.id for file in context.files for tree in file.trees]
-    complete = not context.missing_includes and (context.forest is None or context.forest.complete)
-    if model.id is None or model.id.value in trees or not complete:
+def _subtree(context: TreeContext, trees: Forest, name: Name) -> Iterator[Finding]:
+    if name.value in trees.trees or context.missing_includes or not trees.complete:
         return
-    near = probably_meant(model.id.value, trees)
-    described = {other.id.value for other in context.file.models if other.id is not None and other.is_subtree}
-    if near is not None and near not in (described if context.forest is None else context.forest.subtree_models):
-        message = f"there is no tree `{model.id.value}`{did_you_mean((near,))}"
-        yield RULE.at(model.id.span, message, *replacements(model.id.span, (near,)))
+    near = probably_meant(name.value, trees.trees)
+    if near is not None and near not in trees.subtree_models:
+        message = f"there is no tree `{name.value}`{did_you_mean((near,))}"
+        yield RULE.at(name.span, message, *replacements(name.span, (near,)))
 
 
 def _type(port: PortModel) -> Iterator[Finding]:
@@ -62,53 +59,35 @@ def _swapped(written: str) -> str | None:
     return next((name for name in SIMPLE_TYPES if sorted(name) == sorted(written)), None)
 
 
-def _ports(context: TreeContext, model: NodeModel, name: str) -> Iterator[Finding]:
+def _ports(context: TreeContext, trees: Forest, model: NodeModel, name: str) -> Iterator[Finding]:
     """Compare a model with the plugin of a system, or with the node of a library."""
-    path, plugin = context.system.plugin(name) if context.system is not None else ("", None)
-    declared = library_node(name) if context.system is not None else CPP.nodes.get(name)
-    if plugin is not None and path:
-        related = [Related(Symbol(path, SymbolKind.MACHINE, plugin.name), "the plugin")]
-        yield from _compared(context, model, name, _of_plugin(plugin), related, None)
-    elif declared is not None and not (declared.until and context.system is None):
-        severity = Severity.INFORMATION if context.system is None else None
-        yield from _compared(context, model, name, _of_library(declared), (), severity)
-
-
-def _of_plugin(plugin: MachineOutline) -> dict[str, tuple[Direction, ...]]:
-    return {port.key: (port.direction, Direction.INOUT) for port in plugin.ports}
-
-
-def _of_library(node: Node) -> dict[str, tuple[Direction, ...]]:
-    """Port -> the directions that a model may state, the declared one first. An alias has none, which allows any."""
-    directions = {port.name: [port.direction, port.system_direction] for port in node.ports if not port.alias_of}
-    aliases: dict[str, tuple[Direction, ...]] = {port.name: () for port in node.ports if port.alias_of}
-    return aliases | {name: tuple(filter(None, given)) for name, given in directions.items()}
-
-
-def _compared(
-    context: TreeContext,
-    model: NodeModel,
-    name: str,
-    ports: dict[str, tuple[Direction, ...]],
-    related: Iterable[Related],
-    severity: Severity | None,
-) -> Iterator[Finding]:
-    names = [port for port, directions in ports.items() if directions]
+    node = trees.node(name)
+    if node is None or not (node.library or trees.is_machine(node)):
+        return
+    path = trees.system.plugin(name)[0] if trees.system is not None else ""
+    related = [Related(Symbol(path, SymbolKind.MACHINE, name), "the plugin")] if path else []
+    severity = Severity.INFORMATION if trees.system is None else None
+    names = [port.name for port in node.ports if not port.alias_of]
     for port in model.ports:
         if port.name is None:
             continue
-        directions = ports.get(port.name.value)
-        if directions is None:
+        known = node.port(port.name.value)
+        if known is None:
             close = close_names(port.name.value, names)
             hint = did_you_mean(close) or (f"; it has {listing(names)}" if names else "; it has no ports")
             fixes = (*replacements(port.name.span, close), remove(context.document, port.element))
             message = f"`{name}` has no port `{port.name.value}`{hint}"
             yield RULE.at(port.name.span, message, *fixes, severity=severity, related=related)
-        elif directions and port.direction not in directions:
-            tag = f"{directions[0]}put_port" if directions[0] is not Direction.INOUT else "inout_port"
+        elif not known.alias_of and port.direction not in _directions(known, is_machine=not node.library):
+            tag = f"{known.direction}put_port" if known.direction is not Direction.INOUT else "inout_port"
             message = f"the port `{port.name.value}` of `{name}` is an `<{tag}>`"
             fix = rename_tag(port.element, tag)
             yield RULE.at(port.element.name_span, message, fix, severity=severity, related=related)
+
+
+def _directions(port: Port, *, is_machine: bool) -> tuple[Direction | None, ...]:
+    """The directions that a model may state for a port."""
+    return port.direction, Direction.INOUT if is_machine else port.system_direction
 
 
 RULE = Rule(

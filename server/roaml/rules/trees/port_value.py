@@ -11,32 +11,31 @@ from roaml.expr.infer import ADVICE, constant, infer
 from roaml.expr.parse import parse
 from roaml.expr.types import BASE_TYPES, BOOL, INTEGER_RANGES, ScalarKind, fits, is_kind, is_number
 from roaml.forest.cpp_types import is_converted, mismatch
-from roaml.forest.entries import entry_of, names_entry
+from roaml.forest.entries import entry_of
 from roaml.forest.forest import Forest
-from roaml.forest.ports import ports_of
-from roaml.libraries import Node, Port, library_node
+from roaml.libraries import Node, Port
 from roaml.libraries.scripts import SCRIPT
 from roaml.model.expand import PortConstant
 from roaml.model.outline import MachineOutline, PortOutline
 from roaml.model.syntax import Name
-from roaml.model.system import ANY_TYPE, System
+from roaml.model.system import ANY_TYPE
 from roaml.model.tree import (
+    NodeModel,
     PortModel,
     PortSetting,
     TreeNode,
     is_reserved_variable,
     is_variable_name,
     looks_like_reference,
-    nodes,
 )
 from roaml.record import Record
 from roaml.regex import regex
 from roaml.roles import Direction, NodeKind, SymbolKind
 from roaml.rules.rule import Rule, TreeContext, replacements
 from roaml.rules.support.entries import names_of
-from roaml.rules.support.forest import forest_of
+from roaml.rules.support.forest import trees_of
 from roaml.rules.support.instances import instances
-from roaml.text import Decoded, Span, TextEdit
+from roaml.text import Decoded, TextEdit
 
 _NAME = regex(r"[A-Za-z_][\w.-]*\Z", re.ASCII)
 _DOLLAR = regex(r"[$#%]\{(@?[A-Za-z_][\w.-]*)\}\Z", re.ASCII)
@@ -45,16 +44,83 @@ _SYSTEM_STATUSES = ("1", "2", "3")
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    if context.system is not None:
-        yield from _of_system(context, context.system)
-    elif (forest := forest_of(context)) is not None:
-        yield from _alone(context, forest)
+    trees = trees_of(context)
+    if trees is None:
+        return
+    for tree, node in trees.own_nodes:
+        names = names_of(trees, tree.id.value if tree.id else "") | trees.host_entries
+        for setting in trees.port_settings(node):
+            yield from _setting(trees, names, node, setting)
+    for model in context.file.models:
+        for port in model.ports:
+            default = port.element.get("default")
+            if default is not None and port.name is not None and model.id is not None:
+                value = Name(default.value, default.value_span)
+                yield from _default(trees, model, port, port.name.value, value)
+    yield from _given_by_subtrees(context, trees)
 
 
-# ------------------------------------------------------------ references, with and without a system
+def _setting(trees: Forest, names: Set[str], node: TreeNode, setting: PortSetting) -> Iterator[Finding]:
+    known = trees.declaration(node)
+    port = known.port(setting.key.value) if known is not None else None
+    if port is not None and port.type == SCRIPT:
+        return
+    is_text = node.is_subtree or (port is not None and port.type == "string")
+    severity = Severity.WARNING if is_text or trees.system is None else None
+    entry = entry_of(setting) if trees.system is None else setting.variable
+    wrong = list(_reference(trees, setting.value, severity))
+    if not wrong and entry is None:
+        wrong = list(_without_braces(node, port, setting, names, severity))
+    yield from wrong
+    if known is not None and port is not None and not wrong and entry is None:
+        yield from _constant(trees, known, port, setting.value)
 
 
-def _reference(value: Name, severity: Severity | None) -> Iterator[Finding]:
+def _default(trees: Forest, model: NodeModel, port: PortModel, name: str, value: Name) -> Iterator[Finding]:
+    """Check a default of `<TreeNodesModel>`. In a system, it is the value of every node that does not set the port."""
+    assert model.id is not None
+    if trees.system is None:
+        text = value.value.strip('" ')
+        is_text = not text or value.value.strip().startswith("{") or _CODE.match(value.value)
+        problem = None if is_text else _as_library_reads(port.type, text)
+        if problem is not None and problem.severity is Severity.ERROR:
+            yield RULE.at(value.span, f"`{name}` of `{model.id.value}` {problem.message}", severity=Severity.WARNING)
+        return
+    known = None if model.is_subtree else trees.node(model.id.value)
+    declared = known.port(name) if known is not None else None
+    if known is not None and declared is not None:
+        yield from _reference(trees, value, None)
+        if not looks_like_reference(value.value):
+            yield from _constant(trees, known, declared, value)
+
+
+_CODE = regex(r".*[(:<]|[\d.]+f\Z", re.DOTALL)
+"""Matches defaults that are C++ expressions. Models contain these as descriptions for readers; they are not values."""
+
+
+# ------------------------------------------------------------ references
+
+
+def _reference(trees: Forest, value: Name, severity: Severity | None) -> Iterator[Finding]:
+    """Report braces that do not contain exactly a name, in a system one that the translation can use."""
+    wrong = list(_braces(value, severity))
+    yield from wrong
+    text = value.value.strip()
+    if wrong or trees.system is None or not looks_like_reference(text):
+        return
+    variable = text[1:-1].strip()
+    if not text.endswith("}"):
+        message = f"`{value.value}` is neither a variable nor a constant; a variable is written alone, as `{{name}}`"
+        yield RULE.at(value.span, message)
+    elif is_reserved_variable(variable):
+        message = f"`{variable}` is a reserved word of ECMAScript and cannot be the name of a blackboard variable"
+        yield RULE.at(value.span, message)
+    elif not is_variable_name(variable) and variable != "=":
+        rule = "it must contain only letters, digits, `_` and `$`, and not begin with a digit"
+        yield RULE.at(value.span, f"`{variable}` is not a valid name of a blackboard variable: {rule}")
+
+
+def _braces(value: Name, severity: Severity | None) -> Iterator[Finding]:
     """Report braces that do not contain exactly a name.
 
     Args:
@@ -99,13 +165,7 @@ def _without_braces(
     yield RULE.at(span, message, *replacements(span, (f"{{{name}}}",)), severity=severity)
 
 
-def _output(port: str, owner: str, text: str, span: Span, related: list[Related], severity: Severity) -> Finding:
-    """The finding that an output port is set to a constant."""
-    name = text.strip()
-    fixes = [Fix(f"Change to `{{{name}}}`", (TextEdit(span, f"{{{name}}}"),))] if _NAME.match(name) else []
-    reason = f"not the string `{name}`" if name else "not an empty value"
-    message = f"`{port}` of `{owner}` is an output port: it needs a blackboard entry in braces, {reason}"
-    return RULE.at(span, message, *fixes, severity=severity, related=related)
+# ------------------------------------------------------------ constants
 
 
 class ConstantProblem(Record, frozen=True):
@@ -130,99 +190,65 @@ def _instead_of(text: str) -> str:
     return f", not `{text.strip()}`" if text.strip() else ", not an empty value"
 
 
-# ------------------------------------------------------------ trees of systems
-
-
-def _of_system(context: TreeContext, system: System) -> Iterator[Finding]:
-    for tree in context.file.trees:
-        names = {variable for node in nodes(tree) for setting in node.ports if (variable := setting.variable)}
-        for node in nodes(tree):
-            path, plugin = system.plugin(node.plugin.value) if node.plugin and not node.is_subtree else ("", None)
-            for setting in node.ports:
-                port = plugin.port(setting.key.value) if plugin is not None else None
-                of_text = node.is_subtree or (port is not None and port.type == "string")
-                severity = Severity.WARNING if of_text else None
-                wrong = list(_reference_in_system(setting.value, severity))
-                if setting.variable is None and not wrong:
-                    wrong = list(_without_braces(node, None, setting, names, severity))
-                yield from wrong
-                if setting.variable is None and not wrong and plugin is not None and port is not None:
-                    yield from _constant(setting.value.value, setting.value.span, plugin, port, path)
-    for model in context.file.models:
-        path, plugin = system.plugin(model.id.value) if model.id and not model.is_subtree else ("", None)
-        for model_port in model.ports if plugin is not None else ():
-            assert plugin is not None
-            yield from _default(model_port, plugin, path)
-    yield from _given_by_subtrees(context)
-
-
-def _reference_in_system(value: Name, severity: Severity | None = None) -> Iterator[Finding]:
-    """Check that a reference `{name}` has a name that the translation can use."""
-    wrong = list(_reference(value, severity))
-    yield from wrong
-    text = value.value.strip()
-    if wrong or not looks_like_reference(text):
-        return
-    variable = text[1:-1].strip()
-    if not text.endswith("}"):
-        message = f"`{value.value}` is neither a variable nor a constant; a variable is written alone, as `{{name}}`"
-        yield RULE.at(value.span, message)
-    elif is_reserved_variable(variable):
-        message = f"`{variable}` is a reserved word of ECMAScript and cannot be the name of a blackboard variable"
-        yield RULE.at(value.span, message)
-    elif not is_variable_name(variable) and variable != "=":
-        rule = "it must contain only letters, digits, `_` and `$`, and not begin with a digit"
-        yield RULE.at(value.span, f"`{variable}` is not a valid name of a blackboard variable: {rule}")
-
-
-def _default(model: PortModel, plugin: MachineOutline, path: str) -> Iterator[Finding]:
-    """Check a default of `<TreeNodesModel>`, which is the value of every node that does not set the port."""
-    port, default = plugin.port(model.name.value) if model.name else None, model.element.get("default")
-    if port is not None and default is not None:
-        yield from _reference_in_system(Name(default.value, default.value_span))
-        if not looks_like_reference(default.value):
-            yield from _constant(default.value, default.value_span, plugin, port, path)
-
-
-def _constant(text: str, span: Span, plugin: MachineOutline, port: PortOutline, path: str) -> Iterator[Finding]:
-    related = [Related(Symbol(path, SymbolKind.PORT, port.key), "declared here")] if path else []
-    if port.direction is Direction.OUT:
-        yield _output(port.key, plugin.name, text, span, related, Severity.ERROR)
-        return
-    problem = _problem(text, plugin, port)
-    if problem is not None:
+def _constant(trees: Forest, known: Node, port: Port, value: Name) -> Iterator[Finding]:
+    """Check the constant value of a port."""
+    text, span = value.value, value.span
+    path, plugin = _plugin(trees, known)
+    declared = plugin.port(port.name) if plugin is not None else None
+    related = [Related(Symbol(path, SymbolKind.PORT, port.name), "declared here")] if path else []
+    # A model in a file may differ from the node.
+    is_certain = known.library or plugin is not None or known.kind is NodeKind.SUBTREE
+    severity = Severity.ERROR if is_certain else Severity.WARNING
+    if (declared or port).direction is Direction.OUT:
+        name = text.strip()
+        fixes = [Fix(f"Change to `{{{name}}}`", (TextEdit(span, f"{{{name}}}"),))] if _NAME.match(name) else []
+        reason = f"not the string `{name}`" if name else "not an empty value"
+        message = f"`{port.name}` of `{known.name}` is an output port: it needs a blackboard entry in braces, {reason}"
+        yield RULE.at(span, message, *fixes, severity=severity, related=related)
+    elif not text.strip() and port.names_entry:
+        yield RULE.at(span, f"`{port.name}` of `{known.name}` needs the name of a blackboard entry")
+    elif (problem := _problem(trees, known, port, text)) is not None:
         new = (problem.replacement,) if problem.replacement else ()
-        message = f"`{port.key}` of `{plugin.name}` {problem.message}"
-        yield RULE.at(span, message, *replacements(span, new), severity=problem.severity, related=related)
+        message, severity = f"`{port.name}` of `{known.name}` {problem.message}", min(severity, problem.severity)
+        yield RULE.at(span, message, *replacements(span, new), severity=severity, related=related)
 
 
-def _given_by_subtrees(context: TreeContext) -> Iterator[Finding]:
-    """Check a constant that a `<SubTree>` passes for a variable: it becomes the value of the ports bound to that
-    variable."""
+def _plugin(trees: Forest, known: Node) -> tuple[str, MachineOutline | None]:
+    """What executes a node of a system, with the path of its file."""
+    is_node = trees.system is not None and known.kind is not NodeKind.SUBTREE
+    return trees.system.plugin(known.name) if trees.system is not None and is_node else ("", None)
+
+
+def _given_by_subtrees(context: TreeContext, trees: Forest) -> Iterator[Finding]:
+    """Check a constant that a `<SubTree>` of a system passes for a variable: it becomes the value of the ports bound to
+    that variable."""
     for node, automaton in instances(context):
-        for setting in node.ports:
-            port, value = automaton.outline.port(setting.key.value), automaton.port(setting.key.value)
-            if setting.variable is None or port is None or not isinstance(value, PortConstant):
+        known = trees.known_node(node)
+        for setting in node.ports if known is not None else ():
+            port = known.port(setting.key.value) if known is not None else None
+            value = automaton.port(setting.key.value)
+            if known is None or setting.variable is None or port is None or not isinstance(value, PortConstant):
                 continue
-            plugin = automaton.outline
-            problem = _problem(value.text, plugin, port) if port.direction is not Direction.OUT else None
+            problem = _problem(trees, known, port, value.text)
             if problem is not None:
                 message = f"the `<SubTree>` passes `{value.text}` for `{setting.variable}`, but "
-                message += f"`{port.key}` of `{plugin.name}` {problem.message}"
+                message += f"`{port.name}` of `{known.name}` {problem.message}"
                 yield RULE.at(setting.value.span, message, severity=problem.severity)
 
 
-def _problem(text: str, plugin: MachineOutline, port: PortOutline) -> ConstantProblem | None:
-    """The reason why an input port of a system's tree cannot hold a constant; `None` if it can."""
-    if port.type != ANY_TYPE:
-        return problem_of(text.strip(), port)
-    node = library_node(plugin.name)
-    declared = node.port(port.key) if node is not None else None
-    if node is None or declared is None or declared.type == SCRIPT or plugin.name.startswith("Switch"):
+def _problem(trees: Forest, known: Node, port: Port, text: str) -> ConstantProblem | None:
+    """The reason why an input port cannot hold a constant; `None` if it can."""
+    _, plugin = _plugin(trees, known)
+    declared = plugin.port(port.name) if plugin is not None else None
+    if declared is not None and declared.type != ANY_TYPE:
+        return None if declared.direction is Direction.OUT else problem_of(text.strip(), declared)
+    if plugin is not None and (known.name.startswith("Switch") or _is_system_status(port, text)):
         return None
-    if declared.type == "NodeStatus" and text.strip() in _SYSTEM_STATUSES:
-        return None
-    return _as_library_reads(declared.type, text)
+    return _as_library_reads(port.type, text)
+
+
+def _is_system_status(port: Port, text: str) -> bool:
+    return port.type == "NodeStatus" and text.strip() in _SYSTEM_STATUSES
 
 
 def problem_of(text: str, port: PortOutline) -> ConstantProblem | None:
@@ -257,57 +283,6 @@ def problem_of(text: str, port: PortOutline) -> ConstantProblem | None:
         severity = Severity.WARNING if low <= value <= high else Severity.ERROR
         return ConstantProblem(f"must be {limits}{_instead_of(text)}", severity)
     return None
-
-
-# ------------------------------------------------------------ trees without a system
-
-
-def _alone(context: TreeContext, forest: Forest) -> Iterator[Finding]:
-    for tree, node in forest.own_nodes:
-        known = forest.declaration(node)
-        for setting in ports_of(node):
-            port = known.port(setting.attribute.name) if known else None
-            if port is not None and port.type == SCRIPT:
-                continue
-            wrong = list(_reference(setting.value, Severity.WARNING))
-            if not wrong and entry_of(setting) is None:
-                names = names_of(forest, tree.id.value if tree.id else "") | forest.host_entries
-                wrong = list(_without_braces(node, port, setting, names, Severity.WARNING))
-            yield from wrong
-            if known is not None and port is not None and not wrong and entry_of(setting) is None:
-                yield from _literal(known, port, setting)
-    for model in context.file.models:
-        for described in model.ports:
-            default = described.element.get("default")
-            text = default.value.strip('" ') if default is not None else ""
-            if default is None or not text or default.value.strip().startswith("{") or _CODE.match(default.value):
-                continue
-            problem = _as_library_reads(described.type, text)
-            if problem is not None and problem.severity is Severity.ERROR:
-                name = described.name.value if described.name else ""
-                message = f"`{name}` of `{model.id.value if model.id else ''}` {problem.message}"
-                yield RULE.at(default.value_span, message, severity=Severity.WARNING)
-
-
-_CODE = regex(r".*[(:<]|[\d.]+f\Z", re.DOTALL)
-"""Matches defaults that are C++ expressions. Models contain these as descriptions for readers; they are not values."""
-
-
-def _literal(known: Node, port: Port, setting: PortSetting) -> Iterator[Finding]:
-    text, span = setting.value.value, setting.value.span
-    # A model in a file may differ from the node.
-    severity = Severity.ERROR if known.library or known.kind is NodeKind.SUBTREE else Severity.WARNING
-    if port.direction is Direction.OUT:
-        yield _output(port.name, known.name, text, span, [], severity)
-        return
-    if not text.strip() and names_entry(known, port.name):
-        yield RULE.at(span, f"`{port.name}` of `{known.name}` needs the name of a blackboard entry")
-        return
-    problem = _as_library_reads(port.type, text)
-    if problem is not None:
-        fixes = replacements(span, (problem.replacement,) if problem.replacement else ())
-        message = f"`{port.name}` of `{known.name}` {problem.message}"
-        yield RULE.at(span, message, *fixes, severity=min(severity, problem.severity))
 
 
 RULE = Rule("port-value", Severity.ERROR, "The value of a port is not valid.", tree=check)

@@ -3,18 +3,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal, rename_tag
 from roaml.forest.forest import CPP, Forest
 from roaml.libraries import Node
 from roaml.model.syntax import Name
-from roaml.model.system import System, library_plugins
-from roaml.model.tree import TreeNode, nodes
+from roaml.model.tree import TreeNode
 from roaml.record import replace
-from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, replacements
-from roaml.rules.support.forest import forest_of, probably_meant
+from roaml.rules.rule import Rule, TreeContext, close_names, replacements
+from roaml.rules.support.forest import probably_meant, trees_of
 from roaml.text import Span, TextEdit
 
 _STRUCTURE = (
@@ -25,74 +24,31 @@ _STRUCTURE = (
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    if context.system is not None:
-        yield from _of_system(context, context.system)
-    elif (forest := forest_of(context)) is not None:
-        yield from _alone(context, forest)
-
-
-def _of_system(context: TreeContext, system: System) -> Iterator[Finding]:
-    """Report the nodes for which a system has neither a plugin nor a node of a library."""
-
-    def is_known(name: str) -> bool:
-        return system.plugin(name)[1] is not None
-
-    trees = [tree.id for file in context.files for tree in file.trees]
-    for tree in context.file.trees:
-        for node in nodes(tree):
-            if not node.is_subtree and node.plugin is not None and not is_known(node.plugin.value):
-                yield from _certain(context, node, node.plugin, is_known, trees) or _no_plugin(
-                    system, node, node.plugin
-                )
-
-
-def _no_plugin(system: System, node: TreeNode, name: Name) -> Iterator[Finding]:
-    current = (known for known in library_plugins() if known not in CPP.renamed)
-    close = close_names(name.value, [*(outline.name for _, outline in system.plugins), *current])
-    hint = did_you_mean(close) or "; list the file of its plugin in `<behavior_tree>` of the system"
-    if name.value in [outline.name for _, outline in system.nodes]:
-        hint = "; its file is listed in `<node_models>`, but plugins must be listed in `<behavior_tree>`"
-        close = ()
-    elif not system.plugins_known:
-        return  # another rule reports the listed file that cannot be read and may contain the plugin
-    yield RULE.at(name.span, f"there is no node `{name.value}`{hint}", *_renamings(node, name, close))
-
-
-def _alone(context: TreeContext, forest: Forest) -> Iterator[Finding]:
-    """Report the nodes that no model and no library describes. The program may register them, so most findings are
+    """Report the nodes that nothing declares. Without a system, the program may register them, so most findings are
     warnings."""
-
-    def is_known(name: str) -> bool:
-        return forest.node(name) is not None or name in forest.trees
-
+    trees = trees_of(context)
+    if trees is None:
+        return
     undescribed: set[str] = set()
-    for _, node in forest.own_nodes:
-        name = node.plugin
-        if node.element.name == "SubTreePlus":
+    for node in (node for _, node in trees.own_nodes):
+        if node.element.name == "SubTreePlus" and trees.system is None:
             yield _of_version_3(node.element.name_span, "SubTreePlus", "SubTree", rename_tag(node.element, "SubTree"))
-        if name is None or node.is_subtree or forest.names_tree(node) or forest.node(name.value) is not None:
+        name = node.plugin
+        if name is None or not trees.is_unknown(node):
             continue
-        own_trees = () if node.compact else forest.trees
-        if name.value in forest.beside and name.value not in own_trees:
+        if name.value in trees.beside and name.value not in trees.trees:
             continue
-        for finding in _certain(context, node, name, is_known, own_trees) or _undescribed(forest, node, name):
-            # A node that no model describes is reported once for each name.
-            if finding.fixes or name.value not in undescribed:
+        for finding in _certain(context, trees, node, name) or _undeclared(trees, node, name):
+            # Without a system, a node that no model describes is reported once for each name.
+            if trees.system is not None or finding.fixes or name.value not in undescribed:
                 yield finding
         undescribed.add(name.value)
 
 
-def _certain(
-    context: TreeContext, node: TreeNode, name: Name, is_known: Callable[[str], bool], trees: Iterable[str]
-) -> list[Finding]:
-    """The finding about a name that is not that of a node; empty if the name may be one.
-
-    Args:
-        is_known: whether there is a node, or a tree in a file without a system, of this name.
-        trees: the trees that only a `<SubTree>` can use.
-    """
+def _certain(context: TreeContext, trees: Forest, node: TreeNode, name: Name) -> list[Finding]:
+    """The finding about a name that is not that of a node; empty if the name may be one."""
     absent, old, foreign = CPP.absent.get(name.value), CPP.nodes.get(name.value), CPP.foreign.get(name.value)
-    severity = None if context.system is not None else Severity.WARNING
+    severity = _severity(trees)
     close = node.element.close_name_span
     end = context.source.text[close.start : close.end] if close and node.compact else name.value
     if name.value in CPP.renamed:
@@ -112,10 +68,10 @@ def _certain(
     if node.compact and name.value in _STRUCTURE:
         drop = Fix(f"Remove `<{name.value}>`", (removal(context.source.text, node.element.span),), preferred=False)
         return [RULE.at(name.span, f"`<{name.value}>` is not a node, so it cannot be part of a tree", drop)]
-    if name.value in trees:
+    if name.value in trees.trees:
         message = f'`{name.value}` is a tree: write `<SubTree ID="{name.value}"/>`'
         return [RULE.at(name.span, message, *_subtree(node, name), severity=severity)]
-    if end != name.value and is_known(end):
+    if end != name.value and (trees.node(end) is not None or end in trees.trees):
         return [
             RULE.at(
                 name.span, f"there is no node `{name.value}`; its end tag is `</{end}>`", rename_tag(node.element, end)
@@ -133,21 +89,42 @@ def _of_version_3(span: Span, name: str, now: str, *fixes: Fix) -> Finding:
     return RULE.at(span, f"`{name}` is the name in version 3; write `{now}`", *fixes)
 
 
-def _undescribed(forest: Forest, node: TreeNode, name: Name) -> Iterator[Finding]:
-    """Report a name similar to that of a known node, and a name that no model describes although there are models."""
-    trees = tuple(forest.trees)
-    near = probably_meant(name.value, forest.names) or probably_meant(name.value, trees, most=1)
-    if near is not None:
-        kind_name = "the tree " if near in trees and near not in forest.names else ""
-        message = f"there is no node `{name.value}`; did you mean {kind_name}`{near}`?"
-        yield RULE.at(name.span, message, *_renamings(node, name, (near,)), severity=Severity.WARNING)
-    elif forest.has_own_models or forest.libraries:
-        severity = Severity.WARNING if forest.has_all_models else Severity.INFORMATION
+def _undeclared(trees: Forest, node: TreeNode, name: Name) -> Iterator[Finding]:
+    """Report a name similar to that of a known node, and a name that nothing declares although the nodes of the program
+    are known."""
+    close, system = _meant(trees, name.value), trees.system
+    message, severity = f"there is no node `{name.value}`", _severity(trees)
+    if system is not None and name.value in [outline.name for _, outline in system.nodes]:
+        message += "; its file is listed in `<node_models>`, but plugins must be listed in `<behavior_tree>`"
+        close = ()
+    elif system is not None and not system.plugins_known:
+        return  # another rule reports the listed file that cannot be read and may contain the plugin
+    elif close:
+        message += f"; did you mean {'' if close[0] in trees.names else 'the tree '}`{close[0]}`?"
+    elif system is not None:
+        message += "; list the file of its plugin in `<behavior_tree>` of the system"
+    elif trees.has_own_models or trees.libraries:
+        severity = Severity.WARNING if trees.has_all_models else Severity.INFORMATION
         message = (
             f"no model describes the node `{name.value}`; describe it in a `<TreeNodesModel>` or in a file of the "
-            "setting `tree-models`"
         )
-        yield RULE.at(name.span, message, severity=severity)
+        message += "setting `tree-models`"
+    else:
+        return
+    yield RULE.at(name.span, message, *_renamings(node, name, close), severity=severity)
+
+
+def _meant(trees: Forest, name: str) -> tuple[str, ...]:
+    """The names that are probably intended. Without a system, the program may register nodes with similar names."""
+    if trees.system is not None:
+        return close_names(name, trees.names)
+    near = probably_meant(name, trees.names) or probably_meant(name, trees.trees, most=1)
+    return () if near is None else (near,)
+
+
+def _severity(trees: Forest) -> Severity | None:
+    """The severity of a name that a program without a system could register."""
+    return Severity.WARNING if trees.system is None else None
 
 
 def _has_children_of(node: TreeNode, known: Node) -> bool:

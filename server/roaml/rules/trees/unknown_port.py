@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
 from roaml.edit.elements import removal
 from roaml.forest.forest import Forest
-from roaml.forest.ports import ports_of, probable_ports
+from roaml.forest.ports import probable_ports
 from roaml.forest.written_for import OLD_ATTRIBUTES
 from roaml.libraries import Node
 from roaml.libraries.node import EVENT_ATTRIBUTE
@@ -48,7 +48,7 @@ def _ports(context: TreeContext, trees: Forest, node: TreeNode, known: Node) -> 
     # Only a warning: a model in a file may be older than the node.
     severity = Severity.ERROR if known.library or path else Severity.WARNING
     probable = probable_ports(node, known)
-    for setting in ports_of(node) if trees.system is None else node.ports:
+    for setting in trees.port_settings(node):
         attribute = setting.attribute
         drop = Fix(f"Remove `{attribute.name}`", (removal(context.source.text, attribute.span),))
         if trees.system is not None and attribute.name == CHILDREN_COUNT:

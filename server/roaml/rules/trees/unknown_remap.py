@@ -36,10 +36,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 def _has_unknown_nodes(forest: Forest) -> bool:
     """Whether trees contain nodes that no model describes, which may read any entry of the blackboard."""
-    return any(
-        node.plugin is not None and not node.is_subtree and forest.node(node.plugin.value) is None
-        for _, _, node in forest.all_nodes
-    )
+    return any(forest.is_unknown(node) for _, _, node in forest.all_nodes)
 
 
 RULE = Rule("unknown-remap", Severity.ERROR, "A subtree does not have a variable that is passed to it.", tree=check)
