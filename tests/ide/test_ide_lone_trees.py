@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Trees that belong to no system: completion, hover, definition and rename, with libraries and models."""
+"""Completion, hover, definition and rename in trees, with libraries and models, mostly without a system."""
 
 from __future__ import annotations
 
@@ -47,10 +47,13 @@ def snapshot_of(**texts: str) -> Snapshot:
     return workspace.snapshot()
 
 
-def offered(text: str, mark: str = "‸") -> dict[str, str]:
+SYSTEM = '<roaml><behavior_tree><input type="bt.cpp-xml" src="tree.xml"/></behavior_tree></roaml>'
+
+
+def offered(text: str, mark: str = "‸", **others: str) -> dict[str, str]:
     """The labels of the completions at a mark, with their details."""
     before, _, after = text.partition(mark)
-    snapshot = snapshot_of(tree=before + after)
+    snapshot = snapshot_of(tree=before + after, **others)
     completions = complete(snapshot, path_of("tree.xml"), len(before))
     return {item.label: item.detail for item in completions.items} if completions else {}
 
@@ -268,3 +271,20 @@ def test_entries_are_offered_in_scripts() -> None:
     assert offered(tree.replace("str‸", "str").replace("^", "")).keys() >= {"count"}
     assert "strength" in offered(tree.replace("co‸", "co").replace("^", ""))
     assert "count" not in offered(tree.replace("‸", ""), "^")
+
+
+def test_a_system_knows_the_same_nodes_and_entries() -> None:
+    tree = """<root BTCPP_format="4"><BehaviorTree ID="A"><PipelineSequence>
+        <Repeat num_cycles="1"><SetBlackboard output_key="{count}" value="1"/></Repeat>
+        <AlwaysSuccess _skipIf="co‸"/><^/></PipelineSequence></BehaviorTree></root>"""
+    assert "count" in offered(tree.replace("<^/>", ""), system=SYSTEM)
+    labels = offered(tree.replace("‸", ""), "^", system=SYSTEM)
+    assert labels["RateController"] == "decorator, Nav2"
+    assert "ManualSelector" not in labels
+    text = tree.replace("‸", "").replace("<^/>", "")
+    described = [
+        hover(snapshot.analysis, path_of("tree.xml"), text.index("num_cycles"))
+        for snapshot in (snapshot_of(tree=text, system=SYSTEM), snapshot_of(tree=text))
+    ]
+    assert described[0] is not None
+    assert described[0] == described[1]

@@ -18,7 +18,6 @@ from typing import TypeAlias
 
 from roaml.diagnostics import Diagnostic, Finding, Related, RelatedPlace, Severity, Symbol, Tag
 from roaml.disk import UnreadableReason
-from roaml.forest.forest import Forest
 from roaml.interfaces.parse import parse as parse_interface
 from roaml.interfaces.registry import NotFound, Reason
 from roaml.interfaces.report import CODE as INTERFACE_SYNTAX
@@ -345,7 +344,7 @@ class _Run:
                 return (*parts, listed, self.analysis.system(self.path), size_of_translation(self.analysis, self.path))
             case FileKind.TREE:
                 includes = (tuple(self._missing_includes().items()), tuple(self._found_includes().items()))
-                return (*parts, self._tree_outlines(), includes, self._trees())
+                return (*parts, self._tree_outlines(), includes, self.analysis.forest(self.path, self.system_path))
             case FileKind.PROPERTIES if self.system_path:
                 return (*parts, tuple(self.analysis.names_before(self.path, self.system_path)))
             case FileKind.XML_PROPERTIES if self.system_path:
@@ -524,7 +523,8 @@ class _Run:
             return None
         older = self.system is not None and self.system.older
         outlines = self._tree_outlines()
-        missing, interface, trees = self._missing_includes(), self.analysis.interface, self._trees()
+        missing, interface = self._missing_includes(), self.analysis.interface
+        trees = self.analysis.forest(self.path, self.system_path)
         return TreeContext(
             *(self.source, document, file, self.system, outlines, missing, interface, self._gaps(), older, trees),
             self._unknown_packages(),
@@ -546,12 +546,6 @@ class _Run:
         if self.system_path:
             return self.analysis.tree_outlines(self.system_path)
         return self.analysis.outlines_around(self.path)
-
-    def _trees(self) -> Forest | None:
-        """The trees with which this file is checked, with the definitions of their nodes."""
-        if self.system_path:
-            return self.analysis.trees_in(self.path, self.system_path)
-        return self.analysis.forest(self.path)
 
     def _unknown_packages(self) -> frozenset[str]:
         """The names of the ROS packages in `<include>` elements that are not found."""

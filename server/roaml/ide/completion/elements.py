@@ -9,7 +9,7 @@ from roaml.diagnostics import Symbol
 from roaml.ide.completion import property_files
 from roaml.ide.completion.fields import fields_to_add, sending
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank, Snippet
-from roaml.ide.completion.names import plugins, port_list
+from roaml.ide.completion.names import library_nodes, plugins, port_list
 from roaml.ide.completion.parameters import parameters_to_add
 from roaml.ide.completion.ports import add_port, ports_of
 from roaml.ide.completion.request import CompletionSubject, Request
@@ -17,7 +17,7 @@ from roaml.ide.completion.values import candidates
 from roaml.ide.describe import forest as describe_forest
 from roaml.ide.names.occurrence import HANDLES
 from roaml.ide.syntax import Typed
-from roaml.language import BEHAVIOR_TREE, XML_PROPERTIES, AttributeType, ElementType, Grammar
+from roaml.language import BEHAVIOR_TREE, XML_PROPERTIES, AttributeType, ElementType
 from roaml.model.system_file import SystemSection
 from roaml.model.tree import EXPLICIT, SUBTREES
 from roaml.model.vocabulary import INSIDE_THREADS, OUTSIDE_THREADS, UNUSUAL_IN_THREADS
@@ -44,7 +44,7 @@ def elements(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Ite
     parent = parents[-1]
     if parent.type is None:
         if request.forest is not None and any(typed.element.name == "BehaviorTree" for typed in parents):
-            # The type of the parent is declared by a library or a model, not by the schema.
+            # The type of the parent is not declared by the schema.
             yield from _tree_nodes(request, parents, bare=bare)
         return
     if bare and "field" in parent.type.children:
@@ -154,13 +154,12 @@ def _has_no_handle(request: Request, type_: ElementType) -> bool:
 
 
 def _tree_nodes(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> Iterator[CompletionItem]:
-    """Items for the plugins of the system, subtrees, and the nodes of BehaviorTree.CPP; for a tree that belongs to no
-    system, also the nodes that libraries and models declare."""
+    """Items for the plugins of the system, subtrees, and the nodes that libraries and models declare."""
     grammar = request.file.grammar
     for name, (path, outline) in plugins(request).items():
         about = Symbol(path, SymbolKind.MACHINE, name)
         has_children = outline.plugin.children > 0 or outline.plugin.any_child
-        insert = _plugin(request, name, grammar, has_children=has_children) if bare else ""
+        insert = _plugin(request, name, has_children=has_children) if bare else ""
         yield CompletionItem(name, ItemKind.PLUGIN, insert, port_list(outline), about, Rank.BEST)
     for name in request.trees.trees if bare else ():
         around = next((typed.element.get("ID") for typed in parents if typed.element.name == "BehaviorTree"), None)
@@ -168,41 +167,32 @@ def _tree_nodes(request: Request, parents: tuple[Typed, ...], *, bare: bool) -> 
             about = request.trees.tree_symbol(request.path, name)
             insert = str(Snippet().text(f'SubTree ID="{name}"').end().text("/>"))
             yield CompletionItem(f"SubTree {name}", ItemKind.PLUGIN, insert, "tree", about, Rank.LIKELY)
-    yield from _known_nodes(request, bare=bare)
+    for name, known in library_nodes(request):
+        insert = _plugin(request, name, has_children=known.children[1] > 0) if bare else ""
+        detail = f"{known.kind}, {known.library}" if known.library else str(known.kind)
+        about = Symbol("", SymbolKind.JSON, name, describe_forest.node(known))
+        rank = Rank.USUAL if known.library else Rank.BEST
+        yield CompletionItem(name, ItemKind.PLUGIN, insert, detail, about, rank)
     for type_ in grammar.elements.values():
-        is_known = request.forest is not None and type_.name not in (*EXPLICIT, *SUBTREES[:1])
-        if type_.node and not is_known:
+        if type_.node and type_.name in (*EXPLICIT, *SUBTREES[:1]):
             yield _node(request, type_, parents, bare=bare)
-
-
-def _known_nodes(request: Request, *, bare: bool) -> Iterator[CompletionItem]:
-    """The nodes that libraries and models describe, for a tree that belongs to no system."""
-    forest = request.forest
-    for name in dict.fromkeys(forest.names) if forest else ():
-        known = forest.node(name) if forest else None
-        if known is not None:
-            insert = _plugin(request, name, request.file.grammar, has_children=known.children[1] > 0) if bare else ""
-            detail = f"{known.kind}, {known.library}" if known.library else str(known.kind)
-            about = Symbol("", SymbolKind.JSON, name, describe_forest.node(known))
-            rank = Rank.USUAL if known.library else Rank.BEST
-            yield CompletionItem(name, ItemKind.PLUGIN, insert, detail, about, rank)
 
 
 def _node(request: Request, type_: ElementType, parents: tuple[Typed, ...], *, bare: bool) -> CompletionItem:
     if type_.name in (*EXPLICIT, *SUBTREES):
         insert = snippet(request, type_, parents) if bare else ""
     else:
-        insert = _plugin(request, type_.name, request.file.grammar, has_children=bool(type_.any_child)) if bare else ""
+        insert = _plugin(request, type_.name, has_children=bool(type_.any_child)) if bare else ""
     rank = Rank.USUAL if type_.translated and not type_.use else Rank.LAST
     detail = str(type_.node) if type_.translated else f"{type_.node}, cannot be translated"
     about = Symbol(parents[-1].element.name, SymbolKind.ELEMENT, type_.name, request.file.grammar.schema)
     return CompletionItem(type_.name, ItemKind.ELEMENT, insert, detail, about, rank, deprecated=bool(type_.use))
 
 
-def _plugin(request: Request, name: str, grammar: Grammar, *, has_children: bool) -> str:
+def _plugin(request: Request, name: str, *, has_children: bool) -> str:
     """A node in the compact form, with its required ports."""
     made = Snippet().text(name)
-    for port in ports_of(request, name, grammar.elements.get(name)):
+    for port in ports_of(request, name):
         if port.required:
             add_port(made.text(" "), port)
     if has_children:

@@ -13,10 +13,11 @@ from roaml.ide.completion.request import CompletionSubject, Request
 from roaml.ide.describe import forest as describe_forest
 from roaml.ide.names.occurrence import HANDLES
 from roaml.ide.names.occurrences import uses
+from roaml.libraries import Node
 from roaml.model.machine import Declaration, Send
 from roaml.model.outline import MachineOutline
 from roaml.model.syntax import Name
-from roaml.model.system import CHILDREN_COUNT, Channel, System, builtin_plugins
+from roaml.model.system import CHILDREN_COUNT, Channel, System
 from roaml.roles import Direction, NodeKind, SymbolKind
 
 _SHOWN = 3
@@ -225,22 +226,19 @@ def _plugin_names(request: Request, subject: CompletionSubject) -> Iterator[Comp
         about = Symbol(path, SymbolKind.MACHINE, name)
         yield CompletionItem(name, ItemKind.PLUGIN, detail=port_list(outline), about=about, rank=Rank.LIKELY)
     category = next((kind for kind in NodeKind if kind.value == subject.type.name.lower()), None)
-    if request.forest is not None:
-        for name in dict.fromkeys(request.forest.names):
-            known = request.forest.node(name)
-            if known is not None and known.kind is category:
-                about = Symbol("", SymbolKind.JSON, name, describe_forest.node(known))
-                yield CompletionItem(name, ItemKind.PLUGIN, detail=known.library, about=about, rank=Rank.LIKELY)
-        return
-    for name in builtin_plugins():
-        type_ = request.file.grammar.elements[name]
-        if type_.node is category:
-            yield CompletionItem(
-                name,
-                ItemKind.PLUGIN,
-                detail="BehaviorTree.CPP",
-                about=Symbol("", SymbolKind.ELEMENT, name, request.file.grammar.schema),
-            )
+    for name, known in library_nodes(request):
+        if known.kind is category:
+            about = Symbol("", SymbolKind.JSON, name, describe_forest.node(known))
+            yield CompletionItem(name, ItemKind.PLUGIN, detail=known.library, about=about, rank=Rank.LIKELY)
+
+
+def library_nodes(request: Request) -> Iterator[tuple[str, Node]]:
+    """The nodes that libraries and models describe, by name."""
+    forest = request.forest
+    for name in dict.fromkeys(forest.names) if forest is not None else ():
+        known = forest.node(name) if forest is not None else None
+        if forest is not None and known is not None and not forest.is_machine(known):
+            yield name, known
 
 
 def port_list(outline: MachineOutline) -> str:

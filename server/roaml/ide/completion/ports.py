@@ -11,7 +11,6 @@ from roaml.ide.completion.names import channels, plugins
 from roaml.ide.completion.request import CompletionSubject, Request
 from roaml.ide.describe import forest as describe_forest
 from roaml.ide.names.frames import names_in
-from roaml.language import ElementType
 from roaml.libraries import Node
 from roaml.model.outline import MachineOutline
 from roaml.model.system import CHILDREN_COUNT
@@ -38,20 +37,11 @@ class SettablePort(Record, frozen=True):
         return f"{self.direction} {self.type}{default}".strip()
 
 
-def ports_of(request: Request, name: str, type_: ElementType | None) -> tuple[SettablePort, ...]:
-    """The ports of a node whose type is `name`: a type that a library or model declares for a tree without a system,
-    the node of BehaviorTree.CPP that `type_` describes, or a plugin."""
+def ports_of(request: Request, name: str) -> tuple[SettablePort, ...]:
+    """The ports of a node whose type is `name`: a type that a library or model declares, or a plugin."""
     known = request.forest.node(name) if request.forest else None
-    if known is not None:
+    if request.forest is not None and known is not None and not request.forest.is_machine(known):
         return tuple(_of_library(known))
-    if type_ is not None and type_.node and type_.name == name:
-        ports = []
-        for attribute in type_.ports:
-            assert attribute.port is not None
-            about = Symbol(f"/{type_.name}", SymbolKind.ATTRIBUTE, attribute.name, request.file.grammar.schema)
-            port = attribute.port
-            ports.append(SettablePort(attribute.name, port.type, port.direction, port.required, port.default, about))
-        return tuple(ports)
     path, outline = plugins(request).get(name, ("", None))
     if outline is None:
         return ()
@@ -86,10 +76,6 @@ def node_name(element: Element) -> str:
     return element.name
 
 
-def _type_of(request: Request, name: str) -> ElementType | None:
-    return request.file.grammar.elements.get(name)
-
-
 def port_values(request: Request, subject: CompletionSubject, key: str) -> list[CompletionItem]:
     """The possible values of the port `key` of a node: blackboard variables, and for an input the default, the
     constants of its type, and the names of interfaces if the plugin uses the port as the name of an interface."""
@@ -102,7 +88,7 @@ def port_values(request: Request, subject: CompletionSubject, key: str) -> list[
         is_port = known is None
         port = None
     else:
-        by_key = {port.key: port for port in ports_of(request, name, _type_of(request, name))}
+        by_key = {port.key: port for port in ports_of(request, name)}
         port = by_key.get(port_key(name, key))
         is_port = port is not None
     if not is_port:
@@ -170,7 +156,7 @@ def ports_to_add(request: Request, subject: CompletionSubject) -> Iterator[Compl
     assert element is not None
     given = {attribute.name for attribute in element.attributes}
     name = node_name(element)
-    missing = [port for port in ports_of(request, name, _type_of(request, name)) if port.key not in given]
+    missing = [port for port in ports_of(request, name) if port.key not in given]
     required = [port for port in missing if port.required]
     if len(required) > 1:
         snippet = Snippet()

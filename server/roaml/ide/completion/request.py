@@ -90,8 +90,9 @@ class Request(Record, frozen=True, eq=False, dict=True):
 
     @cached_property
     def forest(self) -> Forest | None:
-        """The trees and the declarations of their nodes, for a tree that belongs to no system; otherwise `None`."""
-        return None if self.system_path else self.analysis.forest(self.path)
+        """The trees and the definitions of their nodes; `None` if the file is not one of trees. A system that does not
+        execute the file defines no nodes of it."""
+        return self.analysis.forest(self.path, self.system_path) or self.analysis.forest(self.path)
 
     @cached_property
     def chart(self) -> Chart | None:

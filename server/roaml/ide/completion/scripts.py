@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names that a script can use, in a tree that belongs to no system."""
+"""The names that a script of a tree can use."""
 
 from __future__ import annotations
 

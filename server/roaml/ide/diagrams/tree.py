@@ -88,8 +88,8 @@ class _Tree:
         self.events = [mock for mock in mocks if mock.pattern != ALL]
         self.files: dict[str, TreeFile] = {path: file for path in paths if (file := analysis.tree(path)) is not None}
         self.described = {model.id.value: model.kind for f in self.files.values() for model in f.models if model.id}
-        lone = {path: analysis.forest(path) for path in self.files} if system is None else {}
-        self.forests = {path: forest for path, forest in lone.items() if forest is not None}
+        of_system = None if system is None else system.path
+        self.forests = {path: analysis.forest(path, of_system) for path in self.files}
         self.written = {instance.number: self.node(instance) for instance in instances}
 
     def node(self, instance: Instance) -> TreeNode | None:
@@ -211,14 +211,15 @@ class _Tree:
         return _KINDS.get(word, unknown)
 
     def declared(self, instance: Instance) -> str:
-        """The kind of a node in a tree without a system, if a library or a model declares it; otherwise ""."""
+        """The kind of a node, if a library or a model declares it; otherwise ""."""
         node = self.declaration(instance)
         return node.kind.value if node is not None else ""
 
     def declaration(self, instance: Instance) -> Node | None:
-        """The declaration of a node in a tree without a system."""
+        """The declaration of a node in a library or a model."""
         forest = self.forests.get(instance.source.path)
-        return forest.node(instance.plugin) if forest is not None else None
+        known = forest.node(instance.plugin) if forest is not None else None
+        return None if forest is None or known is None or forest.is_machine(known) else known
 
     def mock(self, instance: Instance, kind: DiagramNodeKind) -> Iterator[Detail]:
         """The line with the mock of a leaf, or of a node that depends on an event of the world."""

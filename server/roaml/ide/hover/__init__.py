@@ -13,8 +13,8 @@ from collections.abc import Iterator
 from roaml.ide.describe import describe
 from roaml.ide.describe.markdown import paragraphs
 from roaml.ide.hover.expression import in_expression
+from roaml.ide.hover.library_node import of_library
 from roaml.ide.hover.listed_file import listed_file
-from roaml.ide.hover.lone_tree import of_library
 from roaml.ide.hover.markup import in_markup
 from roaml.ide.hover.place import Place, place_at
 from roaml.ide.hover.possible_values import possible_values
@@ -45,7 +45,8 @@ def hover(analysis: Analysis, path: str, offset: int) -> Hover | None:
     if place is None:
         return None
     if (node := of_library(place)) is not None:
-        return Hover(*node)
+        place_in_system = tree_node(place)
+        return Hover(node[0], paragraphs(node[1], place_in_system[1] if place_in_system is not None else ""))
     span, text = None, ""
     for described, more in _descriptions(place):
         if more and more not in text:

@@ -9,11 +9,10 @@ from xml.sax.saxutils import quoteattr
 from roaml.forest.forest import Forest
 from roaml.ide.names.frames import Trees
 from roaml.ide.names.occurrences import trees_of
-from roaml.language import BEHAVIOR_TREE
 from roaml.libraries.scripts import SCRIPT
 from roaml.model.outline import MachineOutline
 from roaml.model.system import CHILDREN_COUNT
-from roaml.model.tree import EXPLICIT, SUBTREES, Tree, TreeNode, is_variable_name
+from roaml.model.tree import EXPLICIT, Tree, TreeNode, is_variable_name
 from roaml.project.analysis import Analysis
 from roaml.record import Record
 from roaml.roles import UNBOUNDED, Direction, NodeKind
@@ -64,19 +63,12 @@ class Palette:
         system_path = analysis.systems_of(path)[0]
         self._trees = trees_of(analysis, path, system_path)
         system = analysis.system(system_path) if system_path is not None else None
-        forest = analysis.forest(path) if system_path is None else None
+        forest = analysis.forest(path, system_path) or analysis.forest(path)
         found: dict[str, PaletteNode] = {}
-        if system is not None:
-            for _, outline in system.plugins:
-                if outline.name:
-                    found.setdefault(outline.name, _of_plugin(outline, self._trees))
-        if forest is not None:
-            found |= {node.name: node for node in _of_forest(forest)}
-        for node in _of_grammar():
-            # In trees of systems, the nodes of the schema take precedence (docs/spec/trees.md#nodes).
-            if system is not None or node.name not in found:
-                found[node.name] = node
-        self._nodes = found
+        for _, outline in system.plugins if system is not None else ():
+            if outline.name:
+                found.setdefault(outline.name, _of_plugin(outline, self._trees))
+        self._nodes = found | {node.name: node for node in (_of_forest(forest) if forest is not None else ())}
 
     def nodes(self, inside: Tree) -> tuple[PaletteNode, ...]:
         """The nodes that can be added to a tree, in the order of a list: subtrees first. A tree cannot contain
@@ -111,25 +103,13 @@ def _of_plugin(outline: MachineOutline, trees: Trees) -> PaletteNode:
 def _of_forest(forest: Forest) -> Iterator[PaletteNode]:
     for name in dict.fromkeys(forest.names):
         node = forest.node(name)
-        if node is not None and node.kind is not NodeKind.SUBTREE:
+        if node is not None and not forest.is_machine(node):
             needed = tuple(
                 _needed(port.name, port.type, port.direction)
                 for port in node.ports
                 if port.required and port.default is None and not port.alias_of
             )
             yield PaletteNode(name, node.kind, node.children, needed, frozenset(port.name for port in node.ports))
-
-
-def _of_grammar() -> Iterator[PaletteNode]:
-    for type_ in BEHAVIOR_TREE.elements.values():
-        if type_.node is None or not type_.translated or type_.use or type_.name in (*EXPLICIT, *SUBTREES):
-            continue
-        ports = [(attribute.name, attribute.port) for attribute in type_.ports if attribute.port is not None]
-        needed = tuple(
-            _needed(name, port.type, port.direction) for name, port in ports if port.required and not port.default
-        )
-        children = (type_.any_child.least, type_.any_child.most) if type_.any_child is not None else (0, 0)
-        yield PaletteNode(type_.name, type_.node, children, needed, frozenset(name for name, _ in ports))
 
 
 def _needed(key: str, type_: str, direction: Direction) -> NeededPort:

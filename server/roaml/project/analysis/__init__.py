@@ -79,7 +79,7 @@ class Analysis:
         self.expanded_file = expansions.file
         machines = Machines(sources, interfaces, self._systems)
         gaps = Gaps(sources, tree_files, self._systems, machines)
-        linking = Linking(sources, interfaces, self._systems, expansions.system, machines, gaps)
+        linking = Linking(sources, interfaces, self._systems, expansions.system, machines, gaps, families)
         self._open_files(sources, interfaces)
         self._open_trees(tree_files, families)
         self._open_systems(self._systems, machines, gaps, linking)
@@ -96,7 +96,6 @@ class Analysis:
         self.configuration = sources.configuration
         self.properties = sources.properties
         self.violations = sources.violations
-        self.misfits = sources.misfits
         self.machine = sources.machine
         self.tree = sources.tree
         self.property_file = sources.property_file
@@ -109,7 +108,6 @@ class Analysis:
     def _open_trees(self, tree_files: TreeFiles, families: Families) -> None:
         self.trees_from = tree_files.trees_from
         self.outlines_from = tree_files.outlines_from
-        self.tree_outline = tree_files.tree_outline
         self.includes = tree_files.includes
         self.include_path = tree_files.include_path
         self.include_places = tree_files.include_places
@@ -117,12 +115,10 @@ class Analysis:
         self.family = families.family
         self.family_outlines = families.family_outlines
         self.outlines_around = families.outlines_around
-        self.forest = families.forest
 
     def _open_systems(self, systems: Systems, machines: Machines, gaps: Gaps, linking: Linking) -> None:
         self.system_paths = systems.paths
         self.listed = systems.listed
-        self.lists_all = systems.lists_all
         self.kind_in = systems.kind_in
         self.tree_paths = systems.tree_paths
         self.tree_outlines = systems.tree_outlines
@@ -131,13 +127,11 @@ class Analysis:
         self.names_before = systems.names_before
         self.structs = machines.structs
         self.interface_files_of = machines.interface_files_of
-        self.outline = machines.outline
-        self.typed = machines.typed
         self.machine_gaps = machines.machine_gaps
         self.gaps = gaps.gaps
         self.system = linking.system
+        self.forest = linking.forest
         self.library_tree = linking.library_tree
-        self.trees_in = linking.trees
         self.linked_properties = linking.linked_properties
         self.typed_in = linking.typed_in
         self.environment = linking.environment

@@ -23,6 +23,7 @@ from roaml.model.system import System
 from roaml.model.system_file import ListedFile, SystemFile, SystemSection
 from roaml.model.tree import TreeFile
 from roaml.model.value_types import Environment, TypedMachine
+from roaml.project.analysis.families import Families
 from roaml.project.analysis.gaps import Gaps
 from roaml.project.analysis.interfaces import Interfaces
 from roaml.project.analysis.machines import NO_STRUCTS, MachineEnvironment, Machines, Structs
@@ -63,6 +64,7 @@ class Linking:
         expanded: Callable[[str], ExpandedSystem | None],
         machines: Machines,
         gaps: Gaps,
+        families: Families,
     ) -> None:
         self._sources = sources
         self._interfaces = interfaces
@@ -70,6 +72,7 @@ class Linking:
         self._expanded = expanded
         self._machines = machines
         self._gaps = gaps
+        self._families = families
         self._linked: dict[str, System | None] = {}
         self._typed: dict[tuple[str, str | None], tuple[Machine | None, TypedMachine]] = {}
 
@@ -151,9 +154,11 @@ class Linking:
         builder = self._sources.memo.get("library tree builder", path, key, lambda: LibraryTreeBuilder(system, files))
         return self._sources.memo.get("library tree", path, key, builder.tree)
 
-    def trees(self, path: str, system: str) -> Forest | None:
-        """The trees of a system that are analysed together with the tree file `path`, with the definitions of their
-        nodes; `None` if the file or the system cannot be read."""
+    def forest(self, path: str, system: str | None = None) -> Forest | None:
+        """The trees that are analysed together with the tree file `path`, with the definitions of their nodes, in a
+        system or without one; `None` if the file or the system cannot be read."""
+        if system is None:
+            return self._families.forest(path)
         linked = self.system(system)
         if linked is None or self._sources.tree(path) is None:
             return None

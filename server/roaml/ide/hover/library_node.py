@@ -1,22 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hover texts for nodes and ports of a tree that belongs to no system."""
+"""Hover texts for nodes of trees, and their ports, that libraries and models declare."""
 
 from __future__ import annotations
 
-from roaml.forest.forest import Forest
 from roaml.ide.describe import forest as describe_forest
 from roaml.ide.hover.place import Place
-from roaml.libraries import Node
 from roaml.model.kinds import FileKind
-from roaml.model.tree import TreeNode
 from roaml.text import Span
 
 
 def of_library(place: Place) -> tuple[Span, str] | None:
-    """The description of the node or port whose name is at a place; `None` if there is none, or if the file belongs to
-    a system."""
-    is_lone = place.kind is FileKind.TREE and place.systems == (None,)
-    forest, offset = place.analysis.forest(place.path) if is_lone else None, place.offset
+    """The description of the node or port whose name is at a place; `None` if there is none."""
+    is_tree, offset = place.kind is FileKind.TREE, place.offset
+    forest = place.analysis.forest(place.path, place.systems[0]) if is_tree else None
     if forest is None:
         return None
     for _, node in forest.own_nodes:
@@ -24,8 +20,8 @@ def of_library(place: Place) -> tuple[Span, str] | None:
         tag = next((s for s in (element.name_span, element.close_name_span) if s and s.contains(offset)), None)
         if tag is None and not element.span.contains(offset):
             continue
-        known = _known(forest, node)
-        if known is None:
+        known = forest.declaration(node)
+        if known is None or forest.is_machine(known):
             continue
         id_ = None if node.compact or node.plugin is None else node.plugin.span
         for span in (tag if node.compact else None, id_):
@@ -36,9 +32,3 @@ def of_library(place: Place) -> tuple[Span, str] | None:
             if port is not None and setting.attribute.name_span.contains(offset):
                 return setting.attribute.name_span, describe_forest.port(known, port)
     return None
-
-
-def _known(forest: Forest, node: TreeNode) -> Node | None:
-    if node.is_subtree and node.plugin is not None:
-        return forest.subtree_models.get(node.plugin.value)
-    return forest.known_node(node)
