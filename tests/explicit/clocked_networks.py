@@ -10,6 +10,7 @@ from smc_models import Json, automaton, edge, op, probability, variable, way
 
 import kept_strategies as st
 from roaml.durations import ANY_TIME
+from roaml.jani.expressions import Name, walk
 from roaml.jani.model import Clock, Metadata, Model
 from roaml.jani.reader import read_model
 from roaml.json_syntax import parse
@@ -53,3 +54,12 @@ def clocked(draw: st.DrawFn) -> Model:
     assert not findings
     assert model is not None
     return replace(model, metadata=Metadata(clock=Clock("clock", ("step",), STEP), reaction_time=ANY_TIME))
+
+
+def is_local(model: Model) -> bool:
+    """Whether the guards of each automaton read only its own variables, as in translated systems."""
+    names = {variable.name for variable in model.variables}
+    guards = [
+        edge.guard.exp for a in model.automata for edge in a.edges if edge.guard is not None and a.name != "clock"
+    ]
+    return names.isdisjoint(part.identifier for guard in guards for part in walk(guard) if isinstance(part, Name))

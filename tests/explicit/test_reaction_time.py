@@ -5,7 +5,7 @@ definition have the same answers."""
 from __future__ import annotations
 
 import pytest
-from clocked_networks import STEP, clocked
+from clocked_networks import STEP, clocked, is_local
 from compared_spaces import ALL, both, check
 from hypothesis import Phase, given, settings
 from slow_explorer import SlowExplorer, reach
@@ -15,7 +15,6 @@ from roaml.durations import ANY_TIME, AT_ONCE, ReactionTime, duration_text, reac
 from roaml.explicit.plain import plain_kernel, plain_search
 from roaml.explicit.space import explore
 from roaml.explicit.values import values_of
-from roaml.jani.expressions import Name, walk
 from roaml.jani.model import Model
 from roaml.jani.reaction import ReactionError, reacting
 from roaml.jani.reader import read_model
@@ -33,15 +32,6 @@ def rewritten(model: Model) -> Model:
     assert not findings
     assert read is not None
     return read
-
-
-def is_local(model: Model) -> bool:
-    """Whether the guards of each automaton read only its own variables, as in translated systems."""
-    names = {variable.name for variable in model.variables}
-    guards = [
-        edge.guard.exp for a in model.automata for edge in a.edges if edge.guard is not None and a.name != "clock"
-    ]
-    return names.isdisjoint(part.identifier for guard in guards for part in walk(guard) if isinstance(part, Name))
 
 
 def extremes(model: Model, *, modules: object = None) -> tuple[float, float, int]:
