@@ -9,13 +9,15 @@ from typing import Any
 
 from roaml.smc.choices import Choices, Extreme, ExtremeMethod
 from roaml.smc.goal import InitialFold, Question
+from roaml.verification.headline import NO_ANSWER, claim_for_all
 from roaml.verification.number_text import number
-from roaml.verification.schedulers import extreme_of, interval_text, is_minimised
+from roaml.verification.schedulers import extreme_of, is_minimised
 
 
 def remark(question: Question, choices: Choices | None) -> str:
     """A line for users about schedulers other than the uniform one: that all schedulers have the same value, or a
-    warning with the minimum and the maximum if these are known to differ, or a warning that they may differ.
+    warning with what is known about the extreme that the property asks for if schedulers are known to have different
+    values, or a warning that they may have.
 
     Args:
         choices: `None` if the property asks only for uniform choices; the line is then empty.
@@ -26,12 +28,23 @@ def remark(question: Question, choices: Choices | None) -> str:
         return ""
     if choices.agreement:
         return f"all schedulers agree: {choices.agreement}"
+    asked = f"the property asks for the {extreme_of(question)} over all schedulers"
+    known = choices.minimum if is_minimised(question) else choices.maximum
+    if known is not None and choices.differ:
+        return f"warning: {asked}, which {_known(question, choices, known)}"
     head = "warning: this is the value under uniform choices"
-    head += f", and the property asks for the {extreme_of(question)} over all schedulers"
-    least, greatest = choices.minimum, choices.maximum
-    if least is not None and greatest is not None and choices.differ:
-        return f"{head}; the values of schedulers range from {_reached(least)} to {_reached(greatest)}"
-    return f"{head}, which may differ; {_looked(question, choices)}"
+    return f"{head}, and {asked}, which may differ; {_looked(question, choices)}"
+
+
+def _known(question: Question, choices: Choices, extreme: Extreme) -> str:
+    """What is known about the extreme that a property asks for, as a phrase with a verb. The value under uniform
+    choices is in the line before it."""
+    if extreme.is_exact:
+        return f"is {number(extreme.value)} (exact, from all states)"
+    claim = claim_for_all(question, choices)
+    if extreme.method is ExtremeMethod.SAMPLING and claim != NO_ANSWER:
+        return f"is {claim.removeprefix(extreme_of(question)).lstrip()} (by {extreme.scheduler})"
+    return f"may be {'smaller' if is_minimised(question) else 'greater'}: other schedulers have other values"
 
 
 def _initial_states_remark(question: Question, choices: Choices | None) -> str:
@@ -116,13 +129,6 @@ def _row(extreme: Extreme) -> dict[str, Any]:
     if extreme.traces:
         row["traces"] = extreme.traces
     return row
-
-
-def _reached(extreme: Extreme) -> str:
-    if extreme.method is ExtremeMethod.EXPLORATION:
-        return f"{number(extreme.value)} (exact, from all states)"
-    who = extreme.scheduler if extreme.method is ExtremeMethod.SAMPLING else "uniform choices"
-    return f"{interval_text(extreme)} (by {who})"
 
 
 def _finite(value: float) -> float | str | None:
