@@ -34,9 +34,8 @@ def _endless(behavior: Behavior, halted: bool) -> Iterator[Finding]:
     status = ProtocolEvent(ProtocolPart.BT_STATUS, "")
     ending = {step.source for step in steps if phases[step.target] is Phase.ENDED and status in step.sent}
     endless = {n for n, phase in enumerate(phases) if halted or phase is Phase.RUNNING} - backward(ending, steps)
-    if (
-        halted
-    ):  # a variable that keeps its value, such as that of a port, may decide that a plugin runs until it is halted
+    if halted:
+        # A variable that keeps its value, such as that of a port, may decide that a plugin runs until it is halted.
         left = {c.state for n, c in enumerate(behavior.configurations) if n not in endless}
         endless = {n for n in endless if behavior.configurations[n].state not in left}
     inside = [step for step in steps if step.source in endless]
