@@ -96,3 +96,13 @@ def test_an_entry_that_is_only_observed() -> None:
     tree = Drawn("KeepRunningUntilFailure", (), (Drawn("Sequence", (), (asked, write, Drawn("Check"))),))
     for seed in range(3):
         compare(tree, seed)
+
+
+@pytest.mark.parametrize("kind", ["Sequence", "Fallback", "AsyncSequence", "AsyncFallback"])
+def test_skipped_children_of_a_condition_that_is_not_reset(kind: str) -> None:
+    """A `WhileDoElse` evaluates a condition that has ended again without a reset. The condition then also counts the
+    children that were skipped before."""
+    skipped = Drawn("Precondition", (("if", "x == 7"), ("else", "SKIPPED")), (Drawn("Act0"),))
+    tree = Drawn("WhileDoElse", (), (Drawn(kind, (), (skipped, Drawn("Act1"))), Drawn("Act3"), Drawn("Act2")))
+    for seed in range(12):
+        compare(tree, seed)
