@@ -164,6 +164,24 @@ def test_interrupted_at_any_place(tmp_path: Path) -> None:
     assert interruptions >= len(texts) * 2
 
 
+def test_a_check_of_other_texts_is_abandoned(tmp_path: Path) -> None:
+    """A check of a copy, as for a fix that is tried before it is offered, has the checkpoints of the workspace."""
+    write_system(tmp_path, files=4, lines=120)
+    path = str(tmp_path / FIRST)
+    is_needed = True
+
+    def stop_if_not_needed() -> None:
+        if not is_needed:
+            raise Interrupted
+
+    workspace = Workspace((str(tmp_path),), Settings(), checkpoint=stop_if_not_needed)
+    text = Path(path).read_text(encoding="utf-8")
+    copy = workspace.snapshot().with_texts({path: text.replace("counter + 1", "counter + 2", 1)})
+    is_needed = False
+    with pytest.raises(Interrupted):
+        copy.checker.diagnostics(path)
+
+
 def test_other_threads_go_on() -> None:
     """A checkpoint interrupts the computation that was started with it, not one in another thread, or one after it."""
 

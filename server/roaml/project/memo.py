@@ -48,8 +48,9 @@ class Memo:
         return self._inner[name]
 
     def copy(self) -> Memo:
-        """A copy of the cache. New results of the copy are not added to this cache."""
-        other = Memo()
+        """A copy of the cache, whose work is abandoned at the same checkpoints. New results of the copy are not added
+        to this cache."""
+        other = Memo(self.checkpoint)
         other._slots = dict(self._slots)
         other._inner = {name: inner.copy() for name, inner in self._inner.items()}
         return other
