@@ -14,8 +14,10 @@ from mending import applied, found
 from roaml.diagnostics import Severity
 from roaml.ide.code_actions import actions
 from roaml.ide.code_actions.action import FIX_ALL, QUICK_FIX, CodeAction
+from roaml.ide.code_actions.harmless import _HIDING
 from roaml.project.settings import Settings
 from roaml.project.workspace import Snapshot, Workspace
+from roaml.rules import RULES
 from roaml.text import Span
 
 
@@ -337,6 +339,10 @@ def test_a_fix_that_adds_a_finding_is_not_offered() -> None:
 
     assert [action.title for action in offered(written("c"), QUICK_FIX)] == ["Change to `std_msgs/Int32`"]
     assert not offered(written("a"), QUICK_FIX)
+
+
+def test_rules_about_unreadable_parts_exist() -> None:
+    assert {rule.code for rule in RULES} >= _HIDING
 
 
 # ------------------------------------------------------------------ whole files

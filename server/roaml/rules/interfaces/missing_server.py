@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.diagnostics import Finding, Related, Severity
 from roaml.model.gaps import InterfaceAct
 from roaml.model.system import System
 from roaml.model.value_types import CHANNEL_KINDS
@@ -34,14 +34,12 @@ def _finding(context: MachineContext | TreeContext, system: System, naming: Nami
                 f"for {kind}s"
             )
             related = (Related(other.sources[0].symbol, "the server"), *naming.related)
-            return RULE.at(span, message, *_rename(context, naming, (other.name,)), related=related)
+            fixes = renamings(context, span, (other.name,) if naming.literal else ())
+            return RULE.at(span, message, *fixes, related=related)
     close = close_channels(channel.name, [c.name for c in served])
     message = f"no machine serves the {kind} `{channel.name}`, so its clients never get a response{did_you_mean(close)}"
-    return RULE.at(span, message, *_rename(context, naming, close), related=naming.related)
-
-
-def _rename(context: MachineContext | TreeContext, naming: Naming, names: Iterable[str]) -> Iterator[Fix]:
-    yield from renamings(context, naming.span, names if naming.literal else ())
+    fixes = renamings(context, span, close if naming.literal else ())
+    return RULE.at(span, message, *fixes, related=naming.related)
 
 
 RULE = Rule(
