@@ -887,13 +887,31 @@ class Kernel:
         if (self.scheduler >> 56) & 1 != 0:
             state = self._mixed((state + self.vector + 2) & UINT64_MASK)
         # Each of hundreds of values needs only one multiplication and no function call, which would be slow in plain
-        # Python.
-        for i in range(self.instances):
-            state = ((state ^ (state >> 32)) + self.place[i] + 1) * MIX_1 & UINT64_MASK
-        for i in range(self.int_count):
-            state = ((state ^ (state >> 32)) + (self.ints[i] & UINT64_MASK)) * MIX_1 & UINT64_MASK
+        # Python. A multiplication waits for the one before it; those of the three other sums are independent of it.
+        second = third = fourth = GOLDEN
+        i = 3
+        while i < self.instances:
+            state = ((state ^ (state >> 32)) + self.place[i - 3] + 1) * MIX_1 & UINT64_MASK
+            second = ((second ^ (second >> 32)) + self.place[i - 2] + 1) * MIX_1 & UINT64_MASK
+            third = ((third ^ (third >> 32)) + self.place[i - 1] + 1) * MIX_1 & UINT64_MASK
+            fourth = ((fourth ^ (fourth >> 32)) + self.place[i] + 1) * MIX_1 & UINT64_MASK
+            i += 4
+        for j in range(i - 3, self.instances):
+            state = ((state ^ (state >> 32)) + self.place[j] + 1) * MIX_1 & UINT64_MASK
+        i = 3
+        while i < self.int_count:
+            state = ((state ^ (state >> 32)) + (self.ints[i - 3] & UINT64_MASK)) * MIX_1 & UINT64_MASK
+            second = ((second ^ (second >> 32)) + (self.ints[i - 2] & UINT64_MASK)) * MIX_1 & UINT64_MASK
+            third = ((third ^ (third >> 32)) + (self.ints[i - 1] & UINT64_MASK)) * MIX_1 & UINT64_MASK
+            fourth = ((fourth ^ (fourth >> 32)) + (self.ints[i] & UINT64_MASK)) * MIX_1 & UINT64_MASK
+            i += 4
+        for j in range(i - 3, self.int_count):
+            state = ((state ^ (state >> 32)) + (self.ints[j] & UINT64_MASK)) * MIX_1 & UINT64_MASK
         for i in range(self.real_count):
             state = ((state ^ (state >> 32)) + (hash(self.reals[i]) & UINT64_MASK)) * MIX_1 & UINT64_MASK
+        state = ((state ^ (state >> 32)) + second) * MIX_1 & UINT64_MASK
+        state = ((state ^ (state >> 32)) + third) * MIX_1 & UINT64_MASK
+        state = ((state ^ (state >> 32)) + fourth) * MIX_1 & UINT64_MASK
         return self._mixed(state)
 
     def _take(self, vector: int, rest: int, apart: int) -> None:
