@@ -124,6 +124,8 @@ cdef class Kernel:
     @cython.locals(i=i64)
     cdef int _takes_part(self, i64 vector, i64 instance) noexcept
     cdef void _notice(self, u64 state) noexcept
+    @cython.locals(i=i64)
+    cpdef tuple changed(self, i64[::1] ints, double[::1] reals)
     @cython.locals(state=u64, second=u64, third=u64, fourth=u64, i=i64, j=i64)
     cdef u64 _state_hash(self) noexcept
     @cython.locals(i=i64, slot=i64, count=i64, pick=i64, edge=i64, way=i64, parts=i64)

@@ -23,6 +23,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from array import array
     from collections.abc import Sequence
 
     from roaml.smc.program import Goal, Program
@@ -341,6 +342,11 @@ class Kernel:
     def snapshot(self) -> tuple[list[int], list[float]]:
         """The values of all variables."""
         return [self.ints[i] for i in range(self.int_count)], [self.reals[i] for i in range(self.real_count)]
+
+    def changed(self, ints: array[int], reals: array[float]) -> tuple[list[int], list[int]]:
+        """The registers of integers and of reals whose values differ from those of an earlier `snapshot`."""
+        changed_ints = [i for i in range(self.int_count) if self.ints[i] != ints[i]]
+        return changed_ints, [i for i in range(self.real_count) if self.reals[i] != reals[i]]
 
     def location(self, instance: int) -> int:
         """The current location of `instance`, numbered through all instances."""

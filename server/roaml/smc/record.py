@@ -4,6 +4,7 @@ which they come."""
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple, TypeAlias
 
@@ -124,45 +125,49 @@ class StepReader:
 
     def start(self) -> None:
         """Make the current state the state before the next step."""
-        self._places = [self._kernel.location(i) for i in range(len(self.legend.layout.instances))]
-        self._ints, self._reals = self._kernel.snapshot()
+        ints, reals = self._kernel.snapshot()
+        self._ints, self._reals = array("q", ints), array("d", reals)
 
     def read(self, number: int) -> TraceStep:
         """The step from the previous state to the current one. The current state becomes the previous one of the next
         call."""
-        places, ints, reals = self._places, self._ints, self._reals
-        self.start()
         _, action = self.legend.vectors[self._kernel.vector]
-        parts = tuple(self._part(instance, way, places) for instance, way in self._kernel.taken())
-        return TraceStep(number, action, parts, self._changes(ints, reals, self._ints, self._reals))
+        parts = tuple(self._part(instance, way) for instance, way in self._kernel.taken())
+        return TraceStep(number, action, parts, self._changes())
 
     def change(self, number: int, action: str | None) -> TraceStep:
         """A step that no automaton has taken, because the user has changed the state."""
-        ints, reals = self._ints, self._reals
-        self.start()
-        return TraceStep(number, action, (), self._changes(ints, reals, self._ints, self._reals))
+        return TraceStep(number, action, (), self._changes())
 
     def values(self, storages: Sequence[Storage]) -> list[Plain]:
         """The values of the variables in the current state."""
         ints, reals = self._kernel.snapshot()
         return [_value(storage, reals if storage.kind == REAL else ints) for storage in storages]
 
-    def _part(self, instance: int, way: int, places: list[int]) -> AutomatonStep:
+    def _part(self, instance: int, way: int) -> AutomatonStep:
         edge, destination = self.legend.ways[way]
-        _, source = self.legend.locations[places[instance]]
-        return AutomatonStep(instance, self.legend.layout.instances[instance].automaton.name, source, edge, destination)
+        automaton = self.legend.layout.instances[instance].automaton
+        return AutomatonStep(instance, automaton.name, edge.source, edge, destination)
 
-    def _changes(
-        self, ints: list[int], reals: list[float], ints_after: list[int], reals_after: list[float]
-    ) -> tuple[VariableChange, ...]:
-        changed = {self._owner_of_int[i] for i, value in enumerate(ints_after) if value != ints[i]}
-        changed |= {self._owner_of_real[i] for i, value in enumerate(reals_after) if value != reals[i]}
-        changes = []
-        for position in sorted(changed):
-            variable, storage = self.variables[position]
-            before, after = (reals, reals_after) if storage.kind == REAL else (ints, ints_after)
-            changes.append(VariableChange(variable, _value(storage, before), _value(storage, after)))
-        return tuple(changes)
+    def _changes(self) -> tuple[VariableChange, ...]:
+        """The variables that differ from the previous state, which becomes the current one. The kernel compares the
+        states, because a model may have thousands of variables of which a step changes three."""
+        ints, reals = self._kernel.changed(self._ints, self._reals)
+        positions = sorted({self._owner_of_int[i] for i in ints} | {self._owner_of_real[i] for i in reals})
+        changed = [self.variables[position] for position in positions]
+        before = [self._previous(storage) for _, storage in changed]
+        for i in ints:
+            self._ints[i] = self._kernel.integer(i)
+        for i in reals:
+            self._reals[i] = self._kernel.real(i)
+        return tuple(
+            VariableChange(variable, old, self._previous(storage))
+            for (variable, storage), old in zip(changed, before, strict=True)
+        )
+
+    def _previous(self, storage: Storage) -> Plain:
+        """The value of a variable in the state that was read last."""
+        return _value(storage, self._reals if storage.kind == REAL else self._ints)
 
     def standstill(self, system: System) -> Standstill:
         """The current state, as input for the analysis of which automaton waits for which."""

@@ -8,7 +8,8 @@ variable that a step reads, and the step that triggered the automaton that takes
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from bisect import bisect_left
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from roaml.jani.model import Automaton
 from roaml.record import Record
@@ -101,15 +102,16 @@ def _last_steps(steps: list[TraceStep], instances: list[int]) -> list[int]:
 
 
 def _relevant(recorder: Recorder, steps: list[TraceStep], variables: tuple[str, ...], ends: list[int]) -> list[int]:
-    last_change: dict[RecordedVariable, list[int]] = {}
-    last_step: dict[int, list[int]] = {}
+    changes: dict[RecordedVariable, list[int]] = {}
+    joint_steps: dict[int, list[int]] = {}
     for i, step in enumerate(steps):
         for change in step.changes:
-            last_change.setdefault(change.variable, []).append(i)
-        for part in step.parts:
-            last_step.setdefault(part.instance, []).append(i)
+            changes.setdefault(change.variable, []).append(i)
+        if len(step.parts) > 1:
+            for part in step.parts:
+                joint_steps.setdefault(part.instance, []).append(i)
     kept: set[int] = set()
-    waiting = [i for name in variables for i in last_change.get(RecordedVariable(-1, name), ())]
+    waiting = [i for name in variables for i in changes.get(RecordedVariable(-1, name), ())]
     waiting += ends
     while waiting:
         i = waiting.pop()
@@ -117,26 +119,14 @@ def _relevant(recorder: Recorder, steps: list[TraceStep], variables: tuple[str, 
             continue
         kept.add(i)
         for part in steps[i].parts:
-            waiting += (k for v in recorder.reads(part) if (k := _before(last_change.get(v, ()), i)) is not None)
-            cause = _cause(steps, last_step[part.instance], part, i)
-            if cause is not None:
-                waiting.append(cause)
+            causes = [_before(changes.get(variable, ()), i) for variable in recorder.reads(part)]
+            # The automaton was triggered by the latest step that it took together with another one.
+            causes.append(_before(joint_steps.get(part.instance, ()), i))
+            waiting += (cause for cause in causes if cause is not None)
     return sorted(kept)
 
 
-def _cause(steps: list[TraceStep], own: list[int], part: AutomatonStep, i: int) -> int | None:
-    """The latest earlier step in which the automaton took part together with another automaton."""
-    before = [k for k in own if k < i]
-    for k in reversed(before):
-        if len(steps[k].parts) > 1:
-            return k
-    return None
-
-
-def _before(places: list[int] | tuple[int, ...], i: int) -> int | None:
-    before = None
-    for k in places:
-        if k >= i:
-            break
-        before = k
-    return before
+def _before(numbers: Sequence[int], i: int) -> int | None:
+    """The greatest of some sorted numbers that is less than `i`."""
+    position = bisect_left(numbers, i)
+    return numbers[position - 1] if position > 0 else None
