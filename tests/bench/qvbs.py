@@ -5,9 +5,11 @@ from __future__ import annotations
 
 import json
 import os
+import resource
 import signal
 import subprocess
 import sys
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import conformance
@@ -29,8 +31,7 @@ KINDS = ("dtmc", "mdp")
 
 
 class Command(NamedTuple):
-    """A call of `as2fm-lsp verify`: its CPU time in s, its exit status (-1 if it took too long), and its
-    output."""
+    """A call of a command: its CPU time in s, its exit status (-1 if it took too long), and its output."""
 
     processor: float
     status: int
@@ -39,19 +40,23 @@ class Command(NamedTuple):
 
 def verify(*arguments: str, timeout_s: int = TIMEOUT_S) -> Command:
     """Call `as2fm-lsp verify` with results in JSON."""
-    command = [sys.executable, "-m", "as2fm_lsp", "verify", "--format", "json", *arguments]
+    return called([sys.executable, "-m", "as2fm_lsp", "verify", "--format", "json", *arguments], timeout_s)
+
+
+def called(command: Sequence[str], timeout_s: int = TIMEOUT_S) -> Command:
+    """Call a command, with a limit of elapsed time."""
     with subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, start_new_session=True
     ) as process:
-        before = os.times()
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
         try:
             output, _ = process.communicate(timeout=timeout_s)
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
             process.communicate()
             return Command(timeout_s, -1, "")
-    after = os.times()
-    spent = after.children_user + after.children_system - before.children_user - before.children_system
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
     return Command(spent, process.returncode, output)
 
 

@@ -2,6 +2,8 @@
 """The statistical model checker SCAN on the folders that `translate --scxml-dir` writes.
 
 `cargo install smc_scan --locked` installs it; `SCAN` in the environment names the program if it is not on the path.
+`SCAN_EXAMPLES` names the folder of SCAN's own examples in JANI: `tests` of the package `smc_scan_jani`, which Cargo
+stores below `registry/src` of its folder. Its examples in SCXML are written in SCAN's own dialect of the system file.
 """
 
 from __future__ import annotations
@@ -15,6 +17,7 @@ import time
 from pathlib import Path
 
 import conformance
+from bench.qvbs import called, verify
 from bench.report import Benchmark, Row, seconds
 from roaml import api
 from roaml.scxml.lowered_properties import FILE_NAME, NOBODY_TEXT, lowered_properties
@@ -24,6 +27,8 @@ from roaml.smc.run import Options
 PRECISION = 0.02
 SECONDS = 60
 """The longest time for a call of SCAN."""
+REPETITIONS = 5
+"""The fastest of these calls is shown."""
 
 
 def program() -> str:
@@ -87,4 +92,26 @@ def properties_in_scan() -> list[Row]:
     return rows
 
 
-BENCHMARKS: dict[str, Benchmark] = {"scan-reads": folders_that_scan_reads, "scan-verify": properties_in_scan}
+def examples_of_scan() -> list[Row]:
+    """The values and CPU times of SCAN's own examples in JANI that have properties, in SCAN and in `verify`."""
+    rows = []
+    for path in sorted(Path(os.environ["SCAN_EXAMPLES"]).glob("*.jani")):
+        if not json.loads(path.read_text(encoding="utf-8")).get("properties"):
+            continue
+        arguments = ["-q", str(path), "verify", "--all", "--json", "--precision", str(PRECISION), "--single-thread"]
+        theirs = min(called([program(), *arguments], SECONDS) for _ in range(REPETITIONS))
+        sampled = ["--scheduler", "uniform", "--method", "adaptive", "--epsilon", str(PRECISION), "--jobs", "1"]
+        ours = min(verify(str(path), *sampled, timeout_s=SECONDS) for _ in range(REPETITIONS))
+        rate = f"{json.loads(theirs.output)['rate']:.3f}" if theirs.status == 0 else "refused"
+        results = json.loads(ours.output)["results"] if ours.output else []
+        values = ", ".join(f"{result['probability']:.3f}" for result in results) or "refused"
+        figure = f"{values} in {seconds(ours.processor)}; SCAN: {rate} in {seconds(theirs.processor)}"
+        rows.append(Row(f"SCAN's example {path.name}", figure, "", f"± {PRECISION}; CPU time of the whole process"))
+    return rows
+
+
+BENCHMARKS: dict[str, Benchmark] = {
+    "scan-reads": folders_that_scan_reads,
+    "scan-verify": properties_in_scan,
+    "scan-examples": examples_of_scan,
+}

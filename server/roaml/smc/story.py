@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from roaml.jani.model import Automaton
 from roaml.record import Record
 from roaml.smc.end import End
-from roaml.smc.record import AutomatonStep, Plain, RecordedVariable, Recorder, Recording, TraceStep
+from roaml.smc.record import Plain, RecordedVariable, Recorder, Recording, TraceStep
 from roaml.smc.standstill import Standstill
 
 
