@@ -76,8 +76,8 @@ def test_a_tree_runs_with_the_mocks_beside_it(client: Client) -> None:
     assert client.move()["hitBreakpointIds"] == [set_["id"]]
     frames = [(frame["name"], frame["line"]) for frame in client.stack(1)]
     assert frames == [
-        ("FollowPath (bt_1005): TICKED", follow),
-        ("PipelineSequence (bt_1002): TICKED", _line(FETCH, "<PipelineSequence")),
+        ("FollowPath: TICKED", follow),
+        ("PipelineSequence: TICKED", _line(FETCH, "<PipelineSequence")),
         ("DriveToShelf : RecoveryNode: TICKED", _line(FETCH, "<RecoveryNode")),
         ("Sequence (bt_1000): TICKED", _line(FETCH, "<Sequence>")),
     ]

@@ -266,7 +266,7 @@ def test_a_trace_of_a_plugin_with_conditions(tmp_path: Path, capsys: pytest.Capt
     path = system(tmp_path, '<Sequence name="root"><Mine code="{c}" _skipIf="c == 5"/><AlwaysSuccess/></Sequence>')
     run(["verify", path, "--mock", "Mine: 0.5", "--max-traces", "20", "--scheduler", "uniform", "--explain"])
     text = capsys.readouterr().out
-    assert re.search(r"Mine \(bt_1001\) +is ticked in idle → failed: FAILURE", text)
+    assert re.search(r"Mine +is ticked in idle → failed: FAILURE", text)
     assert "_inner_" not in text
 
 
@@ -276,9 +276,8 @@ def test_nodes_with_names_in_a_trace(tmp_path: Path, capsys: pytest.CaptureFixtu
     arguments = ("--mock", "Drive: 0 in 300 ms", "--mock", "Wait: 0", "--max-traces", "50", "--explain")
     assert run(["verify", tree(tmp_path, content), *arguments]) == 0
     text = capsys.readouterr().out
-    assert "bt_1002_tick" not in text
-    assert re.search(r"Try hard \(bt_1000\) +returns FAILURE", text)
-    assert re.search(r"bt_1000 is Try hard \(\S*tree.xml:3\), bt_1001 is RateController \(\S*tree.xml:4\)", text)
+    assert "bt_100" not in text
+    assert re.search(r"Try hard +returns FAILURE", text)
 
 
 def test_entries_are_for_trees(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -64,7 +64,7 @@ def test_state_in_the_terms_of_the_user(robot: api.VerificationTarget) -> None:
     command = next(event for event in state.events if event.name == "topic_arm__command_msg")
     assert (command.text, command.sender, command.parameters) == (
         "a message on the topic `/arm/command`",
-        "MoveToGoal (bt_1006)",
+        "MoveToGoal",
         {"data": 2},
     )
 

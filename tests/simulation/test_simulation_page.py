@@ -22,7 +22,7 @@ def test_the_program_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captur
     exec(program, {})
     out = capsys.readouterr().out
     assert out.startswith("Arm moving {'holding': True, 'way': 0}\n")
-    assert "Sequence (bt_1000) ticks RetryUntilSuccessful (bt_1001)" in out
+    assert "Sequence (bt_1000) ticks RetryUntilSuccessful" in out
 
 
 def test_the_table_has_the_commands_of_the_help() -> None:

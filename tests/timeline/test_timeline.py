@@ -55,7 +55,7 @@ def test_lanes_and_plots_show_the_states_of_the_run(path: Path) -> None:
                     assert plot.values[bisect_right(plot.steps, position) - 1] == value
                     compared.add(plot.name)
         for node in state.nodes:
-            lane = lanes[f"{node.type} (bt_{node.number})"]
+            lane = lanes[node.name]
             if node.status is not NodeStatus.TICKED:
                 assert lane.states[bisect_right(lane.starts, position) - 1] == node.status.value, position
     assert compared
@@ -67,7 +67,7 @@ def test_messages_lead_from_their_sender_to_their_receivers() -> None:
     timeline = timeline_of(session)
     names = [lane.name for lane in timeline.lanes]
     first = timeline.messages[0]
-    assert (first.name, names[first.sender]) == ("/arm/command", "PickUp (bt_1003)")
+    assert (first.name, names[first.sender]) == ("/arm/command", "PickUp")
     assert [names[receiver] for receiver in first.receivers] == ["Arm"]
     assert first.sent < first.received
     assert session.steps[first.received - 1].action == "topic_arm__command_msg_on_receive"

@@ -67,9 +67,9 @@ def test_forwarding_steps_are_omitted() -> None:
     story_lines = lines(story, lambda _: "")
     assert {line.who for line in story_lines if line.who} == {
         "Battery",
-        "BatteryAbove (bt_1002)",
-        "ReactiveFallback (bt_1001)",
-        "Deliver (bt_1004)",
+        "BatteryAbove",
+        "ReactiveFallback",
+        "Deliver",
         "Building",
     }
     event_phrase = [text for line in story_lines for text in (line.what, *line.details)]
@@ -135,6 +135,6 @@ def test_the_first_line_names_the_leaf_that_failed() -> None:
     sentence = cause(build_story(recorder, failing, subject.clock), lambda _: "")
     assert re.fullmatch(
         r"recovers_or_succeeds fails at \d+\.000 s: the tree ends with FAILURE, "
-        r"because MoveBlock \(bt_1005\) returns FAILURE",
+        r"because MoveBlock returns FAILURE",
         sentence,
     )

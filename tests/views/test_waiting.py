@@ -41,10 +41,10 @@ def test_a_plugin_waits_for_a_service_that_waits_for_time(tmp_path: Path) -> Non
         told(tmp_path, hospital())
         == """\
 the clock waits at 2 s for the tree to take its next tick (tree.xml:3)
-the tree waits for Fetch (bt_1002) to return a status (tree.xml:5)
-Fetch (bt_1002) waits in `asked` for the response of the service `/ward/prepare` (fetch.ascxml:12)
+the tree waits for Fetch to return a status (tree.xml:5)
+Fetch waits in `asked` for the response of the service `/ward/prepare` (fetch.ascxml:12)
 Pharmacy waits in `busy` for its timer `dispense`, which ticks when the clock advances (pharmacy.ascxml:8)
-help: a tick must end before the next one is due; let Fetch (bt_1002) return RUNNING, and the result at a later tick
+help: a tick must end before the next one is due; let Fetch return RUNNING, and the result at a later tick
 [answer-needs-time]
 """
     )
@@ -90,10 +90,10 @@ def test_a_plugin_waits_for_the_result_of_an_action(tmp_path: Path) -> None:
         text
         == """\
 the clock waits at 2 s for the tree to take its next tick (tree.xml:3)
-the tree waits for Move (bt_1001) to return a status (tree.xml:3)
-Move (bt_1001) waits in `going` for the result of the action `/arm/move` (Move.ascxml:10)
+the tree waits for Move to return a status (tree.xml:3)
+Move waits in `going` for the result of the action `/arm/move` (Move.ascxml:10)
 Arm waits in `busy` for its timer `step`, which ticks when the clock advances (Arm.ascxml:11)
-help: a tick must end before the next one is due; let Move (bt_1001) return RUNNING, and the result at a later tick
+help: a tick must end before the next one is due; let Move return RUNNING, and the result at a later tick
 [answer-needs-time]
 """
     )
@@ -133,11 +133,11 @@ def test_a_service_waits_for_a_message_of_a_machine_with_a_timer(tmp_path: Path)
         text
         == """\
 the clock waits at 2 s for the tree to take its next tick (tree.xml:3)
-the tree waits for Ask (bt_1002) to return a status (tree.xml:3)
-Ask (bt_1002) waits in `asked` for the response of the service `/s` (Ask.ascxml:6)
+the tree waits for Ask to return a status (tree.xml:3)
+Ask waits in `asked` for the response of the service `/s` (Ask.ascxml:6)
 Server waits in `busy` for a message on the topic `/go` from Publisher (Server.ascxml:6)
 Publisher waits in `s` for its timer `t`, which ticks when the clock advances (Publisher.ascxml:5)
-help: a tick must end before the next one is due; let Ask (bt_1002) return RUNNING, and the result at a later tick
+help: a tick must end before the next one is due; let Ask return RUNNING, and the result at a later tick
 [answer-needs-time]
 """
     )
@@ -151,7 +151,7 @@ def test_a_server_that_never_responds(tmp_path: Path) -> None:
 """
     lines = told(tmp_path, system({"Ask": ASK, "Deaf": deaf}, "<Ask />")).splitlines()
     assert lines[2:4] == [
-        "Ask (bt_1000) waits in `asked` for the response of the service `/s` (Ask.ascxml:6)",
+        "Ask waits in `asked` for the response of the service `/s` (Ask.ascxml:6)",
         "Deaf waits for a condition that can never become true (Deaf.ascxml:4)",
     ]
     assert len(lines) == 5
@@ -200,10 +200,10 @@ def test_a_halt_that_is_not_answered_in_time(tmp_path: Path) -> None:
     machines = {"Slow": slow, "Gate": gate, "Server": server}
     lines = told(tmp_path, system(machines, "<ReactiveSequence><Gate /><Slow /></ReactiveSequence>")).splitlines()
     assert lines[1:] == [
-        "the tree waits for Slow (bt_1002) to halt (tree.xml:3)",
-        "Slow (bt_1002) waits in `stopping` for the response of the service `/s` (Slow.ascxml:8)",
+        "the tree waits for Slow to halt (tree.xml:3)",
+        "Slow waits in `stopping` for the response of the service `/s` (Slow.ascxml:8)",
         "Server waits in `busy` for its timer `t`, which ticks when the clock advances (Server.ascxml:5)",
-        "help: a halt must end before the next tick is due; let Slow (bt_1002) confirm it at once",
+        "help: a halt must end before the next tick is due; let Slow confirm it at once",
         "[answer-needs-time]",
     ]
 

@@ -121,8 +121,8 @@ export function debugging(stage: Stage): void {
         await makeSpace(window);
         await page.keyboard.press("F5");
         const stack = page.locator(".debug-call-stack .monaco-list-row");
-        await stack.filter({ hasText: "FollowPath (bt_1005): TICKED" }).first().waitFor();
-        await choicesOf(window).getByText("FollowPath (bt_1005) is ticked").first().waitFor();
+        await stack.filter({ hasText: "FollowPath: TICKED" }).first().waitFor();
+        await choicesOf(window).getByText("FollowPath is ticked").first().waitFor();
         await window.screenshot("debugging-tree");
         await stop(window);
     });

@@ -93,7 +93,7 @@ export function verification(stage: Stage): void {
         // The list has only rows that are visible, so it is scrolled to its start.
         await selected(window).first().click();
         await window.press("Home");
-        await step(window, "BatteryAbove (bt_1002): receives /battery").first().click();
+        await step(window, "BatteryAbove: receives /battery").first().click();
         await state(window, "battery").filter({ hasText: "40  ← was 100" }).first().waitFor();
         await window.page.locator('.tab.active[data-resource-name="battery_above.ascxml"]').waitFor();
         await window.statusItem("Ln 18, Col 9").waitFor();
@@ -102,7 +102,7 @@ export function verification(stage: Stage): void {
         // The effects of the step are below it.
         await step(window, "battery: 100 → 40").waitFor();
         await window.page.locator(".panel").getByRole("button", { name: "Collapse All" }).click();
-        await step(window, "ReactiveFallback (bt_1001): returns SUCCESS").first().click();
+        await step(window, "ReactiveFallback: returns SUCCESS").first().click();
         await tree.locator('.node.highlighted[data-label="ReactiveFallback"]').waitFor();
         await window.page.locator('.tab.active[data-resource-name="tree.xml"]').waitFor();
         await window.becomes(() => tree.locator(".node.highlighted").count(), 1);

@@ -226,8 +226,7 @@ class Terminal:
             handles = f", handles {handled}" if handled else ""
             yield f"{machine.name}: {machine.state}{handles}{f' ({values})' if values else ''}"
         for node in state.nodes:
-            name = f"{node.type} (bt_{node.number})"
-            yield f"{name}: {node.status.value}{of_nodes.get(name, '')}"
+            yield f"{node.name}: {node.status.value}{of_nodes.get(node.name, '')}"
         for event in state.events:
             values = shown_parameters(event.parameters)
             waiting = ", not received yet" if event.is_waiting else ""

@@ -15,7 +15,6 @@ from roaml.debugging.debugger import Debugger
 from roaml.debugging.evaluate import WatchError
 from roaml.debugging.values import SEPARATOR
 from roaml.scxml.names import BLACKBOARD
-from roaml.simulation.words import who
 from roaml.suggest import alternatives
 
 
@@ -214,8 +213,8 @@ def _shown(debugger: Debugger, variable: WatchedVariable) -> str:
     name = variable.name.replace(SEPARATOR, ".")
     if variable.instance < 0:
         return name
-    automaton = debugger.session.automata_of_model[variable.instance]
-    return f"{name} on the blackboard" if automaton.name == BLACKBOARD else f"{who(automaton)}.{name}"
+    automaton = debugger.session.automata[variable.instance]
+    return f"{name} on the blackboard" if automaton == BLACKBOARD else f"{debugger.session.names[automaton]}.{name}"
 
 
 def _not_checked(requested: Iterable[tuple[int, Arguments]]) -> list[dict[str, Any]]:

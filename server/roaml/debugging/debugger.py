@@ -458,7 +458,7 @@ class Debugger:
                 step = self.session.steps[self.session.position - 1]
                 number = sent_by(step.action or "").split("_")[1]
                 node = self.sources.nodes.get(int(number))
-                return f"{node.type if node else 'node'} (bt_{number}) fails"
+                return f"{self.session.names[node.automaton] if node else 'a node'} fails"
             case ExceptionFilter.CHANCE:
                 return "the next step is decided by chance"
             case ExceptionFilter.TIME:

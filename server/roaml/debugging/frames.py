@@ -18,7 +18,6 @@ from roaml.record import Record
 from roaml.scxml.names import NODE_AUTOMATON, received_by
 from roaml.simulation.session import Session
 from roaml.simulation.state import MachineState, NodeState, NodeStatus, SystemState
-from roaml.simulation.words import who
 from roaml.smc.record import AutomatonStep, TraceStep
 from roaml.views.event_words import event_phrase
 
@@ -66,7 +65,7 @@ def threads(session: Session, sources: Sources) -> tuple[DebugThread, ...]:
     number = FIRST_MACHINE_THREAD
     for instance, automaton in enumerate(session.automata_of_model):
         if session.is_machine(instance) and not _is_node(automaton.name, sources):
-            threads_.append(DebugThread(number, who(automaton), instance))
+            threads_.append(DebugThread(number, session.names[automaton.name], instance))
             number += 1
     return tuple(threads_)
 
@@ -150,7 +149,8 @@ class Stacks:
         while number:
             node = self._sources.nodes[number]
             status = statuses[number].status.value if number in statuses else NodeStatus.IDLE.value
-            name = f"{node.name} (bt_{number})" if node.name == node.type else f"{node.name} : {node.type}"
+            is_named = node.name != node.type
+            name = f"{node.name} : {node.type}" if is_named else self._session.names[node.automaton]
             instance = self._instances.get(node.automaton, -1)
             yield Frame(thread, f"{name}: {status}", node.origin, instance, number, FrameRole.NODE)
             number = node.parent

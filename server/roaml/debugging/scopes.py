@@ -152,7 +152,7 @@ class Values:
 
     def _nodes(self) -> Iterator[ScopeEntry]:
         for node in self._state.nodes:
-            yield ScopeEntry(f"{node.type} (bt_{node.number})", node.status.value, "status", f"bt_{node.number}")
+            yield ScopeEntry(node.name, node.status.value, "status", f"bt_{node.number}")
 
     def _messages(self) -> Iterator[ScopeEntry]:
         for event in self._state.events:

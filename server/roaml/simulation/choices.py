@@ -29,7 +29,7 @@ from roaml.scxml.names import (
     sent_by,
 )
 from roaml.simulation.run import Decision, EnabledEdges, Run
-from roaml.simulation.words import resting, returned_status, tree_text, who
+from roaml.simulation.words import resting, returned_status, tree_text
 from roaml.smc.compile import Legend
 from roaml.smc.fault import FaultError
 from roaml.smc.record import Plain, RecordedVariable
@@ -112,12 +112,18 @@ def is_of_translation(action: str, actors: Collection[str], *, has_machine: bool
 
 
 def choices(
-    run: Run, events: EventReader, phrases: Phrases, clock: Sequence[str], is_machine: Callable[[int], bool]
+    run: Run,
+    events: EventReader,
+    phrases: Phrases,
+    names: Mapping[str, str],
+    clock: Sequence[str],
+    is_machine: Callable[[int], bool],
 ) -> Iterator[Choice]:
     """The choices of a state, at most `MAX_CHOICES`.
 
     Args:
         events: the reader of events, after it has read all steps up to this state.
+        names: the names of all automata in texts for users.
         clock: the variables of the model with its time in s and the rest in ns; empty if it has no clock.
     """
     enabled, legend = run.enabled(), run.legend
@@ -132,11 +138,11 @@ def choices(
             actors = [part for part in parts if not events.is_event(part.automaton.name)]
             actors = [part for part in actors if not is_observer(part.automaton.name)] or actors
             action = legend.vectors[vector.vector][1] or ""
-            outcomes = tuple(_outcomes(run, vector.vector, picks, parts, events, phrases))
+            outcomes = tuple(_outcomes(run, vector.vector, picks, parts, events, phrases, names))
             if action == CLOCK_ACTION:
                 text = _time_text(_time_after(run, outcomes[0].decision, clock))
             else:
-                text = _text(action, actors, parts, events, legend)
+                text = _text(action, actors, parts, events, names)
             yield Choice(
                 number,
                 text,
@@ -160,28 +166,39 @@ def _part(legend: Legend, slot: EnabledEdges, pick: int) -> _Part:
 
 
 def _outcomes(
-    run: Run, vector: int, picks: tuple[int, ...], parts: Sequence[_Part], events: EventReader, phrases: Phrases
+    run: Run,
+    vector: int,
+    picks: tuple[int, ...],
+    parts: Sequence[_Part],
+    events: EventReader,
+    phrases: Phrases,
+    names: Mapping[str, str],
 ) -> Iterator[Outcome]:
     ways = [[way for way, chance in enumerate(part.probabilities) if chance > 0] for part in parts]
     is_certain = all(len(possible) == 1 for possible in ways)
     for taken in itertools.islice(itertools.product(*ways), MAX_OUTCOMES):
         probability = math.prod(part.probabilities[way] for part, way in zip(parts, taken, strict=True))
         decision = Decision(vector, picks, taken)
-        effects = () if is_certain else tuple(_effects(run, decision, parts, events, phrases))
+        effects = () if is_certain else tuple(_effects(run, decision, parts, events, phrases, names))
         if not is_certain and not effects:
-            effects = tuple(_moves(run, decision, parts)) or ("nothing changes",)
+            effects = tuple(_moves(run, decision, parts, names)) or ("nothing changes",)
         yield Outcome(probability, ", ".join(effects), decision)
 
 
-def _moves(run: Run, decision: Decision, parts: Sequence[_Part]) -> Iterator[str]:
+def _moves(run: Run, decision: Decision, parts: Sequence[_Part], names: Mapping[str, str]) -> Iterator[str]:
     """The automata that go on to another location."""
     for part, way in zip(parts, decision.ways, strict=True):
         if run.legend.ways[part.first_way + way][1].location != part.edge.source:
-            yield f"{who(part.automaton)} goes on"
+            yield f"{names[part.automaton.name]} goes on"
 
 
 def _effects(
-    run: Run, decision: Decision, parts: Sequence[_Part], events: EventReader, phrases: Phrases
+    run: Run,
+    decision: Decision,
+    parts: Sequence[_Part],
+    events: EventReader,
+    phrases: Phrases,
+    names: Mapping[str, str],
 ) -> Iterator[str]:
     """The consequences of each destination that was drawn from several ones, or the reason why the step fails."""
     destinations = [
@@ -195,10 +212,9 @@ def _effects(
     except FaultError as fault:
         yield f"the step fails: {fault.message}"
         return
-    clients = [instance.automaton.name for instance in run.legend.layout.instances]
     for part, destination in destinations:
         values = {variable.name: value for variable, value in after.items() if variable.instance in (-1, part.instance)}
-        yield from _consequences(part.automaton, destination, values, clients, events, phrases(part.automaton.name))
+        yield from _consequences(part.automaton, destination, values, names, events, phrases(part.automaton.name))
 
 
 def _computed(part: _Part, destination: Destination) -> Iterator[RecordedVariable]:
@@ -225,7 +241,7 @@ def _consequences(
     automaton: Automaton,
     destination: Destination,
     after: Mapping[str, Plain],
-    clients: Sequence[str],
+    names: Mapping[str, str],
     events: EventReader,
     phrases: Mapping[str, str],
 ) -> Iterator[str]:
@@ -236,7 +252,7 @@ def _consequences(
         after: the values of the variables that the destination computes, with the lengths of arrays.
     """
     rest, states = resting(automaton), states_of(automaton)
-    name = who(automaton)
+    name = names[automaton.name]
     visited: set[str] = set()
     while True:
         for variable, value in _assigned(destination, after).items():
@@ -259,7 +275,7 @@ def _consequences(
         if status := returned_status(event, destination):
             yield f"{name} returns {status}"
         elif event:
-            yield f"{name} sends {event_phrase(event, clients)}"
+            yield f"{name} sends {event_phrase(event, names)}"
 
 
 def _statuses(automaton: Automaton, location: str, rest: Collection[str]) -> set[str]:
@@ -311,17 +327,17 @@ def _time_text(time_s: float | None) -> str:
     return "time passes" if time_s is None else f"time passes to {time_s:.3f} s"
 
 
-def _text(action: str, actors: Sequence[_Part], parts: Sequence[_Part], events: EventReader, legend: Legend) -> str:
-    names = [who(part.automaton) for part in actors]
-    automata = [instance.automaton for instance in legend.layout.instances]
-    clients = [automaton.name for automaton in automata]
+def _text(
+    action: str, actors: Sequence[_Part], parts: Sequence[_Part], events: EventReader, names_of: Mapping[str, str]
+) -> str:
+    names = [names_of[part.automaton.name] for part in actors]
     event = sent_by(action)
     spoken = event or received_by(action)
-    description = tree_text(_listed(names), spoken, bool(event), events.parameters(spoken), automata) if names else ""
+    description = tree_text(_listed(names), spoken, bool(event), events.parameters(spoken), names_of) if names else ""
     if description:
         return description
     if event:
-        return f"{_listed(names)} {_verb(names, 'sends', 'send')} {event_phrase(event, clients)}"
+        return f"{_listed(names)} {_verb(names, 'sends', 'send')} {event_phrase(event, names_of)}"
     event = received_by(action)
     if event and is_timer(event):
         takers = [part.automaton for part in actors if automaton_role(part.automaton.name) is not Role.CLOCK]
@@ -329,15 +345,15 @@ def _text(action: str, actors: Sequence[_Part], parts: Sequence[_Part], events: 
             return "a timer ticks"
         if all(automaton_role(taker.name) is Role.TREE_ROOT for taker in takers):
             return "the tree begins its next tick"
-        names = [who(taker) for taker in takers]
-        return f"{_listed(names)} {_verb(names, 'takes', 'take')} {event_phrase(event, clients, taken=True)}"
+        names = [names_of[taker.name] for taker in takers]
+        return f"{_listed(names)} {_verb(names, 'takes', 'take')} {event_phrase(event, names_of, taken=True)}"
     if event:
         parameters = _parameters(events.parameters(event))
         if not names:
-            return f"no automaton receives {event_phrase(event, clients)}{parameters}"
-        return f"{_listed(names)} {_verb(names, 'receives', 'receive')} {event_phrase(event, clients)}{parameters}"
+            return f"no automaton receives {event_phrase(event, names_of)}{parameters}"
+        return f"{_listed(names)} {_verb(names, 'receives', 'receive')} {event_phrase(event, names_of)}{parameters}"
     if not names:
-        names = [who(part.automaton) for part in parts]
+        names = [names_of[part.automaton.name] for part in parts]
     if all(_is_start(part) for part in actors or parts):
         return f"{_listed(names)} {_verb(names, 'starts', 'start')}"
     if all(part.automaton.name == CLOCK for part in actors or parts):

@@ -47,6 +47,7 @@ class Follower:
         position: the number of the steps read so far.
         events: the reader of events, with the last parameters of each event.
         time: the time of the clock in s; `None` if the model has no clock.
+        names: the name of each automaton -> its name in texts for users.
     """
 
     def __init__(
@@ -60,7 +61,7 @@ class Follower:
         self._automata = automata
         self._names = [automaton.name for automaton in automata]
         self._holders = {automaton.name: number for number, automaton in enumerate(automata)}
-        self._who = {automaton.name: who(automaton) for automaton in automata}
+        self.names = who(automata)
         self._is_machine = [self._executes_machine(automaton) for automaton in automata]
         self._states = [states_of(automaton) for automaton in automata]
         self._sent: dict[str, tuple[int, str, dict[str, DeclaredValue]]] = {}
@@ -182,9 +183,9 @@ class Follower:
             is_resting = location in resting[number]
             handled = "" if is_resting else self._handles.get(number, "")
             yield MachineState(
-                self._who[automaton.name],
+                self.names[automaton.name],
                 automaton.name,
-                automaton.name if automaton.thread_of else self._who[automaton.name],
+                automaton.name if automaton.thread_of else self.names[automaton.name],
                 self.state_of(number, location),
                 own.get(number, {}),
                 self.events.name(handled) if handled else "",
@@ -196,7 +197,8 @@ class Follower:
     def _nodes(self) -> Iterator[NodeState]:
         nodes = [match for name in self._names if (match := NODE_AUTOMATON.fullmatch(name))]
         for match in sorted(nodes, key=lambda match: int(match[1])):
-            yield NodeState(int(match[1]), match[2], self._status.get(int(match[1]), NodeStatus.IDLE))
+            number = int(match[1])
+            yield NodeState(number, match[2], self.names[match[0]], self._status.get(number, NodeStatus.IDLE))
 
     def _events(self, locations: Sequence[str]) -> Iterator[EventState]:
         for event, (step, sender, parameters) in self._sent.items():
@@ -207,7 +209,7 @@ class Follower:
                 event,
                 self.events.name(event),
                 event_phrase(event, self._names),
-                self._who[sender] if sender else "",
+                self.names[sender] if sender else "",
                 parameters,
                 step,
                 holder is not None and locations[holder] == RECEIVED,

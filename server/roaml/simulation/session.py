@@ -243,6 +243,11 @@ class Session:
         """The variables of the model that contain the parameters of an event and their lengths."""
         return self._follower.events.variables(event)
 
+    @property
+    def names(self) -> Mapping[str, str]:
+        """The name of each automaton -> its name in texts for users."""
+        return self._follower.names
+
     def phrases(self, automaton: str) -> Mapping[str, str]:
         """Phrases for those variables of an automaton whose names are not those of the user, by their names: members of
         structs, and variables that the translation has added."""
@@ -285,7 +290,7 @@ class Session:
 
     def choices(self) -> tuple[Choice, ...]:
         """The possible next steps, at most `MAX_CHOICES`."""
-        return tuple(choices(self._run, self._follower.events, self.phrases, self.clock, self.is_machine))
+        return tuple(choices(self._run, self._follower.events, self.phrases, self.names, self.clock, self.is_machine))
 
     def state(self) -> SystemState:
         """The state of the system."""

@@ -50,10 +50,11 @@ class MachineState(Record, frozen=True):
 
 
 class NodeState(Record, frozen=True):
-    """The state of a node of the tree: its number, its type and its status."""
+    """The state of a node of the tree: its number, its type, its name in texts for users, and its status."""
 
     number: int
     type: str
+    name: str
     status: NodeStatus
 
 

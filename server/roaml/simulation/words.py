@@ -18,26 +18,18 @@ from roaml.scxml.names import (
     read_tree_event,
     received_by,
 )
-from roaml.views.actors import actor, name_of
+from roaml.views.actors import actors_of
 from roaml.views.arrays import DeclaredValue
 
+_WITHOUT_ARTICLE = (Role.CLOCK, Role.BLACKBOARD, Role.TREE_ROOT)
 
-def who(automaton: Automaton) -> str:
-    """The name of an automaton in texts for users."""
-    role = automaton_role(automaton.name)
-    match role:
-        case Role.CLOCK:
-            return "clock"
-        case Role.BLACKBOARD:
-            return "blackboard"
-        case Role.TREE_ROOT:
-            return "tree"
-        case Role.MACHINE:
-            return name_of(automaton)
-        case Role.HANDLER:
-            return actor(automaton)
-        case _:
-            return assert_never(role)
+
+def who(automata: Iterable[Automaton]) -> dict[str, str]:
+    """The name of each automaton -> its name in texts for users."""
+    return {
+        automaton: phrase.removeprefix("the ") if automaton_role(automaton) in _WITHOUT_ARTICLE else phrase
+        for automaton, phrase in actors_of(automata).items()
+    }
 
 
 def resting(automaton: Automaton) -> frozenset[str]:
@@ -54,19 +46,20 @@ def resting(automaton: Automaton) -> frozenset[str]:
 
 
 def tree_text(
-    actor: str, event: str, is_sent: bool, parameters: Mapping[str, DeclaredValue], automata: Iterable[Automaton]
+    actor: str, event: str, is_sent: bool, parameters: Mapping[str, DeclaredValue], names: Mapping[str, str]
 ) -> str:
     """A description of how a node sends or receives an event of the tree; "" for other events.
 
     Args:
         actor: the name of the node in texts for users.
         parameters: the parameters of the event; empty if it has not been sent yet.
+        names: the names of all automata in texts for users.
     """
     tree = read_tree_event(event)
     if tree is None:
         return ""
     prefix = f"{NODE_PREFIX}{tree.number}_"
-    child = next((who(automaton) for automaton in automata if automaton.name.startswith(prefix)), f"bt_{tree.number}")
+    child = next((name for automaton, name in names.items() if automaton.startswith(prefix)), f"bt_{tree.number}")
     match tree.kind:
         case TreeEventKind.TICK:
             return f"{actor} ticks {child}" if is_sent else f"{actor} is ticked"

@@ -26,7 +26,6 @@ from roaml.scxml.names import (
     sent_by,
 )
 from roaml.simulation.session import Session
-from roaml.simulation.words import who
 from roaml.smc.record import TraceStep
 from roaml.views.event_words import interface_name
 from roaml.views.events import EventReader
@@ -125,20 +124,19 @@ class Timeline:
 
     def _begin_lanes(self, session: Session) -> None:
         """The lanes before the first step: first the machines, then the nodes of the tree by their numbers."""
-        automata = session.automata_of_model
         machines = [instance for instance in range(len(self._automata)) if session.is_machine(instance)]
         nodes = {i: match for i, name in enumerate(self._automata) if (match := NODE_AUTOMATON.fullmatch(name))}
         self._machines = frozenset(machines) - nodes.keys()
         for instance in machines:
             if instance in self._machines:
-                self._add(instance, Lane(who(automata[instance]), LaneKind.MACHINE, self._automata[instance]))
+                self._add(session, instance, LaneKind.MACHINE)
                 self.lanes[-1].enter(0, session.state_of(instance, session.first_locations[instance]))
         for instance, match in sorted(nodes.items(), key=lambda node: int(node[1][1])):
             self._nodes[int(match[1])] = len(self.lanes)
-            self._add(instance, Lane(who(automata[instance]), LaneKind.NODE, self._automata[instance]))
+            self._add(session, instance, LaneKind.NODE)
             self.lanes[-1].enter(0, IDLE)
         self._plotted = {
-            instance: "" if name == BLACKBOARD else f"{who(automata[instance])}."
+            instance: "" if name == BLACKBOARD else f"{session.names[name]}."
             for instance, name in enumerate(self._automata)
             if name == BLACKBOARD or instance in machines
         }
@@ -152,9 +150,10 @@ class Timeline:
             if name := field_name(event, part, names):
                 yield variable, name
 
-    def _add(self, instance: int, lane: Lane) -> None:
+    def _add(self, session: Session, instance: int, kind: LaneKind) -> None:
+        automaton = self._automata[instance]
         self._lane_of[instance] = len(self.lanes)
-        self.lanes.append(lane)
+        self.lanes.append(Lane(session.names[automaton], kind, automaton))
 
     @property
     def plots(self) -> list[Plot]:

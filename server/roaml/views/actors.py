@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 
 from roaml.exhaustive import assert_never
@@ -37,34 +38,49 @@ _TREE_EVENTS = {
 }
 
 
-def name_of(automaton: Automaton) -> str:
-    """The name of an automaton for users; for a node of the tree, its name and number, such as `Wait (bt_1003)`; for an
-    action thread, the name of its machine and its number, such as `server, goal thread 0`."""
-    if automaton.thread_of:
-        return f"{_machine_name(automaton.thread_of)}, {automaton.thread}"
-    return _machine_name(automaton.name)
-
-
 def names_of(automata: Iterable[Automaton]) -> dict[str, str]:
-    """The name of an automaton -> its name for users (`name_of`)."""
-    return {automaton.name: name_of(automaton) for automaton in automata}
+    """The name of each automaton -> its name for users.
+
+    A node of the tree has the name of its type if no other automaton has it, such as `Wait`, otherwise its number as
+    well: `Wait (bt_1003)`. An action thread has the name of its machine and its number, such as `server, goal thread
+    0`.
+    """
+    automata = list(automata)
+    machines = [automaton.thread_of or automaton.name for automaton in automata]
+    types = Counter(_type_of(machine) for machine in dict.fromkeys(machines))
+    return {
+        automaton.name: _machine_name(machine, types) + (f", {automaton.thread}" if automaton.thread_of else "")
+        for automaton, machine in zip(automata, machines, strict=True)
+    }
 
 
-def _machine_name(automaton: str) -> str:
-    if conditions := _CONDITIONS.fullmatch(automaton):
-        return f"the conditions of {conditions[2]} (bt_{conditions[1]})"
-    node = NODE_AUTOMATON.fullmatch(automaton)
-    return f"{node[2]} (bt_{node[1]})" if node else automaton
+def _type_of(machine: str) -> str:
+    node = NODE_AUTOMATON.fullmatch(machine)
+    return node[2] if node else machine
 
 
-def actor(automaton: Automaton) -> str:
-    """A phrase for an automaton that does not buffer an event, without backquotes around the name of a machine or
-    node."""
-    name = automaton.name
-    role = automaton_role(name)
+def _machine_name(machine: str, types: Mapping[str, int]) -> str:
+    if conditions := _CONDITIONS.fullmatch(machine):
+        return f"the conditions of {_node_name(conditions[1], conditions[2], types)}"
+    node = NODE_AUTOMATON.fullmatch(machine)
+    return _node_name(node[1], node[2], types) if node else machine
+
+
+def _node_name(number: str, type_: str, types: Mapping[str, int]) -> str:
+    return type_ if types[type_] == 1 else f"{type_} (bt_{number})"
+
+
+def actors_of(automata: Iterable[Automaton]) -> dict[str, str]:
+    """The name of each automaton -> a phrase for it, without backquotes around the name of a machine or node. Automata
+    that buffer an event have no phrase of their own, only their name."""
+    return {automaton: _actor(automaton, name) for automaton, name in names_of(automata).items()}
+
+
+def _actor(automaton: str, name: str) -> str:
+    role = automaton_role(automaton)
     match role:
         case Role.MACHINE:
-            return name_of(automaton)
+            return name
         case Role.TREE_ROOT:
             return "the tree"
         case Role.CLOCK:
@@ -72,9 +88,9 @@ def actor(automaton: Automaton) -> str:
         case Role.BLACKBOARD:
             return "the blackboard"
         case Role.HANDLER:
-            is_service = name.startswith(SERVICE_HANDLER_PREFIX)
+            is_service = automaton.startswith(SERVICE_HANDLER_PREFIX)
             what, prefix = ("service", SERVICE_HANDLER_PREFIX) if is_service else ("action", ACTION_HANDLER_PREFIX)
-            return f"the {what} `/{name.removeprefix(prefix).replace('__', '/')}`"
+            return f"the {what} `/{automaton.removeprefix(prefix).replace('__', '/')}`"
         case _:
             return assert_never(role)
 
@@ -110,7 +126,7 @@ def _parts(model: Model) -> Iterator[tuple[str, str]]:
         elif automaton_role(name) is Role.MACHINE and not NODE_AUTOMATON.fullmatch(name):
             yield name, f"`{names[name]}`"
         else:
-            yield name, actor(automaton)
+            yield name, _actor(name, names[name])
 
 
 def message_phrase(event: str, automata: Mapping[str, str]) -> str:

@@ -33,7 +33,7 @@ from roaml.scxml.names import (
 )
 from roaml.smc.record import AutomatonStep, TraceStep
 from roaml.smc.story import Story
-from roaml.views.actors import actor, message_phrase, names_of
+from roaml.views.actors import actors_of, message_phrase, names_of
 from roaml.views.arrays import ArrayReader, DeclaredChange, DeclaredValue
 from roaml.views.events import EventReader
 from roaml.views.library_nodes import is_library_node
@@ -66,7 +66,7 @@ class Turn(Record):
         states: location of the automaton -> the state to which it belongs.
         is_library_node: whether the automaton is a node of the tree whose behaviour is that of a library or of a mock,
             so that its states are not those of a machine of the user.
-        actor: the phrase `roaml.views.actors.actor` for the automaton.
+        actor: the phrase of `roaml.views.actors.actors_of` for the automaton.
     """
 
     instance: int
@@ -234,6 +234,7 @@ class _Reader:
         self._story = story
         self._relevant = frozenset(story.relevant)
         self._automata = names_of(story.automata)
+        self._actors = actors_of(story.automata)
         observers = filter(is_observer, self._automata)
         self._observer_prefixes = tuple(f"{prefix_of_observer(name)}__" for name in observers)
         self._events = EventReader(story.automata, story.start)
@@ -260,7 +261,7 @@ class _Reader:
                 together = step.action if len(actors) > 1 and heard is None else None
                 turn = Turn(part.instance, step.number, self._story.clock[index], heard, together)
                 turn.phrases, turn.states = self._phrases(part.instance), self._states(part.instance)
-                turn.actor = actor(self._story.automata[part.instance])
+                turn.actor = self._actors[part.automaton]
                 turn.is_library_node = part.instance in self._library_nodes
                 if is_observer(part.automaton):
                     turn.observed = observed_property(part.automaton, self._story.property)

@@ -35,7 +35,7 @@ from roaml.scxml.names import (
     sent_by,
 )
 from roaml.smc.standstill import Standstill
-from roaml.views.actors import actor
+from roaml.views.actors import actors_of
 from roaml.views.ends import is_event
 from roaml.views.event_words import event_phrase
 from roaml.views.turns import is_inner
@@ -124,6 +124,7 @@ def help_line(waiting: Sequence[Wait]) -> str:
 class _Chain:
     def __init__(self, standstill: Standstill, time: float | None) -> None:
         self.automata = standstill.automata
+        self._actors = actors_of(self.automata)
         self.locations = standstill.locations
         self.enabled = standstill.enabled
         self.ready = {(n, edge.action) for n, edges in enumerate(standstill.enabled) for edge in edges}
@@ -271,7 +272,7 @@ class _Chain:
         return not is_inner(automaton)
 
     def who(self, number: int) -> str:
-        return actor(self.automata[number])
+        return self._actors[self.automata[number].name]
 
     def role(self, number: int) -> Role:
         return automaton_role(self.automata[number].name)
