@@ -45,6 +45,16 @@ def test_kinds(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert "num_attempts = 20" in texts(drawn(capsys, "robot/main.xml", "--tree"))
 
 
+def test_a_part_of_the_ros_graph(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    part = texts(drawn(capsys, "robot/main.xml", "--around", "/block/placed"))
+    assert "/block/placed" in part
+    assert "/arm/command" not in part
+    assert "/arm/command" in texts(drawn(capsys, "robot/main.xml", "--around", "Arm"))
+    assert drawn(capsys, "robot/main.xml", "--matching", "topic block/PLACED") == drawn(
+        capsys, "robot/main.xml", "--around", "/block/placed"
+    )
+
+
 def test_files(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["draw", "robot/main.xml"]) == 0
     assert capsys.readouterr().out.startswith("robot/main.ros.svg: ")
@@ -81,6 +91,12 @@ def test_broken_models_are_drawn(robot: Path, capsys: pytest.CaptureFixture[str]
             ("robot/main.xml", "--machine", "Arn"),
             "robot/main.xml: there is no state machine `Arn`; did you mean `Arm`?",
         ),
+        (
+            ("robot/main.xml", "--around", "Arn"),
+            "robot/main.xml: the ROS graph contains no `Arn`; did you mean `Arm`?",
+        ),
+        (("robot/main.xml", "--matching", "zzz"), "robot/main.xml: nothing in the ROS graph matches `zzz`"),
+        (("robot/main.xml", "--tree", "--around", "Arm"), "only a part of a ROS graph can be drawn"),
         (("robot/arm.ascxml", "--tree"), ""),
         (("robot/properties.jani",), "robot/properties.jani: the file is not a system; name the system file"),
         (("robot/none.xml",), "robot/none.xml: "),

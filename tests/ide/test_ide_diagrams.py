@@ -18,8 +18,10 @@ from roaml.ide.diagrams import (
     DiagramNodeKind,
     EdgeKind,
     Picture,
+    around,
     collapsed,
     machine_picture,
+    matching,
     ros_picture,
     tree_picture,
 )
@@ -316,6 +318,46 @@ def test_ros(tmp_path: Path) -> None:
     assert picture is not None
     assert text_at(analysis, picture.nodes[3].place).startswith('<ros_topic_publisher name="pub"')
     assert ros_picture(analysis, str(tmp_path / "a.ascxml")) is None
+
+
+def test_a_part_of_a_ros_graph(tmp_path: Path) -> None:
+    files = split_files(ROBOT)
+    files["main.xml"] = system_file(
+        "behavior_tree bt.cpp-xml tree.xml",
+        "behavior_tree bt-plugin-ascxml plugin.ascxml",
+        "node_models node-ascxml a.ascxml",
+        "node_models node-ascxml b.ascxml",
+    )
+    files["b.ascxml"] = """\
+<ascxml name="B" version="1.0" initial="s">
+  <ros_service_client name="ask" service_name="/ask" type="std_srvs/Trigger"/>
+  <ros_topic_subscriber name="c" topic="/c" type="std_msgs/Int32"/>
+  <state id="s"/>
+</ascxml>
+"""
+    picture = ros_picture(load(tmp_path, files), str(tmp_path / "main.xml"))
+    assert picture is not None
+    ids = {node.label: node.id for node in picture.nodes}
+    # A node is shown with those with which it communicates, an interface with its nodes.
+    assert list(_nodes(around(picture, ids["B"]))) == [
+        "node | B",
+        "plugin | Walk",
+        "topic | /c | std_msgs/Int32",
+        "service | /ask | std_srvs/Trigger",
+    ]
+    assert shown(around(picture, ids["/a/b"])) == [
+        "node | A",
+        "plugin | Walk",
+        "topic | /a/b | std_msgs/Int32",
+        "Walk -> /a/b | publishes",
+        "/a/b -> A | subscribes",
+    ]
+    assert around(picture, "gone") == picture
+    # The words are searched in kind, name with namespace, and type.
+    assert shown(matching(picture, "TOPIC /a/")) == shown(around(picture, ids["/a/b"]))
+    assert list(_nodes(matching(picture, "trigger"))) == ["node | B", "service | /ask | std_srvs/Trigger"]
+    assert matching(picture, " ") == picture
+    assert matching(picture, "nothing").nodes == ()
 
 
 def test_half_typed(tmp_path: Path) -> None:

@@ -23,6 +23,10 @@ export interface PictureParams extends DocumentParams {
     readonly kind: PictureKind;
     /** The ids of the nodes of a tree whose descendants are hidden. */
     readonly collapsed?: readonly string[];
+    /** Of a ROS graph, only the nodes that contain all words of this text, and what is connected to them. */
+    readonly matching?: string;
+    /** Of a ROS graph, only the neighbourhood of the node with this id. */
+    readonly around?: string;
 }
 
 export interface PictureFileParams extends PictureParams {

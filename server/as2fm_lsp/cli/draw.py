@@ -29,6 +29,8 @@ EXAMPLES = """\
 examples:
   as2fm-lsp draw arm.ascxml                          write Arm.machine.svg
   as2fm-lsp draw main.xml                            the ROS graph of the system
+  as2fm-lsp draw main.xml --around Arm               the ROS graph around a node
+  as2fm-lsp draw main.xml --matching std_msgs/Bool   topics of this type, and their nodes
   as2fm-lsp draw main.xml --machine Arm -o arm.svg
   as2fm-lsp draw main.xml --machines -o machines.pdf
   as2fm-lsp draw main.xml --tree --theme dark -o tree.svg
@@ -54,6 +56,8 @@ def run(arguments: Sequence[str]) -> int:
             options.file,
             _kind(options),
             machine=options.machine,
+            around=options.around,
+            matching=options.matching,
             mocks=mocks,
             theme=options.theme,
             direction=options.direction,
@@ -84,7 +88,7 @@ def _kind(options: argparse.Namespace) -> DiagramKind | None:
     """The kind of diagram that the options request; `None` for the one that fits the file."""
     if options.tree:
         return DiagramKind.TREE
-    if options.graph:
+    if options.graph or options.around is not None or options.matching is not None:
         return DiagramKind.ROS
     return DiagramKind.SYSTEM if options.machines else None
 
@@ -109,6 +113,18 @@ def parser() -> ArgumentParser:
     what.add_argument("--tree", action="store_true", help="draw the behavior tree")
     what.add_argument("--graph", action="store_true", help="draw the ROS graph (default for a system)")
     what.add_argument("--machines", action="store_true", help="draw all state machines of the system")
+    result.add_argument(
+        "--around",
+        metavar="NAME",
+        help="draw only this node, topic, service or action of the ROS graph, what is connected to it, and the nodes "
+        "with which it communicates",
+    )
+    result.add_argument(
+        "--matching",
+        metavar="TEXT",
+        help="draw only the part of the ROS graph that contains all words of TEXT in its kind, name or type, and what "
+        "is connected to it",
+    )
     result.add_argument(
         "-o",
         "--output",

@@ -27,6 +27,15 @@ def string(params: object, name: str, shown: str = "") -> str:
     return value
 
 
+def optional_string(params: object, name: str) -> str:
+    """A parameter that is a string; "" if it is missing.
+
+    Raises:
+        JsonRpcInvalidParams: it is something else.
+    """
+    return "" if getattr(params, name, None) is None else string(params, name)
+
+
 def natural(params: object, name: str) -> int:
     """A parameter that is an integer of at least 0.
 

@@ -7,13 +7,13 @@ from base64 import b64encode
 from typing import Any
 
 from as2fm_lsp.context import Context
-from as2fm_lsp.handlers.parameters import document_uri, string, strings
+from as2fm_lsp.handlers.parameters import document_uri, optional_string, string, strings
 from roaml.figures.drawing import Drawing
 from roaml.figures.layout import LayoutDirection
 from roaml.figures.pdf import pdf_file
 from roaml.figures.svg import svg_file, svg_scene
 from roaml.figures.themes import THEMES
-from roaml.ide.diagrams import DiagramKind, Picture, collapsed, draw, picture_of
+from roaml.ide.diagrams import DiagramKind, Picture, around, collapsed, draw, matching, picture_of
 from roaml.ide.picture_edits import PictureParts
 from roaml.project.analysis import Analysis
 from roaml.text import Location
@@ -81,6 +81,8 @@ def register(context: Context) -> None:
         picture = picture_of(kind, analysis, path) if kind else None
         if kind is DiagramKind.TREE and picture is not None:
             picture = collapsed(picture, hidden)
+        if kind is DiagramKind.ROS and picture is not None:
+            picture = around(matching(picture, optional_string(params, "matching")), optional_string(params, "around"))
         return (analysis, kind, picture) if kind and picture else None
 
     @context.feature(METHOD)

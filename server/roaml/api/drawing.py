@@ -10,8 +10,10 @@ from roaml.api.checking import check
 from roaml.figures.layout import LayoutDirection
 from roaml.figures.pdf import pdf_file
 from roaml.figures.svg import svg_file
-from roaml.ide.diagrams import PAGE, DiagramKind, draw_for, picture_of, tree_picture
+from roaml.ide.diagrams import PAGE, DiagramKind, Picture, draw_for, picture_of, tree_picture
+from roaml.ide.diagrams import around as _around
 from roaml.ide.diagrams import draw as _draw
+from roaml.ide.diagrams import matching as _matching
 from roaml.mocks.mock import Mock, named_mocks
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
@@ -55,6 +57,8 @@ def draw(
     kind: DiagramKind | str | None = None,
     *,
     machine: str | None = None,
+    around: str | None = None,
+    matching: str | None = None,
     mocks: Mapping[str, str] | Sequence[Mock] = (),
     theme: str = "light",
     direction: LayoutDirection | str | None = None,
@@ -70,6 +74,10 @@ def draw(
         kind: what is drawn, as a `DiagramKind` or its value (`machine`, `tree`, `ros`, `system`). By default, it fits
             the file: the ROS graph of a system.
         machine: draw the state machine of this name of the system.
+        around: of a ROS graph, draw only the node, topic, service or action with this name, what is connected to it,
+            and the nodes with which it communicates.
+        matching: of a ROS graph, draw only what contains all words of this text in its kind, name or type, and what
+            is connected to it.
         mocks: the mocks of the leaves of a tree, which are shown: node -> mock as for `target`, or as `read_mocks`
             returns them.
         theme: `light`, `dark`, `high-contrast` or `high-contrast-light`.
@@ -78,7 +86,7 @@ def draw(
         ros_paths, settings, texts: as for `check`.
 
     Raises:
-        DrawingError: the file contains nothing of this kind.
+        DrawingError: the file contains nothing of this kind, or nothing that matches.
         PathError: the path does not exist or cannot be read.
     """
     result = check([path], ros_paths, settings, texts)
@@ -95,9 +103,28 @@ def draw(
     picture = tree_picture(analysis, drawn, declared) if declared else picture_of(kind, analysis, drawn)
     if picture is None or not picture.nodes:
         raise DrawingError(f"{path}: {_NOTHING[kind]}")
+    if around is not None or matching is not None:
+        if kind is not DiagramKind.ROS:
+            raise DrawingError("only a part of a ROS graph can be drawn; draw the ROS graph of the system")
+        picture = _part(picture, around, matching, path)
     drawing = _draw(kind, picture, LayoutDirection(direction)) if direction else draw_for(kind, picture, *PAGE)
     size, svg = drawing.size, svg_file(drawing, picture.title, theme)
     return DrawnPicture(svg, picture.title, kind, size.width, size.height, result.files)
+
+
+def _part(picture: Picture, around: str | None, matching: str | None, path: str) -> Picture:
+    if matching is not None:
+        picture = _matching(picture, matching)
+        if not picture.nodes:
+            raise DrawingError(f"{path}: nothing in the ROS graph matches `{matching}`")
+    if around is None:
+        return picture
+    ids = {node.label: node.id for node in picture.nodes}
+    if around not in ids:
+        meant = close_names(around, ids, 1)
+        hint = did_you_mean(meant) if meant else f"; it contains {listing(tuple(ids))}"
+        raise DrawingError(f"{path}: the ROS graph contains no `{around}`{hint}")
+    return _around(picture, ids[around])
 
 
 _NOTHING = {

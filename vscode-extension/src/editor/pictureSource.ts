@@ -14,6 +14,7 @@ import type {
     ToView,
     Words,
 } from "../pictures/contract";
+import { WHOLE } from "../pictures/contract";
 import { marked } from "../pictures/breakpoints";
 import { partAt } from "../pictures/partAt";
 import {
@@ -66,7 +67,10 @@ export class PictureSource {
     onVerified: () => void = () => undefined;
     /** The ids of the nodes whose descendants are hidden, and the file that they belong to. */
     private readonly collapsed = new Set<string>();
-    private collapsedIn = "";
+    /** The part of a ROS graph that is shown. */
+    private part = WHOLE;
+    /** The file for which a part was chosen or nodes were hidden. */
+    private chosenIn = "";
 
     constructor(
         readonly kind: PictureKind,
@@ -84,16 +88,22 @@ export class PictureSource {
         if (!this.uri) return;
         const asked = ++this.asked;
         const uri = this.uri.toString();
-        if (uri !== this.collapsedIn) this.collapsed.clear();
-        this.collapsedIn = uri;
+        if (uri !== this.chosenIn) {
+            this.collapsed.clear();
+            this.part = WHOLE;
+        }
+        this.chosenIn = uri;
         const picture = await this.server.ask(pictureRequest, {
             kind: this.kind,
             textDocument: { uri },
             collapsed: [...this.collapsed],
+            ...this.part,
         });
         if (asked !== this.asked || picture === undefined) return;
         this.picture = picture ?? undefined;
-        const title = picture ? `${titleOf(this.kind)}: ${picture.title}` : titleOf(this.kind);
+        const center = picture?.nodes.find(({ id }) => id === this.part.around)?.label;
+        const part = [center, this.part.matching].filter(Boolean).join(", ");
+        const title = picture ? `${titleOf(this.kind)}: ${picture.title}${part && ` (${part})`}` : titleOf(this.kind);
         this.host.setTitle(title);
         this.here = this.partAtAnyCaret();
         this.shownUri = this.asServerSays(this.uri);
@@ -242,7 +252,8 @@ export class PictureSource {
             this.post({ type: "none", reason: nothingOf(this.kind) });
             return;
         }
-        this.post({ type: "show", picture: this.picture, here: this.here, highlighted: this.highlightedNode });
+        const { picture, part, here, highlightedNode } = this;
+        this.post({ type: "show", picture, part, here, highlighted: highlightedNode });
         this.postMocks();
         this.postLit();
         this.postBreakpoints();
@@ -269,6 +280,10 @@ export class PictureSource {
                 break;
             case "collapse":
                 if (!this.collapsed.delete(message.node)) this.collapsed.add(message.node);
+                await this.refresh();
+                break;
+            case "part":
+                this.part = message.part;
                 await this.refresh();
                 break;
             case "jump":
@@ -300,7 +315,7 @@ export class PictureSource {
         if (!this.uri) return;
         const textDocument = { uri: this.uri.toString() };
         const collapsed = [...this.collapsed];
-        const options = { direction, theme, format, collapsed };
+        const options = { direction, theme, format, collapsed, ...this.part };
         const file = await this.server.ask(pictureFile, { kind: this.kind, textDocument, ...options });
         if (!file) return;
         if (format === "png") this.post({ type: "rasterize", svg: file.svg });
@@ -363,6 +378,8 @@ function nothingOf(kind: PictureKind): string {
 function words(): Words {
     return {
         search: vscode.l10n.t("Search"),
+        onlyResults: vscode.l10n.t("Only Results"),
+        showAll: vscode.l10n.t("Show All"),
         zoomIn: vscode.l10n.t("Zoom in"),
         zoomOut: vscode.l10n.t("Zoom out"),
         fit: vscode.l10n.t("Fit"),
@@ -371,7 +388,7 @@ function words(): Words {
         savePdf: vscode.l10n.t("Save as PDF"),
         nothing: vscode.l10n.t("No results"),
         help: vscode.l10n.t(
-            "Arrow keys move between nodes, T selects the edges that leave a node, Enter opens the source, Shift+F10 the menu, Space collapses a node of a tree, B sets a breakpoint, + and - zoom, 0 fits the diagram, / searches.",
+            "Arrow keys move between nodes, T selects the edges that leave a node, Enter opens the source, Shift+F10 the menu, Space collapses a node of a tree or shows only the neighbors of a node of a ROS graph, B sets a breakpoint, + and - zoom, 0 fits the diagram, / searches.",
         ),
         byChance: vscode.l10n.t("random"),
         mocks: vscode.l10n.t("Mocks"),

@@ -172,8 +172,21 @@ export type MenuContext = {
 } & Readonly<Record<`as2fm_${PictureAction}`, boolean>>;
 
 /** The texts of the view, in the language of the user. */
+/**
+ * The part of a ROS graph that is shown: the nodes that contain all words of a text and what is connected to them, and
+ * the neighbourhood of the node with an id. "" shows all.
+ */
+export interface GraphPart {
+    readonly matching: string;
+    readonly around: string;
+}
+
+export const WHOLE: GraphPart = { matching: "", around: "" };
+
 export interface Words {
     readonly search: string;
+    readonly onlyResults: string;
+    readonly showAll: string;
     readonly zoomIn: string;
     readonly zoomOut: string;
     readonly fit: string;
@@ -221,7 +234,13 @@ export type PictureFormat = "svg" | "png" | "pdf";
 
 export type ToView =
     | { readonly type: "words"; readonly words: Words }
-    | { readonly type: "show"; readonly picture: Picture; readonly here: Part | null; readonly highlighted: string }
+    | {
+          readonly type: "show";
+          readonly picture: Picture;
+          readonly part: GraphPart;
+          readonly here: Part | null;
+          readonly highlighted: string;
+      }
     | { readonly type: "here"; readonly here: Part | null }
     /** Highlight the node with an id; "" removes the highlight. */
     | { readonly type: "highlight"; readonly node: string }
@@ -239,6 +258,8 @@ export type FromView =
     | { readonly type: "ready" }
     /** Hide the nodes below the node with an id, or show them again. */
     | { readonly type: "collapse"; readonly node: string }
+    /** Show a part of a ROS graph, instead of the part that was shown before. */
+    | { readonly type: "part"; readonly part: GraphPart }
     | { readonly type: "jump"; readonly place: Place; readonly beside: boolean }
     | { readonly type: "save"; readonly format: PictureFormat; readonly direction: Direction; readonly theme: Theme }
     | {

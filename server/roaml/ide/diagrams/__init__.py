@@ -22,6 +22,7 @@ from roaml.ide.diagrams.diagram import (
 from roaml.ide.diagrams.drawings import PAGE, draw, draw_for
 from roaml.ide.diagrams.highlight import DiagramHighlight, highlights
 from roaml.ide.diagrams.machine import machine_picture
+from roaml.ide.diagrams.part import around, matching
 from roaml.ide.diagrams.ros import ros_picture
 from roaml.ide.diagrams.system import system_picture
 from roaml.ide.diagrams.tree import tree_picture
@@ -38,11 +39,13 @@ __all__ = [
     "DiagramNodeKind",
     "EdgeKind",
     "Picture",
+    "around",
     "collapsed",
     "draw",
     "draw_for",
     "highlights",
     "machine_picture",
+    "matching",
     "picture_of",
     "ros_picture",
     "system_picture",

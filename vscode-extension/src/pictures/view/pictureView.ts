@@ -7,6 +7,8 @@ import {
     type Drawing,
     type FromView,
     type Activity,
+    WHOLE,
+    type GraphPart,
     type MarkedParts,
     type Part,
     type Picture,
@@ -65,6 +67,8 @@ export class PictureView {
         this.post(message);
     });
     private readonly mocksButton = document.createElement("button");
+    private readonly partButton = document.createElement("button");
+    private part = WHOLE;
     private words: Words | undefined;
     private picture: Picture | undefined;
     /** The index of the drawing that is shown. */
@@ -123,7 +127,7 @@ export class PictureView {
                 this.fillBar(message.words);
                 break;
             case "show":
-                this.show(message.picture, message.here, message.highlighted);
+                this.show(message.picture, message.part, message.here, message.highlighted);
                 break;
             case "here":
                 this.mark(message.here);
@@ -155,8 +159,10 @@ export class PictureView {
         }
     }
 
-    private show(picture: Picture, here: Part | null, highlighted: string): void {
-        const isNew = this.picture?.title !== picture.title || this.picture.kind !== picture.kind;
+    private show(picture: Picture, part: GraphPart, here: Part | null, highlighted: string): void {
+        const isOther = this.picture?.title !== picture.title || this.picture.kind !== picture.kind;
+        const isNew = isOther || part.matching !== this.part.matching || part.around !== this.part.around;
+        this.part = part;
         const label = this.picture?.nodes[this.selected]?.label;
         const before = isNew ? undefined : this.placed;
         this.clear();
@@ -174,7 +180,8 @@ export class PictureView {
         if (isNew) this.fitLegibly();
         this.mark(here);
         this.highlight(highlighted);
-        if (!isNew && label !== undefined) this.select(picture.nodes.findIndex((node) => node.label === label));
+        this.offerPart();
+        if (!isOther && label !== undefined) this.select(picture.nodes.findIndex((node) => node.label === label));
         this.post({ type: "drawn", nodes: picture.nodes.length, edges: picture.edges.length });
     }
 
@@ -460,6 +467,30 @@ export class PictureView {
         if (this.picture?.kind === "tree" && id !== undefined) this.post({ type: "collapse", node: id });
     }
 
+    /** Show only a node of a ROS graph and its neighbours, or all nodes again. */
+    private surround(node: number): void {
+        const id = this.picture?.nodes[node]?.id;
+        if (this.picture?.kind !== "ros" || id === undefined) return;
+        this.post({ type: "part", part: this.part.around === "" ? { ...this.part, around: id } : WHOLE });
+    }
+
+    /** Show only the results of the search in a ROS graph, or all nodes again. */
+    private togglePart(): void {
+        const matching = this.input.value.trim();
+        this.post({ type: "part", part: this.isPart ? WHOLE : { ...WHOLE, matching } });
+    }
+
+    private get isPart(): boolean {
+        return this.part.matching !== "" || this.part.around !== "";
+    }
+
+    private offerPart(): void {
+        const { words, partButton } = this;
+        if (!words) return;
+        partButton.textContent = partButton.title = this.isPart ? words.showAll : words.onlyResults;
+        partButton.hidden = this.picture?.kind !== "ros" || !(this.isPart || this.input.value.trim() !== "");
+    }
+
     /** Open the context menu of the selected node, or that of the picture. VS Code listens to this event. */
     private openMenu(): void {
         const group = this.parts(this.selectedPart)[0] ?? this.svg;
@@ -475,6 +506,7 @@ export class PictureView {
     }
 
     private search(forward = false): void {
+        this.offerPart();
         if (!this.picture || !this.scene) return;
         const matches = search(this.picture, this.input.value);
         this.minimap.mark(matches);
@@ -582,6 +614,7 @@ export class PictureView {
             this.jump(this.picture?.edges[this.selectedEdge] ?? this.picture?.nodes[this.selected], false);
         else if (key === "b") this.toggleBreakpoint(this.selectedPart);
         else if (key === "t" || key === "T") this.selectNextEdge(shiftKey ? -1 : 1);
+        else if (key === " " && this.picture?.kind === "ros") this.surround(this.selected);
         else if (key === " ") this.collapse(this.selected);
         else if (key === "+" || key === "=") this.zoom(ZOOM);
         else if (key === "-") this.zoom(1 / ZOOM);
@@ -611,8 +644,13 @@ export class PictureView {
             this.mocks.toggle();
             this.showMocksState();
         });
+        this.offerPart();
+        this.partButton.addEventListener("click", () => {
+            this.togglePart();
+        });
         this.bar.replaceChildren(
             this.input,
+            this.partButton,
             mocksButton,
             button("+", words.zoomIn, () => {
                 this.zoom(ZOOM);
