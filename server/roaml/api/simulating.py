@@ -25,8 +25,9 @@ def session(
 
     Args:
         subject: the system or model to run.
-        property: the name of the property that is evaluated on the run; if not given, the first property of the model,
-            or `stuck` if the model has none.
+        property: the name of the property that is evaluated on the run; if not given, the first property of the model
+            that the initial state does not decide, the first one if it decides all of them, or `stuck` if the model has
+            none.
         seed, trace: the run is the trace with the number `trace` that `verify` generates with this seed.
         saved: continue this session; its property, seed and trace override the arguments.
 
@@ -43,4 +44,9 @@ def session(
     ready = checker(target.model, None if name is None else [name])
     if name is not None and name in ready.refused:
         raise ready.refused[name]
-    return Session(ready, next(iter(ready.compiled_properties), ready.stuck), seed, trace, target.clock, saved)
+    properties = list(ready.compiled_properties) or [ready.stuck]
+    # A property that the initial state decides would end the run before its first step.
+    sessions = (Session(ready, property_, seed, trace, target.clock, saved) for property_ in properties)
+    return next((found for found in sessions if saved or not found.is_decided), None) or Session(
+        ready, properties[0], seed, trace, target.clock, saved
+    )
