@@ -86,6 +86,14 @@ def test_leaves_of_the_tree_are_offered_in_its_mocks() -> None:
     assert labels("/models/tree.mocks", "# mocks\nGr|", tree=TREE) == ["ComputePathToPose", "Grasp", "Look"]
 
 
+def test_distributions_are_offered_as_durations_of_mocks() -> None:
+    found, _ = completions("/models/tree.mocks", "Grasp: 0.9 in no|", tree=TREE)
+    assert found is not None
+    inserted = {item.label: item.snippet for item in found.items}
+    assert sorted(inserted) == ["categorical", "exponential", "normal", "uniform"]
+    assert inserted["normal"] == "normal(${1:mean}, ${2:deviation})"
+
+
 @pytest.mark.parametrize(
     ("written", "expected", "replaced"),
     [

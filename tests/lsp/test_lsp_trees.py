@@ -169,6 +169,17 @@ async def test_mocks_are_shown_and_edited(tree: Path) -> None:
         assert "from 0 to 1" in (await set_mock(client, tree, pattern="Wait", probability=2))["problem"]
 
 
+async def test_an_edit_keeps_a_drawn_duration(tree: Path) -> None:
+    beside = tree.with_suffix(".mocks")
+    beside.write_text("Wait: 0.5 in normal(1 s, 200 ms)\n*: 0.9\n", encoding="utf-8")
+    async with connect(tree.parent, options=COMMANDS) as client:
+        client.open(tree, language="xml")
+        _, wait = (await ask(client, MOCKS, document(tree)))["rows"]
+        assert wait["milliseconds"] is None
+        answer = await set_mock(client, tree, pattern="Wait", probability=0.25, milliseconds=None)
+        assert edited(answer) == [(0, 32, "Wait: 0.25 in normal(1 s, 200 ms)")]
+
+
 async def test_the_first_edit_creates_the_file_with_all_proposals(tree: Path) -> None:
     async with connect(tree.parent, options=COMMANDS) as client:
         client.open(tree, language="xml")

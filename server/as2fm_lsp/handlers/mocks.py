@@ -14,7 +14,7 @@ from as2fm_lsp.handlers.results import CurrentResults, result_words
 from as2fm_lsp.handlers.workspace_edit import workspace_edit
 from roaml.ide.lone_tree_mocks import LoneTreeMocks, lone_tree_mocks, set_mock
 from roaml.lower.programs.refusal import TreeRefusal
-from roaml.mocks.mock import Mock, MockError
+from roaml.mocks.mock import DrawnDuration, Mock, MockError
 from roaml.mocks.proposal import MockableLeaf
 from roaml.project.analysis import Analysis
 from roaml.project.mock_files import executed_tree
@@ -27,8 +27,8 @@ MAX_MILLISECONDS = 24 * 3600 * 1000
 
 class MockRow(TypedDict):
     """A mock that an editor shows. `pattern` names the mock that a change sets, `kind` is the kind of the leaves in
-    words, `milliseconds` is null if a duration has no effect; `origin` states which mock applies now, or is empty;
-    `reason` is the reason for the proposal; `nodes` are the ids of the leaves in the picture of the tree."""
+    words, `milliseconds` is null if a duration has no effect or is drawn; `origin` states which mock applies now, or is
+    empty; `reason` is the reason for the proposal; `nodes` are the ids of the leaves in the picture of the tree."""
 
     pattern: str
     kind: str
@@ -99,7 +99,8 @@ def register(context: Context) -> None:
         duration = _number(params, "milliseconds", MAX_MILLISECONDS)
         if probability is None or duration is None:
             return {"edit": None, "uri": "", "problem": "a probability is from 0 to 1, a duration at most a day"}
-        mock = Mock(pattern, probability, Fraction(str(duration)))
+        drawn = _drawn_duration(known, pattern) if getattr(params, "milliseconds", None) is None else None
+        mock = Mock(pattern, probability, drawn or Fraction(str(duration)))
         change = set_mock(snapshot.analysis, path, known, mock)
         return {
             "edit": workspace_edit(context, snapshot, change),
@@ -118,6 +119,12 @@ def _known(analysis: Analysis, path: str) -> LoneTreeMocks | str:
         return str(error)
 
 
+def _drawn_duration(known: LoneTreeMocks, pattern: str) -> DrawnDuration | None:
+    """The distribution of the durations of the mock `pattern`, which an editor does not change."""
+    mocks = (leaf.mock for leaf in known.leaves if leaf.mock is not None and leaf.proposed.pattern == pattern)
+    return next((mock.duration for mock in mocks if isinstance(mock.duration, DrawnDuration)), None)
+
+
 def _row(leaf: MockableLeaf) -> MockRow:
     mock = leaf.mock or leaf.proposed
     own = leaf.mock is not None and leaf.mock.pattern == leaf.proposed.pattern
@@ -126,7 +133,9 @@ def _row(leaf: MockableLeaf) -> MockRow:
         "pattern": leaf.proposed.pattern,
         "kind": leaf.kind.value,
         "probability": mock.probability,
-        "milliseconds": float(mock.duration) if leaf.kind.has_duration else None,
+        "milliseconds": (
+            float(mock.duration) if leaf.kind.has_duration and not isinstance(mock.duration, DrawnDuration) else None
+        ),
         "isSet": leaf.mock is not None,
         "origin": origin,
         "reason": leaf.reason,

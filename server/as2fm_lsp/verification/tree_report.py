@@ -58,6 +58,10 @@ def assumptions(mocked: MockedTree) -> str:
     )
     if (options.reaction_time or AT_ONCE).is_instant:
         text += "; a tick takes no time"
+    if cut := [leaf.drawn.cut for leaf in mocked.leaves if leaf.drawn is not None]:
+        text += "; drawn durations are rounded up to ticks"
+        if max(cut) > 0:
+            text += f", and the most extreme ones, with a probability of at most {max(cut):.1g}, are cut"
     if mocked.assumed:
         names = ", ".join(f"`{node.name}`" for node in mocked.assumed)
         text += f"; at each tick, the event of {names} has the probability {EVENT_PROBABILITY:g} (no mock)"
@@ -208,6 +212,11 @@ def as_row(mocked: MockedTree, outcome: TreeOutcome) -> dict[str, Any]:
                 **_row(Measured(i.value, i.bounds)),
             }
             for i in outcome.influences
+        ],
+        "drawn_durations": [
+            {"node": leaf.node.name, "number": leaf.node.number, "mock": leaf.mock.behaviour(), "cut": leaf.drawn.cut}
+            for leaf in mocked.leaves
+            if leaf.drawn is not None
         ],
         "assumed": [{"node": n.name, "number": n.number, "probability": EVENT_PROBABILITY} for n in mocked.assumed],
     }

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
+from roaml.distributions.outcomes import Outcomes, hazards
 from roaml.durations import AT_ONCE, ReactionTime
 from roaml.expr.operators import Operator
 from roaml.expr.types import BASE_TYPES
@@ -32,7 +33,7 @@ from roaml.lower.programs.nodes import (
 from roaml.lower.programs.refusal import TreeRefusal
 from roaml.lower.programs.values import ticks_of
 from roaml.lower.timers import Timer, clock, clock_step
-from roaml.mocks.mock import Mock, mock_for
+from roaml.mocks.mock import DrawnDuration, Mock, MockError, mock_for
 from roaml.mocks.proposal import MockableLeaf, leaves_of
 from roaml.mocks.unfolding import unfold
 from roaml.model.timing import period
@@ -78,13 +79,15 @@ class MockedLeaf(Record, frozen=True, eq=False):
 
     Attributes:
         probability: the probability of SUCCESS.
-        duration: the number of ticks for which the leaf is RUNNING; `None` for conditions and synchronous actions.
+        mock: the mock.
+        drawn: the numbers of ticks for which the leaf is RUNNING, if they are drawn.
         is_known: whether the leaf has no mock because its library declares that it always succeeds.
     """
 
     node: ExecutedNode
     probability: float
-    duration: int | None
+    mock: Mock
+    drawn: Outcomes | None
     is_known: bool
 
 
@@ -209,11 +212,21 @@ class _Builder:
         assert mock is not None
         known["success"] = mock.probability
         is_instant = node.node.element.name == "Condition" or (node.known is not None and node.known.is_synchronous)
-        duration = None if is_instant else ticks_of(mock.duration, self.options.rate)
-        if duration is not None:
-            known["DURATION"] = duration
-        self.leaves.append(MockedLeaf(node, mock.probability, duration, mock not in self.options.mocks))
-        return programs()["synchronous" if duration is None else "asynchronous"]
+        drawn = None
+        if is_instant:
+            program = programs()["synchronous"]
+        elif isinstance(mock.duration, DrawnDuration):
+            try:
+                drawn = mock.duration.ticks(self.options.rate)
+            except MockError as error:
+                raise TreeRefusal(node.origin, str(error)) from None
+            known.update((f"ends_{ticks}", share) for ticks, share in enumerate(hazards(drawn)))
+            program = programs()["randomly_long"]
+        else:
+            known["DURATION"] = ticks_of(mock.duration, self.options.rate)
+            program = programs()["asynchronous"]
+        self.leaves.append(MockedLeaf(node, mock.probability, mock, drawn, mock not in self.options.mocks))
+        return program
 
     def event(self, node: ExecutedNode) -> float:
         exact = [mock for mock in self.options.mocks if mock.pattern != "*"]

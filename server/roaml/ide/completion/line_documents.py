@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Completion in files that are read line by line, and in comments: codes of rules in `as2fm: ignore[…]`, settings and
-their values in `as2fm.toml`, types in ROS interface definitions, and names of nodes in files of mocks."""
+their values in `as2fm.toml`, types in ROS interface definitions, and names of nodes and distributions in files of
+mocks."""
 
 from __future__ import annotations
 
@@ -8,6 +9,7 @@ import re
 from collections.abc import Iterator
 
 from roaml.diagnostics import Symbol
+from roaml.distributions.laws import LAWS
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank
 from roaml.interfaces import PRIMITIVES
 from roaml.model.config_files import CONFIG_FILE
@@ -26,6 +28,7 @@ _WORD_BEFORE = regex(r"[\w/-]*\Z", re.ASCII)
 _WORD_AFTER = regex(r"[\w/-]*", re.ASCII)
 _KEY = regex(r"\s*([\w-]*)\Z", re.ASCII)
 _VALUE = regex(r"^\s*([\w-]+)\s*=[^=]*\Z", re.ASCII)
+_DURATION = regex(r":.*\sin\s+\w*\Z")
 _CODE_SETTINGS = ("select", "ignore", "severity")
 
 
@@ -43,7 +46,9 @@ def in_lines(analysis: Analysis, path: str, offset: int) -> tuple[Span, list[Com
         items = list(_in_configuration(text[:offset], line))
         return (_word(text, offset), items) if items else None
     if path.endswith(MOCKS_EXTENSION):
-        return (_word(text, offset), list(_nodes(analysis, path))) if ":" not in line and "#" not in line else None
+        if "#" in line or (":" in line and not _DURATION.search(line)):
+            return None
+        return _word(text, offset), list(_durations() if ":" in line else _nodes(analysis, path))
     if analysis.kind(path) is FileKind.INTERFACE and re.fullmatch(r"\s*[\w/]*", line, re.ASCII):
         return _word(text, offset), list(_message_types(analysis))
     return None
@@ -109,6 +114,14 @@ def _nodes(analysis: Analysis, path: str) -> Iterator[CompletionItem]:
                 names.setdefault(node.plugin.value, "node")
     for name, detail in names.items():
         yield CompletionItem(name, ItemKind.PLUGIN, detail=detail)
+
+
+def _durations() -> Iterator[CompletionItem]:
+    """The distributions of the durations of mocks."""
+    for law in LAWS.values():
+        if law.has_units:
+            stops = (f"${{{number}:{name}}}" for number, name in enumerate(law.parameters, 1))
+            yield CompletionItem(law.name, ItemKind.FUNCTION, f"{law.name}({', '.join(stops)})", law.documentation)
 
 
 def _message_types(analysis: Analysis) -> Iterator[CompletionItem]:

@@ -106,6 +106,8 @@ class ProgramValues(Record, frozen=True, eq=False):
                 return math_call("max", expr(first), expr(second))
             case "matches", [int() as case, bool() as is_whole]:
                 return self.matches(case, is_whole)
+            case "ends", [int() as elapsed]:
+                return self.code.known[f"ends_{elapsed}"]
             case "element", [position]:
                 return self.element(position)
         raise AssertionError(function)

@@ -1,0 +1,7 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Distributions of numbers, and their discretisation for models with finitely many states
+(docs/spec/distributions.md).
+
+    laws      the distributions: `normal(2, 0.3)`; their probabilities
+    outcomes  a distribution -> values with probabilities, and a bound of the error
+"""
