@@ -42,7 +42,7 @@ from as2fm_lsp.cli.verify_arguments import (
 from as2fm_lsp.cli.workers import cluster
 from as2fm_lsp.mocked_models import load_mocked_tree, names_tree
 from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, outputs_of
-from as2fm_lsp.verification import stuck_report
+from as2fm_lsp.verification import drawn_report, stuck_report
 from as2fm_lsp.verification.doubts import can_get_stuck
 from as2fm_lsp.verification.node_names import explained
 from as2fm_lsp.verification.report import as_brief_text, as_json, as_text
@@ -427,7 +427,9 @@ class _Verification:
         if self.options.format is Format.JSON:
             entries = [_row(finding) for finding in self._fault_entries()]
             row = None if self.stuck_result is None else stuck_report.as_row(self.stuck_result, self._place_row)
-            return as_json(self.results, entries, stuck=row, tree=self._tree_row(), parameters=self.target.parameters)
+            drawn = drawn_report.rows(self.target.drawn, self._place_row)
+            parameters = self.target.parameters
+            return as_json(self.results, entries, stuck=row, tree=self._tree_row(), parameters=parameters, drawn=drawn)
         if self.options.format is Format.JUNIT:
             from as2fm_lsp.verification.junit_report import as_junit  # noqa: PLC0415 - needs a library for XML
 
@@ -527,6 +529,7 @@ class _Verification:
         if self.target.parameters:
             values = ", ".join(f"{name} = {value}" for name, value in self.target.parameters.items())
             lines.append(f"parameters: {values}")
+        lines += drawn_report.lines(self.target.drawn, self._place)
         return "\n".join(filter(None, lines))
 
     def _exact_computation(self) -> str:

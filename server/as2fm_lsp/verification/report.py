@@ -313,6 +313,7 @@ def as_json(
     stuck: dict[str, Any] | None = None,
     tree: dict[str, Any] | None = None,
     parameters: Mapping[str, str] | None = None,
+    drawn: Sequence[dict[str, Any]] = (),
 ) -> str:
     """All results for programs, as JSON.
 
@@ -321,6 +322,7 @@ def as_json(
         stuck: the result of the check whether the system gets stuck.
         tree: the measurements of a tree without a system.
         parameters: name of a parameter of the system -> the text of its value.
+        drawn: the numbers that machines draw from distributions, as `drawn_rows` returns them.
     """
     value: dict[str, Any] = {"results": [row(result) for result in results]}
     if stuck is not None:
@@ -329,6 +331,8 @@ def as_json(
         value["tree"] = tree
     if parameters:
         value["parameters"] = dict(parameters)
+    if drawn:
+        value["drawn"] = list(drawn)
     if errors:
         value["errors"] = list(errors)
     return json.dumps(value, indent=1, ensure_ascii=False) + "\n"

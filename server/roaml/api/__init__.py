@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from roaml.api.verifying import ConstantError, as_target, checker, target, verifier, verify
     from roaml.comparison import Comparison
     from roaml.diagnostics import Diagnostic, Severity
+    from roaml.expansion.draws import DrawnNumber
     from roaml.experiments.changes import ValueChange, ValueVerdict
     from roaml.experiments.enough import Enough, Met, Trend
     from roaml.experiments.grid import ExperimentOptions, Grid
@@ -161,6 +162,7 @@ else:
         "roaml.experiments.points": ("ExperimentPoint", "PointKind", "Schedulers"),
         "roaml.experiments.results": ("ExperimentResult",),
         "roaml.experiments.sweeps": ("Sweep", "SweepError"),
+        "roaml.expansion.draws": ("DrawnNumber",),
         "roaml.figures.layout": ("LayoutDirection",),
         "roaml.ide.diagrams": ("DiagramKind",),
         "roaml.jani.model": ("Model",),
@@ -259,6 +261,7 @@ __all__ = [
     "Diagnostic",
     "DiagramKind",
     "DrawingError",
+    "DrawnNumber",
     "DrawnPicture",
     "End",
     "Enough",

@@ -52,7 +52,7 @@ def expanded_chances(analysis: Analysis, path: str, ranges: Mapping[str, tuple[f
         ranges: parameter -> its least and its greatest value.
     """
     expanded = analysis.expanded(path)
-    if expanded is None:
+    if expanded is None or expanded.expansion.drawn:  # the values of draws may depend on the parameters
         return None
     types = {parameter.name.value: parameter.type for parameter in expanded.expansion.declared}
     if not all(types.get(name) in _REAL_TYPES for name in ranges):

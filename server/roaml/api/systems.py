@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
 
 from roaml.api.checking import CheckResult, check
 from roaml.api.jani_files import PathError
@@ -25,6 +26,9 @@ from roaml.record import Record, replace
 from roaml.scxml.model import Network
 from roaml.scxml.observed import ObservedProperty
 from roaml.suggest import close_names, did_you_mean, listing
+
+if TYPE_CHECKING:
+    from roaml.expansion.draws import DrawnNumber
 
 
 class ModelError(ValueError):
@@ -67,6 +71,12 @@ class LoadedSystem(Record, frozen=True):
         """Name of a parameter of the system -> the text of its value; and `INSTANCE.NAME` -> a value that was given for
         the parameter of an instance from outside of the files (docs/spec/parameters.md#values)."""
         return _parameters(self.analysis, self.path)
+
+    @property
+    def drawn(self) -> tuple[DrawnNumber, ...]:
+        """The numbers that machines draw from distributions (docs/spec/distributions.md#values)."""
+        expanded = self.analysis.expanded(self.path)
+        return () if expanded is None else expanded.expansion.drawn
 
 
 def load(

@@ -141,7 +141,7 @@ def as_target(subject: VerificationTarget | LoadedSystem | Model) -> Verificatio
     system = subject.analysis.system(subject.path)
     step = None if system is None else clock_step(system)
     target = target_of(model, subject.path, subject.files, subject.analysis.source, conditional, step)
-    target = replace(target, parameters=subject.parameters)
+    target = replace(target, parameters=subject.parameters, drawn=subject.drawn)
     return target.expecting({p.name: p.expected for p in subject.observed if p.expected is not None})
 
 

@@ -5,3 +5,8 @@
     laws      the distributions: `normal(2, 0.3)`; their probabilities
     outcomes  a distribution -> values with probabilities, and a bound of the error
 """
+
+from roaml.regex import regex
+
+CALL = regex(r"\b(?:bernoulli|binomial|categorical|exponential|geometric|normal|poisson|uniform|uniform_int)\s*\(")
+"""The begin of a call of a distribution."""

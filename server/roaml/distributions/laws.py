@@ -105,7 +105,7 @@ class LawFunction(Record, frozen=True, eq=False):
     """A distribution as a function.
 
     Attributes:
-        parameters: the names of its parameters. The last one of a continuous distribution of values is `step`.
+        parameters: the names of its parameters, without `step`.
         has_units: whether numbers of the distribution are in the unit of its arguments, so that it can be one of times.
         is_continuous: whether its values must be rounded.
         documentation: a sentence about it.
@@ -122,10 +122,14 @@ class LawFunction(Record, frozen=True, eq=False):
     repeats: bool = False
 
     @property
+    def value_parameters(self) -> tuple[str, ...]:
+        """The parameters as the distribution of a value."""
+        return (*self.parameters, "step") if self.is_continuous else self.parameters
+
+    @property
     def signature(self) -> str:
         """The function with its parameters, as the distribution of a value."""
-        parameters = (*self.parameters, "step") if self.is_continuous else self.parameters
-        return f"{self.name}({', '.join(parameters)}{', …' if self.repeats else ''})"
+        return f"{self.name}({', '.join(self.value_parameters)}{', …' if self.repeats else ''})"
 
     def law(self, arguments: Sequence[Fraction]) -> Law:
         """The distribution with these arguments, without `step`.

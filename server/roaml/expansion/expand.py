@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator, Mapping
-from typing import NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from roaml.diagnostics import Finding, Fix, Severity, Symbol, Tag
+from roaml.distributions import CALL
 from roaml.expansion.declarations import (
     PARAM,
     PARAMETER,
@@ -40,6 +41,9 @@ from roaml.roles import SymbolKind
 from roaml.suggest import close_names, did_you_mean, listing
 from roaml.text import Span, TextEdit
 from roaml.xml_syntax import Document
+
+if TYPE_CHECKING:
+    from roaml.expansion.draws import DrawnNumber
 
 _STRING = ScalarKind.STRING
 
@@ -83,6 +87,7 @@ class SystemExpansion(Record, frozen=True, eq=False):
         renamed: path of a file of the user -> the names of interfaces and events in it, as written, that its instances
             call otherwise.
         of_instances: `INSTANCE.PARAMETER` -> the text of a value that was given from outside.
+        drawn: the numbers that machines draw from distributions.
     """
 
     system: str
@@ -95,6 +100,7 @@ class SystemExpansion(Record, frozen=True, eq=False):
     names: Mapping[str, tuple[NamedPlace, ...]] = field(default_factory=dict)
     renamed: Mapping[str, frozenset[str]] = field(default_factory=dict)
     of_instances: Mapping[str, str] = field(default_factory=dict)
+    drawn: tuple[DrawnNumber, ...] = ()
 
     def source(self, path: str) -> str:
         """The path of the file of the user that is analysed under `path`."""
@@ -112,7 +118,7 @@ class SystemExpansion(Record, frozen=True, eq=False):
 
 
 def needs_expansion(system: Document, texts: Iterator[str]) -> bool:
-    """Whether a system uses parameters or instances.
+    """Whether a system uses parameters, instances or distributions.
 
     Args:
         system: the system file.
@@ -122,7 +128,7 @@ def needs_expansion(system: Document, texts: Iterator[str]) -> bool:
         return True
     if any(not instance.is_plain for instance in instances(system, Problems())):
         return True
-    return any(f"<{PARAMETER}" in text or "$(var" in text for text in texts)
+    return any(f"<{PARAMETER}" in text or "$(var" in text or CALL.search(text) for text in texts)
 
 
 def expand_file(path: str, sources: UserFiles, *, varied: bool = False) -> SystemExpansion:
@@ -177,6 +183,7 @@ class _Expander:
         self.names: dict[str, dict[NamedPlace, None]] = {}
         self.renamed: dict[str, set[str]] = {}
         self.of_instances: dict[str, str] = {}
+        self.drawn: dict[DrawnNumber, None] = {}
 
     def problems_of(self, path: str) -> Problems:
         return self.problems.setdefault(path, Problems())
@@ -254,6 +261,7 @@ class _Expander:
             names,
             {path: frozenset(renamed) for path, renamed in self.renamed.items() if renamed},
             self.of_instances,
+            tuple(self.drawn),
         )
 
     def _fresh(self, target: str, instance: ListedInstance) -> str:
@@ -373,8 +381,24 @@ class _Expander:
             spans = [edit.span for edit in renamed if own_name is None or edit.span != own_name.value_span]
             self.renamed.setdefault(source, set()).update(document.decoded(span).text.strip() for span in spans)
             edits = [*renamed, *edits]
-        if edits or path != source:
-            self.texts[path] = expanded_text(path, source, document.text, edits)
+        text = expanded_text(path, source, document.text, edits)
+        if kind is FileKind.MACHINE and CALL.search(text.text):
+            text = self._with_draws(text, problems)
+        if text.text != document.text or path != source:
+            self.texts[path] = text
+
+    def _with_draws(self, text: ExpandedText, problems: Problems) -> ExpandedText:
+        from roaml.expansion.draws import expand_draws  # noqa: PLC0415 - few machines draw numbers
+
+        text, numbers = expand_draws(text, problems)
+        self.drawn.update(dict.fromkeys(numbers))
+        if numbers:
+            message = (
+                "AS2FM has no distributions; `as2fm-lsp translate --expand DIR` writes targets with probabilities "
+                "instead"
+            )
+            problems.add(ExpansionProblem.REFERENCE, numbers[0].span, message, severity=Severity.INFORMATION)
+        return text
 
     def _uses_in_declarations(self, own: tuple[Declared, ...], parameter: Declared) -> bool:
         name = parameter.name.value

@@ -21,6 +21,8 @@ class ExpansionProblem(enum.Enum):
     HIDDEN = "hidden-parameter"
     ASSIGNED = "assigned-parameter"
     INSTANCE = "invalid-instance"
+    DISTRIBUTION = "invalid-distribution"
+    MISPLACED = "misplaced-random"
     REMAP = "unused-remap"
     REFERENCE = "not-in-reference"
 

@@ -6,9 +6,25 @@ from __future__ import annotations
 import bisect
 from collections.abc import Iterable
 from functools import cached_property
+from typing import NamedTuple
 
 from roaml.record import Record
 from roaml.text import Span, TextEdit, apply_edits
+
+
+class CopiedText(NamedTuple):
+    """A part of an expanded text that comes from another place than where the edit is that inserts it.
+
+    Attributes:
+        start, end: the part.
+        source: the text that it comes from, before the edits.
+        is_exact: whether it is a copy of that text, so that each character has its own origin.
+    """
+
+    start: int
+    end: int
+    source: Span
+    is_exact: bool
 
 
 class ExpandedText(Record, frozen=True, dict=True):
@@ -18,13 +34,17 @@ class ExpandedText(Record, frozen=True, dict=True):
         path: the path under which the expanded text is analysed; that of another file of the user never.
         source: the path of the file of the user.
         text: the expanded text.
-        edits: the edits that make the expanded text from that of the file, sorted, not overlapping.
+        edits: the edits that make the expanded text from that of the file, or from `before`, sorted, not overlapping.
+        copies: the parts of the new texts of edits that come from other places, sorted.
+        before: the result of an earlier expansion, which `edits` change; `None` if they change the text of the user.
     """
 
     path: str
     source: str
     text: str
     edits: tuple[TextEdit, ...]
+    copies: tuple[CopiedText, ...] = ()
+    before: ExpandedText | None = None
 
     @cached_property
     def _pieces(self) -> tuple[list[int], list[tuple[int, int, int]]]:
@@ -40,27 +60,55 @@ class ExpandedText(Record, frozen=True, dict=True):
     def origin(self, span: Span) -> Span:
         """The span in the file of the user that became `span`. A part of a new text becomes the whole text that it
         replaces."""
+        origin = self._own_origin(span)
+        return origin if self.before is None else self.before.origin(origin)
+
+    def _own_origin(self, span: Span) -> Span:
         start, end = self._offset(span.start, at_end=False), self._offset(span.end, at_end=span.end > span.start)
         return Span(start, max(start, end))
 
     def written(self, span: Span) -> str:
         """The text of the user in `span`, a span of the file of the user that no edit touches; "" if one touches it."""
+        place = self._place_of(span)
+        return "" if place is None else self.text[place.start : place.end]
+
+    def _place_of(self, span: Span) -> Span | None:
+        """The place of a text of the user; `None` if an edit touches it."""
+        if self.before is not None:
+            known = self.before._place_of(span)
+            if known is None:
+                return None
+            span = known
         shift = 0
         for edit, new in self.edits:
             if edit.end <= span.start:
                 shift += len(new) - (edit.end - edit.start)
             elif edit.start < span.end:
-                return ""
-        return self.text[span.start + shift : span.end + shift]
+                return None
+        return Span(span.start + shift, span.end + shift)
 
     def is_written(self, span: Span) -> bool:
         """Whether the text in `span` is that of the user: no edit touches it."""
-        original = self.origin(span)
-        return not any(edit.start < original.end and original.start < edit.end for edit, _ in self.edits) and (
+        original = self._own_origin(span)
+        is_own = not any(edit.start < original.end and original.start < edit.end for edit, _ in self.edits) and (
             original.end - original.start == span.end - span.start
         )
+        return is_own and (self.before is None or self.before.is_written(original))
+
+    def places(self, span: Span) -> int:
+        """How often the expanded text contains the text from which the begin of `span` comes."""
+        begin = self._own_origin(span).start
+        copied = sum(copy.source.start <= begin < copy.source.end for copy in self.copies)
+        is_replaced = any(edit.start <= begin < edit.end for edit, _ in self.edits)
+        return copied + (not is_replaced)
 
     def _offset(self, offset: int, *, at_end: bool) -> int:
+        number = bisect.bisect_right(self.copies, offset - at_end, key=lambda copy: copy.start) - 1
+        if number >= 0 and offset - at_end < self.copies[number].end:
+            copy = self.copies[number]
+            if copy.is_exact:
+                return copy.source.start + offset - copy.start
+            return copy.source.end if at_end else copy.source.start
         starts, pieces = self._pieces
         number = (bisect.bisect_left if at_end else bisect.bisect_right)(starts, offset) - 1
         if number < 0:

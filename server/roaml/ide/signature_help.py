@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 
+from roaml.distributions.laws import LAWS
 from roaml.expr.operators import FUNCTIONS
 from roaml.ide.describe import language as describe_language
 from roaml.ide.syntax import expression_at, xml_file
@@ -18,12 +19,12 @@ from roaml.regex import regex
 TRIGGERS = ("(", ",")
 
 _TOKEN = regex(r"'(?:\\.|[^'\\])*(?:'|\Z)|\"(?:\\.|[^\"\\])*(?:\"|\Z)|[()\[\]{},]", re.DOTALL)
-_CALLED = regex(r"Math\s*\.\s*(\w+)\s*\Z")
+_CALLED = regex(r"((?:\bMath\s*\.\s*)?\b\w+)\s*\Z")
 _PAIRS = {")": "(", "]": "[", "}": "{"}
 
 
 class SignatureHelp(Record, frozen=True):
-    """The signature of a function of `Math`, whose call is being typed.
+    """The signature of a function of `Math` or of a distribution, whose call is being typed.
 
     Attributes:
         label: the text of the signature.
@@ -52,28 +53,34 @@ def signature_help(analysis: Analysis, path: str, offset: int) -> SignatureHelp 
     source = expression.source
     before = sum(source.offset(index) < offset for index in range(len(source.text)))
     name, commas = _innermost_call(source.text[:before])
-    function = FUNCTIONS.get(name)
-    if function is None:
+    if name in LAWS:
+        law = LAWS[name]
+        label, parameters, documentation = law.signature, law.value_parameters, law.documentation
+        commas = commas % len(parameters) if law.repeats else commas
+    elif (function := FUNCTIONS.get(name.removeprefix("Math."))) is not None and name.startswith("Math."):
+        label, parameters = describe_language.signature(function), function.parameters
+        documentation = function.documentation
+    else:
         return None
-    label = describe_language.signature(function)
     at, spans = label.index("(") + 1, []
-    for parameter in function.parameters:
+    for parameter in parameters:
         start = label.index(parameter, at)
         at = start + len(parameter)
         spans.append((start, at))
     active = commas if commas < len(spans) else None
-    return SignatureHelp(label, tuple(spans), active, function.documentation)
+    return SignatureHelp(label, tuple(spans), active, documentation)
 
 
 def _innermost_call(text: str) -> tuple[str, int]:
-    """The name of the function of `Math` whose parentheses are open at the end of `text`, and the number of commas in
-    them. The name is "" if there is no such call."""
+    """The name of the function, such as `Math.abs` or `normal`, whose parentheses are open at the end of `text`, and
+    the number of commas in them. The name is "" if there is no such call."""
     opened: list[tuple[str, str, int]] = []
     for token in _TOKEN.finditer(text):
         match token[0]:
             case "(" | "[" | "{" as opening:
                 called = _CALLED.search(text, 0, token.start()) if opening == "(" else None
-                opened.append((opening, called[1] if called else "", 0))
+                name = "".join(called[1].split()) if called else ""
+                opened.append((opening, name if name in LAWS or name.startswith("Math.") else "", 0))
             case ")" | "]" | "}" as closing:
                 while opened and opened.pop()[0] != _PAIRS[closing]:
                     pass

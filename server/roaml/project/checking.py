@@ -13,11 +13,13 @@ from __future__ import annotations
 import functools
 import itertools
 import os
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from typing import TypeAlias
 
 from roaml.diagnostics import Diagnostic, Finding, Related, RelatedPlace, Severity, Symbol, Tag
 from roaml.disk import UnreadableReason
+from roaml.expansion import ExpandedText
 from roaml.interfaces.parse import parse as parse_interface
 from roaml.interfaces.registry import NotFound, Reason
 from roaml.interfaces.report import CODE as INTERFACE_SYNTAX
@@ -212,7 +214,10 @@ class RuleRunner:
     def _mapped_findings(self, expanded: Expanded[Analysis], path: str, system: str | None) -> Iterator[Finding]:
         runner = RuleRunner(expanded.analysis, self.settings)
         for variant in expanded.expansion.paths(path):
-            for finding in runner.findings(variant, system):
+            findings, text = runner.findings(variant, system), expanded.expansion.texts.get(variant)
+            if text is not None and text.copies:
+                findings = _in_all_copies(text, findings)
+            for finding in findings:
                 yield _meant_parameter(expanded, path, expanded.finding(variant, finding))
 
     def _is_selected(self, finding: Finding) -> bool:
@@ -239,6 +244,20 @@ class RuleRunner:
             location = locate(self.analysis, related.place)
             return None if location is None else RelatedPlace(location, related.message)
         return RelatedPlace(Location(path, related.place), related.message)
+
+
+def _in_all_copies(text: ExpandedText, findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
+    """The findings in a text in which the bodies of handlers are copied. A finding in a copy is reported once; one that
+    is not an error, only if it occurs in all copies: otherwise it depends on a value that may be drawn."""
+    count = Counter((finding.code, text.origin(finding.span)) for finding in findings)
+    kept: dict[object, Finding] = {}
+    for finding in findings:
+        place = (finding.code, text.origin(finding.span))
+        if (copies := text.places(finding.span)) == 1:
+            kept[finding] = finding
+        elif _own_severity(finding) is Severity.ERROR or count[place] >= copies:
+            kept.setdefault(place, finding)
+    return tuple(kept.values())
 
 
 _UNKNOWN_NAMES = ("undeclared-variable", "property-condition", "invalid-rate", "invalid-value")

@@ -17,6 +17,7 @@ RULES = (
     _rule(ExpansionProblem.ASSIGNED, Severity.ERROR, "A machine assigns a value to a parameter."),
     _rule(ExpansionProblem.DUPLICATE, Severity.ERROR, "A file declares two parameters with the same name."),
     _rule(ExpansionProblem.HIDDEN, Severity.WARNING, "A variable hides a parameter with the same name."),
+    _rule(ExpansionProblem.DISTRIBUTION, Severity.ERROR, "A distribution has invalid arguments, or too many values."),
     _rule(
         ExpansionProblem.INSTANCE,
         Severity.ERROR,

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from roaml.comparison import Comparison
 from roaml.jani.model import Model
@@ -15,6 +15,9 @@ from roaml.record import Record, field, replace
 from roaml.scxml.names import assumptions_of
 from roaml.text import SourceFile
 from roaml.verification.expectations import Expectation, expectation_of
+
+if TYPE_CHECKING:
+    from roaml.expansion.draws import DrawnNumber
 
 CLOCK_VARIABLES = ("topic_clock_msg__ros_fields__sec", "topic_clock_msg__ros_fields__nanosec")
 """The variables of a translated system that contain its time: seconds and nanoseconds."""
@@ -39,6 +42,7 @@ class VerificationTarget(Record, frozen=True):
         assumptions: the name of a property with assumptions -> the property which states that these hold.
         expectations: the expected values of the properties, from their files and from the configuration.
         parameters: name of a parameter of the system -> the text of its value (docs/spec/parameters.md).
+        drawn: the numbers that machines draw from distributions (docs/spec/distributions.md#error).
     """
 
     path: str
@@ -49,6 +53,7 @@ class VerificationTarget(Record, frozen=True):
     assumptions: Mapping[str, Property] = field(default_factory=dict)
     expectations: tuple[Expectation, ...] = ()
     parameters: Mapping[str, str] = field(default_factory=dict)
+    drawn: tuple[DrawnNumber, ...] = ()
 
     @property
     def properties(self) -> tuple[Property, ...]:

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from roaml.diagnostics import Symbol
+from roaml.distributions.laws import LAWS
 from roaml.expr.operators import FUNCTIONS
 from roaml.ide.describe import describe
 from roaml.ide.describe import language as describe_language
@@ -42,6 +43,8 @@ def document(analysis: Analysis, about: Symbol) -> str:
             choices = attribute.simple.choices if attribute else ()
             return next((describe_language.choice(choice) for choice in choices if choice.value == about.name), "")
         case SymbolKind.FUNCTION:
+            if (distribution := LAWS.get(about.name)) is not None:
+                return describe_language.law(distribution)
             math_function = FUNCTIONS.get(about.name)
             return describe_language.function(math_function) if math_function else ""
         case SymbolKind.EVENT_VARIABLE:

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from roaml.diagnostics import Symbol
+from roaml.distributions.laws import LAWS, LawFunction
 from roaml.expr.infer import infer
 from roaml.expr.operators import FUNCTIONS, Function
 from roaml.expr.parse import parse
@@ -168,6 +169,8 @@ def in_expression(
     ]
     items.append(CompletionItem("Math", ItemKind.FUNCTION, detail="functions", rank=Rank.LATE))
     items += [_function(function, "Math.", Rank.LATE) for function in FUNCTIONS.values()]
+    if request.machine is not None and part == "expr":
+        items += [_law(law) for law in LAWS.values()]
     return begun.span, items
 
 
@@ -264,6 +267,16 @@ def _function(function: Function, prefix: str, rank: Rank) -> CompletionItem:
     return CompletionItem(
         label, ItemKind.FUNCTION, str(snippet), detail, Symbol("", SymbolKind.FUNCTION, function.name), rank
     )
+
+
+def _law(law: LawFunction) -> CompletionItem:
+    """An item for a distribution of values."""
+    snippet = Snippet().text(f"{law.name}(")
+    for number, parameter in enumerate(law.value_parameters):
+        snippet.text(", " if number else "").stop([parameter])
+    snippet.text(")")
+    about = Symbol("", SymbolKind.FUNCTION, law.name)
+    return CompletionItem(law.name, ItemKind.FUNCTION, str(snippet), "a random number", about, Rank.LATE)
 
 
 # ----------------------------------------------------------------- required types

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from roaml.distributions.laws import LawFunction
 from roaml.expr.operators import FUNCTIONS, Function, Operator, UnaryOperator
 from roaml.expr.types import BASE_TYPES, INTEGER_RANGES, Scalar, Struct, Type, unwrap
 from roaml.ide.describe.markdown import code, lines, name, names, paragraphs
@@ -115,6 +116,12 @@ def signature(math_function: Function) -> str:
     needed = len(math_function.parameters) - math_function.optional
     parameters = (f"{parameter}{'?' if i >= needed else ''}" for i, parameter in enumerate(math_function.parameters))
     return f"Math.{math_function.name}({', '.join(parameters)}) : {math_function.result}"
+
+
+def law(distribution: LawFunction) -> str:
+    """The description of a distribution."""
+    rounded = " Its numbers are rounded to multiples of `step`." if distribution.is_continuous else ""
+    return paragraphs(code(distribution.signature), f"{distribution.documentation}{rounded}")
 
 
 def math() -> str:

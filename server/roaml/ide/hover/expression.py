@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
+from roaml.distributions.laws import LAWS
 from roaml.expr.operators import FUNCTIONS
-from roaml.expr.tree import Binary, Conditional, Expr, Member, Unary, walk
+from roaml.expr.tree import Binary, Call, Conditional, Expr, Member, Unary, walk
 from roaml.expr.tree import Name as NameExpr
 from roaml.expr.types import Struct, Type
 from roaml.ide.describe import language as describe_language
@@ -42,6 +43,8 @@ def _part(place: Place, node: Expr) -> tuple[Span, str] | None:
             return node.name_span, describe_language.event_data(data) if isinstance(data, Struct) else ""
         case Member(name="length") if node.name_span.contains(offset):
             return node.name_span, describe_language.length(place.text[node.object.span.start : node.object.span.end])
+        case Call(function=NameExpr() as called) if called.name in LAWS and called.span.contains(offset):
+            return called.span, describe_language.law(LAWS[called.name])
         case Binary() if node.operator_span.contains(offset):
             return node.operator_span, describe_language.operator(node.operator)
         case Unary() if node.span.start <= offset < node.operand.span.start:

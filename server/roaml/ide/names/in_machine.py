@@ -9,6 +9,7 @@ from roaml.diagnostics import Symbol
 from roaml.expr.infer import infer
 from roaml.expr.tree import (
     ArrayLiteral,
+    Call,
     Expr,
     Index,
     Member,
@@ -288,8 +289,12 @@ class _Scope:
 
     def names(self, expression: Expression, *, written: bool = False) -> Iterator[Occurrence]:
         target = _base(expression.tree) if written else None
-        for node in walk(expression.tree):
+        nodes = walk(expression.tree)
+        called = [node.function for node in nodes if isinstance(node, Call)]
+        for node in nodes:
             if isinstance(node, NameExpr):
+                if node.name not in self.variables and any(node is function for function in called):
+                    continue  # a distribution
                 yield from self.name(node, Access.WRITE if node is target else Access.READ)
             elif isinstance(node, Member) and node.name:
                 yield from self.member(node, Access.WRITE if written and target else Access.READ)

@@ -7,6 +7,7 @@ import functools
 from collections.abc import Callable
 from typing import Generic, TypeVar
 
+from roaml.distributions import CALL
 from roaml.expansion import SystemExpansion, expand, expand_file, needs_expansion
 from roaml.jani.properties import Property
 from roaml.model.kinds import FileKind
@@ -66,8 +67,8 @@ class Expanding:
         self._given = given
 
     def system(self, system: str, *, varied: bool = False) -> ExpandedFiles | None:
-        """An expanded system; `None` if it uses neither parameters nor instances, or cannot be read. If `varied`, its
-        parameters have other values than the given ones."""
+        """An expanded system; `None` if it uses no parameters, instances or distributions, or cannot be read. If
+        `varied`, its parameters have other values than the given ones."""
         document = self._sources.document(system)
         if document is None or self._sources.system_file(system) is None:
             return None
@@ -85,7 +86,7 @@ class Expanding:
         """A machine or property file that is not in a system, with the values of its own parameters; `None` if it
         declares and uses none. For `varied`, see `system`."""
         source = self._sources.source(path)
-        if source is None or not ("<parameter" in source.text or "$(var" in source.text):
+        if source is None or not ("<parameter" in source.text or "$(var" in source.text or CALL.search(source.text)):
             return None
         if self._sources.kind(path) not in (FileKind.MACHINE, FileKind.XML_PROPERTIES):
             return None

@@ -55,7 +55,11 @@ def _unknown(problem: UnknownFunction, value: Value) -> Finding:
     close = close_names(name, known) if name.startswith("Math.") else ()
     if not close and f"Math.{name}" in known:
         close = (f"Math.{name}",)
-    hint = did_you_mean(close) or "; only functions of `Math` can be called"
+    if not close and problem.called:
+        from roaml.distributions.laws import LAWS  # noqa: PLC0415 - few machines call unknown functions
+
+        close = close_names(name, LAWS)
+    hint = did_you_mean(close) or "; only functions of `Math` and distributions can be called"
     problem_text = f"there is no function `{name}`" if name else "this cannot be called"
     return RULE.at(problem.span, f"{problem_text}{hint}", *replacements(problem.span, close))
 
