@@ -22,6 +22,8 @@ from roaml.ide.completion import complete
 from roaml.ide.hover import hover
 from roaml.ide.signature_help import signature_help
 from roaml.jani.writer import write
+from roaml.project.settings import Settings
+from roaml.project.workspace import Workspace
 from roaml.text import Span
 
 MAIN = """<roaml>
@@ -105,6 +107,65 @@ def test_probabilities_are_those_of_the_distributions(
 ) -> None:
     main = write_system(tmp_path, DRAW.format(draw), limit)
     assert probability(capsys, main) == pytest.approx(expected, abs=2 * MAX_CUT)
+
+
+DATA = "# measured\nseconds,count,note\n1.5,2,a\n4, 1\n\n1.5,1\n2.25,4\n"
+
+
+@pytest.mark.parametrize(
+    ("draw", "limit", "expected"),
+    [
+        ("histogram('data.csv')", 1.5, 5 / 8),
+        ("histogram('data.csv')", 2.2, 5 / 8),
+        ("histogram('data.csv')", 2.25, 1 / 8),
+        ("histogram('data.csv', 1)", 1.5, 1 / 8 + 4 / 8),
+        ("histogram($(var data), 4 * p)", 2, 1 / 8),
+    ],
+)
+def test_values_from_a_file(
+    draw: str, limit: float, expected: float, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "data.csv").write_text(DATA, encoding="utf-8")
+    main = write_system(tmp_path, DRAW.format(draw), limit)
+    more = '<parameter name="data" type="string" value="data.csv" />'
+    main.write_text(MAIN.replace("</parameter_decl", f"{more}</parameter_decl"), encoding="utf-8")
+    assert probability(capsys, main) == pytest.approx(expected)
+
+
+def test_a_changed_file_changes_the_distribution(tmp_path: Path) -> None:
+    main, workspace = write_system(tmp_path, DRAW.format("histogram(data)")), Workspace((), Settings())
+
+    def shares() -> list[str]:
+        analysis = workspace.snapshot().analysis
+        expanded = analysis.expanded(str(main))
+        assert expanded is not None
+        return re.findall(r'prob="(.*?)"', expanded.expansion.texts[str(tmp_path / "dice.ascxml")].text)
+
+    more = '<parameter name="data" type="string" value="data.csv" />'
+    main.write_text(MAIN.replace("</parameter_decl", f"{more}</parameter_decl"), encoding="utf-8")
+    (tmp_path / "data.csv").write_text("1\n2\n", encoding="utf-8")
+    assert shares() == ["0.5"]
+    (tmp_path / "data.csv").write_text("1\n2\n2\n2\n", encoding="utf-8")
+    assert shares() == ["0.25"]
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        ("value,count\n", "it contains no values"),
+        ("1,2\nfast,3\n", "line 2 is `fast,3`"),
+        ("1,-2\n", "line 1 is `1,-2`"),
+        ("\n".join(map(str, range(3000))), "3,000 values"),
+        (None, "there is no file `data.csv`"),
+    ],
+)
+def test_files_with_invalid_data(content: str | None, reason: str, tmp_path: Path) -> None:
+    if content is not None:
+        (tmp_path / "data.csv").write_text(content, encoding="utf-8")
+    main = write_system(tmp_path, DRAW.format("histogram('data.csv')"))
+    errors = [d for d in api.check([str(main)]).diagnostics if d.severity is Severity.ERROR]
+    assert [error.code for error in errors] == ["invalid-distribution"]
+    assert reason in errors[0].message
 
 
 def test_values_that_are_sent_can_be_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -216,6 +277,7 @@ def findings(main: Path) -> list[tuple[str, str]]:
         ("bernoulli(4 * p + 1)", "invalid-distribution", "bernoulli(4 * p + 1)"),
         ("bernoulli(bernoulli(0.5))", "invalid-distribution", "bernoulli(0.5)"),
         ("uniform_int(0, 99) + uniform_int(0, 99)", "invalid-distribution", "uniform_int(0, 99)"),
+        ("histogram(1)", "invalid-distribution", "histogram(1)"),
         ("gaussian(2, 1, 1)", "unknown-function", "gaussian"),
     ],
 )

@@ -13,7 +13,7 @@ from roaml.model.config_files import CONFIG_FILES
 from roaml.model.kinds import EXTENSIONS, MOCKS_EXTENSION, PROJECT_EXTENSION
 
 WATCHED = (
-    *(f"**/*{extension}" for extension in (*EXTENSIONS, PROJECT_EXTENSION, MOCKS_EXTENSION)),
+    *(f"**/*{extension}" for extension in (*EXTENSIONS, PROJECT_EXTENSION, MOCKS_EXTENSION, ".csv")),
     *(f"**/{name}" for name in CONFIG_FILES),
 )
 """Patterns of the files whose changes on the disk are relevant."""

@@ -245,12 +245,18 @@ def _integers(first: int, count: int) -> tuple[Fraction, ...]:
     return tuple(Fraction(number) for number in range(first, first + count))
 
 
+HISTOGRAM = "histogram"
+"""The name of the distribution that is read from a file (`roaml.distributions.data`)."""
 MAX_VALUES = 2000
 """The maximum number of values of a distribution."""
 
 
 def _too_many(count: int) -> Law:
     raise LawError(f"it has {count:,} values; at most {MAX_VALUES:,} are possible")
+
+
+def _histogram(_: Sequence[Fraction]) -> Law:
+    raise LawError("`histogram` needs the name of a file in quotes")
 
 
 def _functions() -> Iterator[LawFunction]:
@@ -290,6 +296,15 @@ def _functions() -> Iterator[LawFunction]:
         True,
         "A normal distribution with a mean and a standard deviation.",
         _normal,
+    )
+    yield LawFunction(
+        HISTOGRAM,
+        ("file", "step"),
+        False,
+        False,
+        "The values in a CSV file, in quotes: a column of values, and optionally one with their numbers. `step` is "
+        "optional; values are rounded to multiples of it.",
+        _histogram,
     )
     yield LawFunction("poisson", ("mean",), False, False, "A Poisson distribution: an integer of at least 0.", _poisson)
     yield LawFunction("uniform", ("low", "high"), True, True, "Any number from low to high.", _uniform)

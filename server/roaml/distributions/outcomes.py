@@ -91,6 +91,8 @@ def _listed(law: ListedLaw, step: Fraction | None, rounding: Rounding) -> Outcom
         if share > 0:
             rounded = value if step is None else _rounded(value / step, rounding) * step
             shares[rounded] = shares.get(rounded, 0.0) + share
+    if len(shares) > MAX_VALUES:
+        raise LawError(f"it has {len(shares):,} values; at most {MAX_VALUES:,} are possible")
     shift = Fraction(0) if step is None else _shift(step, rounding)
     return _outcomes(shares, shift, 0.0)
 

@@ -10,16 +10,17 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
-from roaml.distributions.laws import LAWS, MAX_VALUES, LawError
+from roaml.distributions.data import read_histogram
+from roaml.distributions.laws import HISTOGRAM, LAWS, MAX_VALUES, LawError
 from roaml.distributions.outcomes import Outcomes, decimal_text, outcomes
 from roaml.expansion.instances import removed_attribute
 from roaml.expansion.problems import ExpansionProblem, Problems
 from roaml.expansion.text import CopiedText, ExpandedText
-from roaml.expansion.values import ParameterValue, evaluate
+from roaml.expansion.values import Content, ParameterValue, evaluate
 from roaml.expr.parse import parse as parse_expression
 from roaml.expr.tree import Call, Expr, Name, walk
 from roaml.language import HL_SCXML
@@ -71,19 +72,25 @@ class _Piece(NamedTuple):
     is_exact: bool = False
 
 
-def expand_draws(text: ExpandedText, problems: Problems) -> tuple[ExpandedText, tuple[DrawnNumber, ...]]:
+def expand_draws(
+    text: ExpandedText, problems: Problems, read: Callable[[str], str | None]
+) -> tuple[ExpandedText, tuple[DrawnNumber, ...]]:
     """A machine in which targets with probabilities replace the draws, and these draws. Invalid draws stay.
 
     Args:
         text: the machine without parameters.
         problems: receives the problems, at their places in the file of the user.
+        read: the name of a file, as the machine writes it -> its text; `None` if it cannot be read.
     """
-    return _Machine(text, parse(text.text), problems).expanded()
+    return _Machine(text, parse(text.text), problems, read).expanded()
 
 
 class _Machine:
-    def __init__(self, text: ExpandedText, document: Document, problems: Problems) -> None:
+    def __init__(
+        self, text: ExpandedText, document: Document, problems: Problems, read: Callable[[str], str | None]
+    ) -> None:
         self._before = text
+        self._read = read
         self._document = document
         self._problems = problems
         self._edits: list[tuple[Span, tuple[_Piece, ...]]] = []
@@ -230,6 +237,8 @@ class _Machine:
         assert isinstance(call.function, Name)
         function = LAWS[call.function.name]
         values = [evaluate(argument, {}) for argument in call.arguments]
+        if function.name == HISTOGRAM:
+            return self._histogram(call, values)
         numbers = [value for value in values if isinstance(value, Fraction)]
         if len(numbers) < len(values):
             wrong = next(a for a, v in zip(call.arguments, values, strict=True) if not isinstance(v, Fraction))
@@ -247,9 +256,36 @@ class _Machine:
             step = numbers.pop() if function.is_continuous and len(numbers) > len(function.parameters) else None
             found = outcomes(function.law(numbers), step)
         except LawError as error:
-            message = f"`{self._text(call.span)}` is not a distribution: {error}"
-            self._add(ExpansionProblem.DISTRIBUTION, call.span, message)
+            self._invalid(call, str(error))
             return None
+        return self._drawn(call, found, step)
+
+    def _histogram(self, call: Call, values: Sequence[Content | None]) -> _Draw | None:
+        """A draw from the values in a file."""
+        match values:
+            case [str() as file]:
+                step = None
+            case [str() as file, Fraction() as step] if step > 0:
+                pass
+            case _:
+                self._invalid(call, "it needs the name of a file in quotes, and optionally a step above 0")
+                return None
+        text = self._read(file)
+        if text is None:
+            self._invalid(call, f"there is no file `{file}` that can be read beside this one")
+            return None
+        try:
+            found = outcomes(read_histogram(text), step)
+        except LawError as error:
+            self._invalid(call, f"`{file}`: {error}")
+            return None
+        return self._drawn(call, found, step)
+
+    def _invalid(self, call: Call, reason: str) -> None:
+        message = f"`{self._text(call.span)}` is not a distribution: {reason}"
+        self._add(ExpansionProblem.DISTRIBUTION, call.span, message)
+
+    def _drawn(self, call: Call, found: Outcomes, step: Fraction | None) -> _Draw:
         is_real = any(value.denominator != 1 for value in (*found.values, step or Fraction(1)))
         type_ = "float64" if is_real else "int64"
         literals = tuple(ParameterValue(type_, value).literal for value in found.values)

@@ -88,6 +88,7 @@ class SystemExpansion(Record, frozen=True, eq=False):
             call otherwise.
         of_instances: `INSTANCE.PARAMETER` -> the text of a value that was given from outside.
         drawn: the numbers that machines draw from distributions.
+        data: the paths and texts of the files with data for these; `None` for a file that cannot be read.
     """
 
     system: str
@@ -101,6 +102,7 @@ class SystemExpansion(Record, frozen=True, eq=False):
     renamed: Mapping[str, frozenset[str]] = field(default_factory=dict)
     of_instances: Mapping[str, str] = field(default_factory=dict)
     drawn: tuple[DrawnNumber, ...] = ()
+    data: tuple[tuple[str, str | None], ...] = ()
 
     def source(self, path: str) -> str:
         """The path of the file of the user that is analysed under `path`."""
@@ -131,9 +133,12 @@ def needs_expansion(system: Document, texts: Iterator[str]) -> bool:
     return any(f"<{PARAMETER}" in text or "$(var" in text or CALL.search(text) for text in texts)
 
 
-def expand_file(path: str, sources: UserFiles, *, varied: bool = False) -> SystemExpansion:
-    """Expand a file that is not in a system: its parameters have their own values. For `varied`, see `expand`."""
-    return _Expander("", (path,), sources, (), lambda _, text: text, varied=varied).of_file(path)
+def expand_file(
+    path: str, sources: UserFiles, resolve: Callable[[str, str], str], *, varied: bool = False
+) -> SystemExpansion:
+    """Expand a file that is not in a system: its parameters have their own values. For `resolve` and `varied`, see
+    `expand`."""
+    return _Expander("", (path,), sources, (), resolve, varied=varied).of_file(path)
 
 
 def expand(
@@ -184,6 +189,7 @@ class _Expander:
         self.renamed: dict[str, set[str]] = {}
         self.of_instances: dict[str, str] = {}
         self.drawn: dict[DrawnNumber, None] = {}
+        self.data: dict[str, str | None] = {}
 
     def problems_of(self, path: str) -> Problems:
         return self.problems.setdefault(path, Problems())
@@ -262,6 +268,7 @@ class _Expander:
             {path: frozenset(renamed) for path, renamed in self.renamed.items() if renamed},
             self.of_instances,
             tuple(self.drawn),
+            tuple(self.data.items()),
         )
 
     def _fresh(self, target: str, instance: ListedInstance) -> str:
@@ -390,7 +397,12 @@ class _Expander:
     def _with_draws(self, text: ExpandedText, problems: Problems) -> ExpandedText:
         from roaml.expansion.draws import expand_draws  # noqa: PLC0415 - few machines draw numbers
 
-        text, numbers = expand_draws(text, problems)
+        def read(name: str) -> str | None:
+            path = self.resolve(text.source, name)
+            self.data[path] = self.sources.text(path)
+            return self.data[path]
+
+        text, numbers = expand_draws(text, problems, read)
         self.drawn.update(dict.fromkeys(numbers))
         if numbers:
             message = (

@@ -79,7 +79,7 @@ class Expanding:
             return None
         key = (document.text, others, texts, self._given)
         compute = functools.partial(expand, system, others, sources, self._given, resolve, varied=varied)
-        expansion = self._sources.memo.get("expansion", (system, varied), key, compute)
+        expansion = self._remembered("expansion", (system, varied), key, compute)
         return self._expanded(expansion, f"{system} {varied}", (system,))
 
     def file(self, path: str, *, varied: bool = False) -> ExpandedFiles | None:
@@ -90,9 +90,20 @@ class Expanding:
             return None
         if self._sources.kind(path) not in (FileKind.MACHINE, FileKind.XML_PROPERTIES):
             return None
-        compute = functools.partial(expand_file, path, _Sources(self._sources), varied=varied)
-        expansion = self._sources.memo.get("expansion alone", (path, varied), source.text, compute)
+        compute = functools.partial(expand_file, path, _Sources(self._sources), resolve, varied=varied)
+        expansion = self._remembered("expansion alone", (path, varied), source.text, compute)
         return self._expanded(expansion, f"alone {path} {varied}", ())
+
+    def _remembered(
+        self, name: str, place: object, key: object, compute: Callable[[], SystemExpansion]
+    ) -> SystemExpansion:
+        """The last expansion with a key, unless the data that it read have changed."""
+        memo, sources = self._sources.memo, _Sources(self._sources)
+        expansion = memo.get(name, place, key, compute)
+        data = tuple(sources.text(path) for path, _ in expansion.data)
+        if data == tuple(text for _, text in expansion.data):
+            return expansion
+        return memo.get(f"{name} with changed data", place, (key, data), compute)
 
     def _expanded(self, expansion: SystemExpansion, name: str, systems: tuple[str, ...]) -> ExpandedFiles:
         texts = {path: SourceFile(path, text.text) for path, text in expansion.texts.items()}
