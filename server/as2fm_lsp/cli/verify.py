@@ -16,6 +16,7 @@ from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
 from as2fm_lsp.cli.formats import CheckReport, Format, render
 from as2fm_lsp.cli.formats.report import Entry, entry, shown_path
 from as2fm_lsp.cli.interrupts import Interrupts
+from as2fm_lsp.cli.interval_options import has_intervals, target_over_intervals
 from as2fm_lsp.cli.kernel_note import kernel_warning
 from as2fm_lsp.cli.mock_options import MESSAGES, declarations_in
 from as2fm_lsp.cli.model_arguments import (
@@ -127,7 +128,9 @@ def _run(options: argparse.Namespace, interrupts: Interrupts) -> int:
     try:
         with StatusLine() as status:
             status.stage("reading and translating")
-            target = read_target(options, settings)
+            over_intervals = has_intervals(options)
+            target = target_over_intervals(options, settings) if over_intervals else read_target(options, settings)
+            only_uniform = only_uniform and not over_intervals
             status.stage("compiling")
             verifier = api.verifier(
                 target,
@@ -529,6 +532,11 @@ class _Verification:
         if self.target.parameters:
             values = ", ".join(f"{name} = {value}" for name, value in self.target.parameters.items())
             lines.append(f"parameters: {values}")
+        if self.target.has_intervals:
+            lines.append(
+                "the minimum and maximum enclose the values for all parameters in the intervals; they also allow other "
+                "values in each step, and uniform choices draw an end of the interval in each step"
+            )
         lines += drawn_report.lines(self.target.drawn, self._place)
         return "\n".join(filter(None, lines))
 

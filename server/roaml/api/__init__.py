@@ -31,7 +31,7 @@ if TYPE_CHECKING:
         compare_values,
     )
     from roaml.api.drawing import DrawingError, DrawnPicture, draw
-    from roaml.api.experimenting import experiment, find_enough, grid_of
+    from roaml.api.experimenting import experiment, find_enough, grid_of, over_intervals
     from roaml.api.jani_files import JaniError, PathError, read_jani
     from roaml.api.migrating import SharedFileError, migrate
     from roaml.api.parametric_mocks import MockTexts
@@ -55,6 +55,7 @@ if TYPE_CHECKING:
     from roaml.experiments.changes import ValueChange, ValueVerdict
     from roaml.experiments.enough import Enough, Met, Trend
     from roaml.experiments.grid import ExperimentOptions, Grid
+    from roaml.experiments.intervals import IntervalError
     from roaml.experiments.points import ExperimentPoint, PointKind, Schedulers
     from roaml.experiments.results import ExperimentResult
     from roaml.experiments.sweeps import Sweep, SweepError
@@ -137,7 +138,7 @@ else:
             "compare_values",
         ),
         "roaml.api.drawing": ("DrawingError", "DrawnPicture", "draw"),
-        "roaml.api.experimenting": ("experiment", "find_enough", "grid_of"),
+        "roaml.api.experimenting": ("experiment", "find_enough", "grid_of", "over_intervals"),
         "roaml.api.jani_files": ("JaniError", "PathError", "read_jani"),
         "roaml.api.migrating": ("SharedFileError", "migrate"),
         "roaml.api.parametric_mocks": ("MockTexts",),
@@ -159,6 +160,7 @@ else:
         "roaml.experiments.changes": ("ValueChange", "ValueVerdict"),
         "roaml.experiments.enough": ("Enough", "Met", "Trend"),
         "roaml.experiments.grid": ("ExperimentOptions", "Grid"),
+        "roaml.experiments.intervals": ("IntervalError",),
         "roaml.experiments.points": ("ExperimentPoint", "PointKind", "Schedulers"),
         "roaml.experiments.results": ("ExperimentResult",),
         "roaml.experiments.sweeps": ("Sweep", "SweepError"),
@@ -282,6 +284,7 @@ __all__ = [
     "Grid",
     "GrowingVariable",
     "InitialFold",
+    "IntervalError",
     "JaniError",
     "LayoutDirection",
     "LeafKind",
@@ -384,6 +387,7 @@ __all__ = [
     "loaded",
     "migrate",
     "nearest",
+    "over_intervals",
     "parting",
     "propose_mocks",
     "proposed_text",

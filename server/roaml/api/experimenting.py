@@ -16,6 +16,7 @@ from roaml.api.verifying import ConstantError, as_target
 from roaml.disk import read
 from roaml.experiments.enough import Enough, enough_of, together
 from roaml.experiments.grid import ExperimentOptions, Grid, ParametricModel
+from roaml.experiments.intervals import interval_of, lifted_target
 from roaml.experiments.parametric import Chances, constant_chances
 from roaml.experiments.points import ExperimentPoint
 from roaml.experiments.results import ExperimentResult
@@ -132,6 +133,33 @@ def experiment(
         if watch is not None:
             watch(point, len(points), len(keys))
     return ExperimentResult(path, grid.sweeps, grid.properties, tuple(points[key] for key in keys), grid.options)
+
+
+def over_intervals(
+    path: str,
+    values: Mapping[str, str],
+    ros_paths: Iterable[str] = (),
+    settings: Settings | None = None,
+    overrides: Overrides = NO_OVERRIDES,
+) -> VerificationTarget:
+    """A model whose least and greatest values over all schedulers enclose the values of its properties for all
+    parameters in intervals (docs/spec/parameters.md#intervals). Estimates from traces say nothing about them.
+
+    Args:
+        path: a system, or a JANI model, whose constants are its parameters.
+        values: parameter -> an interval such as `[0.85,0.95]`, or a value.
+        ros_paths, settings, overrides: as for `target`.
+
+    Raises:
+        IntervalError: an interval is not valid, or no bounds are known.
+        ConstantError: a parameter does not exist, or cannot have its value.
+        PathError, ModelError, JaniError: the model cannot be read, or has errors.
+    """
+    given = {name: interval_of(name, value) for name, value in values.items()}
+    intervals = tuple(interval for interval in given.values() if interval is not None)
+    fixed = tuple((name, values[name]) for name, interval in given.items() if interval is None)
+    found = lifted_target(parametric_model(path, ros_paths, settings, overrides), intervals, fixed)
+    return found if settings is None else found.expecting(settings.expectations)
 
 
 def grid_of(

@@ -63,8 +63,10 @@ class LoadedSystem(Record, frozen=True):
 
     @property
     def files(self) -> tuple[str, ...]:
-        """All files of the system, the system file first."""
-        return self.analysis.files_of(self.path)
+        """All files of the system, the system file first, and the files with data from which its machines draw."""
+        expanded = self.analysis.expanded(self.path)
+        data = () if expanded is None else (path for path, text in expanded.expansion.data if text is not None)
+        return tuple(dict.fromkeys((*self.analysis.files_of(self.path), *data)))
 
     @property
     def parameters(self) -> dict[str, str]:

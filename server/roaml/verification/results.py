@@ -10,10 +10,11 @@ from typing import TypeAlias
 
 from roaml.exhaustive import assert_never
 from roaml.explicit.path import Path, PathRecorder
-from roaml.record import PartlyCompared, Record
+from roaml.jani.operators import BinaryOperator
+from roaml.record import PartlyCompared, Record, replace
 from roaml.smc.choices import Choices
 from roaml.smc.fault import FaultError
-from roaml.smc.goal import CompiledProperty, InitialFold, Question
+from roaml.smc.goal import CompiledProperty, InitialFold, Question, Threshold
 from roaml.smc.lss import Side
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import FALSE
@@ -130,6 +131,15 @@ class Exact(PartlyCompared, frozen=True):
         if only_uniform:
             return Bounds(-math.inf, math.inf) if self.uniform is None else self.uniform, self.average
         return (self.minimum, self.least) if is_minimised(question) else (self.maximum, self.greatest)
+
+    def worst_for(self, threshold: Threshold) -> Exact:
+        """The value that is worst for a threshold, as that of all schedulers: the minimum for a lower threshold, the
+        maximum for an upper one, and for an equation the one that is farther from its number."""
+        is_lower = threshold.is_lower
+        if threshold.relation is BinaryOperator.EQUAL:
+            is_lower = abs(self.least - threshold.number) > abs(self.greatest - threshold.number)
+        worst = self.minimum if is_lower else self.maximum
+        return replace(self, minimum=worst, maximum=worst, uniform=worst)
 
     @property
     def fails(self) -> bool:

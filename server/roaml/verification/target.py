@@ -42,6 +42,8 @@ class VerificationTarget(Record, frozen=True):
         assumptions: the name of a property with assumptions -> the property which states that these hold.
         expectations: the expected values of the properties, from their files and from the configuration.
         parameters: name of a parameter of the system -> the text of its value (docs/spec/parameters.md).
+        has_intervals: whether parameters are only known to be in intervals, so that schedulers choose their values
+            (docs/spec/parameters.md#intervals).
         drawn: the numbers that machines draw from distributions (docs/spec/distributions.md#error).
     """
 
@@ -54,6 +56,7 @@ class VerificationTarget(Record, frozen=True):
     expectations: tuple[Expectation, ...] = ()
     parameters: Mapping[str, str] = field(default_factory=dict)
     drawn: tuple[DrawnNumber, ...] = ()
+    has_intervals: bool = False
 
     @property
     def properties(self) -> tuple[Property, ...]:

@@ -173,24 +173,37 @@ def with_expectations(result: Result, given: Iterable[Expectation]) -> Result:
         return result
     question = estimated.answer.question
     expectations = [e for e in expectations_of(estimated.traces.compiled_property, given) if is_possible(e, question)]
-    return replace(result, verdicts=_verdicts(expectations, estimated, result.exact))
+    return replace(result, verdicts=_verdicts(estimated.traces.target, expectations, estimated, result.exact))
 
 
 def _comment(property_: CompiledProperty) -> str:
     return property_.property.comment or ""
 
 
-def _verdicts(expectations: Iterable[Expectation], estimated: Estimated, exact: Exact | None) -> tuple[Verdict, ...]:
+def _verdicts(
+    target: VerificationTarget, expectations: Iterable[Expectation], estimated: Estimated, exact: Exact | None
+) -> tuple[Verdict, ...]:
     answer, choices = estimated.answer, estimated.choices
     if exact is not None:
-        only_uniform, width = choices is None and not answer.question.is_stuck, answer.options.epsilon
+        only_uniform = choices is None and not answer.question.is_stuck and not target.has_intervals
         return tuple(
-            check_exactly(expectation, exact, answer.question, only_uniform=only_uniform, width=width)
+            check_exactly(
+                expectation,
+                _compared(target, expectation, exact),
+                answer.question,
+                only_uniform=only_uniform,
+                width=answer.options.epsilon,
+            )
             for expectation in expectations
         )
     return tuple(
         under_all_schedulers(check_expectation(expectation, answer), answer, choices) for expectation in expectations
     )
+
+
+def _compared(target: VerificationTarget, expectation: Expectation, exact: Exact) -> Exact:
+    """The values with which an expectation is compared: over intervals of parameters, only the worst one."""
+    return exact.worst_for(expectation.threshold) if target.has_intervals else exact
 
 
 class Verifier(Record, frozen=True):
@@ -535,7 +548,10 @@ class Verifier(Record, frozen=True):
             open_ = tuple(Verdict(expectation, False, False, under="so far") for expectation in expectations)
             undecided = Undecided(str(error), error.growing)
             return Result(property_.question.name, undecided, open_, seconds(), _comment(property_))
-        verdicts = tuple(check_exactly(expectation, exact, property_.question) for expectation in expectations)
+        verdicts = tuple(
+            check_exactly(expectation, _compared(self.target, expectation, exact), property_.question)
+            for expectation in expectations
+        )
         outcome = Computed(property_.question, exact)
         result = Result(property_.question.name, outcome, verdicts, seconds(), _comment(property_))
         return self._with_reactions(property_, result, time.monotonic() - seconds())
@@ -572,6 +588,6 @@ class Verifier(Record, frozen=True):
         got_stuck = stuck.stuck_in(self.target, self.checker, property_, answer)
         traces = Traces(self.target, self.checker, property_, self.options)
         estimated = Estimated(answer, choices, got_stuck, traces, is_interrupted)
-        verdicts = _verdicts(self.expected(property_), estimated, exact)
+        verdicts = _verdicts(self.target, self.expected(property_), estimated, exact)
         outcome = estimated if exact is None else Computed(property_.question, exact, estimated)
         return Result(property_.question.name, outcome, verdicts, seconds, _comment(property_))
