@@ -15,7 +15,7 @@ from scipy import stats
 from as2fm_lsp.cli.main import run
 from roaml import api
 from roaml.diagnostics import Severity
-from roaml.distributions import CALL
+from roaml.distributions import calls_distribution
 from roaml.distributions.laws import LAWS
 from roaml.distributions.outcomes import MAX_CUT
 from roaml.ide.completion import complete
@@ -221,7 +221,7 @@ def test_the_expanded_files_have_the_same_translation(tmp_path: Path) -> None:
     plain = tmp_path / "plain"
     assert run(["translate", str(main), "--expand", str(plain)]) == 0
     text = (plain / "dice.ascxml").read_text(encoding="utf-8")
-    assert not CALL.search(text)
+    assert not calls_distribution(text)
     assert jani(plain / "main.xml") == jani(main)
     assert not [d for d in api.check([str(plain / "main.xml")]).diagnostics if d.severity is Severity.ERROR]
 
@@ -365,9 +365,9 @@ def test_each_copied_character_leads_to_the_text_of_the_user(tmp_path: Path) -> 
 
 def test_names_of_distributions_are_recognised() -> None:
     for name in LAWS:
-        assert CALL.search(f"x + {name} (1)")
-        assert not CALL.search(f"x + {name}_({name})")
-    assert not CALL.search("abnormal(1) + Math.floor(1)")
+        assert calls_distribution(f"x + {name} (1)")
+        assert not calls_distribution(f"x + {name}_({name})")
+    assert not calls_distribution("abnormal(1) + Math.floor(1)")
 
 
 def test_help_for_distributions(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from roaml.diagnostics import Finding, Fix, Severity, Symbol, Tag
-from roaml.distributions import CALL
+from roaml.distributions import calls_distribution
 from roaml.expansion.declarations import (
     PARAM,
     PARAMETER,
@@ -130,7 +130,7 @@ def needs_expansion(system: Document, texts: Iterator[str]) -> bool:
         return True
     if any(not instance.is_plain for instance in instances(system, Problems())):
         return True
-    return any(f"<{PARAMETER}" in text or "$(var" in text or CALL.search(text) for text in texts)
+    return any(f"<{PARAMETER}" in text or "$(var" in text or calls_distribution(text) for text in texts)
 
 
 def expand_file(
@@ -389,7 +389,7 @@ class _Expander:
             self.renamed.setdefault(source, set()).update(document.decoded(span).text.strip() for span in spans)
             edits = [*renamed, *edits]
         text = expanded_text(path, source, document.text, edits)
-        if kind is FileKind.MACHINE and CALL.search(text.text):
+        if kind is FileKind.MACHINE and calls_distribution(text.text):
             text = self._with_draws(text, problems)
         if text.text != document.text or path != source:
             self.texts[path] = text

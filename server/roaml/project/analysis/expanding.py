@@ -7,7 +7,7 @@ import functools
 from collections.abc import Callable
 from typing import Generic, TypeVar
 
-from roaml.distributions import CALL
+from roaml.distributions import calls_distribution
 from roaml.expansion import SystemExpansion, expand, expand_file, needs_expansion
 from roaml.jani.properties import Property
 from roaml.model.kinds import FileKind
@@ -86,7 +86,10 @@ class Expanding:
         """A machine or property file that is not in a system, with the values of its own parameters; `None` if it
         declares and uses none. For `varied`, see `system`."""
         source = self._sources.source(path)
-        if source is None or not ("<parameter" in source.text or "$(var" in source.text or CALL.search(source.text)):
+        if source is None:
+            return None
+        text = source.text
+        if "<parameter" not in text and "$(var" not in text and not calls_distribution(text):
             return None
         if self._sources.kind(path) not in (FileKind.MACHINE, FileKind.XML_PROPERTIES):
             return None
