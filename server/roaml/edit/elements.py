@@ -87,6 +87,14 @@ def remove(
     return Fix(title or f"Remove this `<{element.name}>`", plan, preferred or safe, safe)
 
 
+def without_tags(document: Document, element: Element, title: str) -> Fix:
+    """A fix that replaces an element by its children, which get its indentation."""
+    children, text = element.elements, document.text
+    outer, inner = indent_of(text, element), indent_of(text, children[0]) if children else ""
+    content = text[children[0].span.start : children[-1].span.end] if children else ""
+    return Fix(title, (TextEdit(element.span, content.replace(f"\n{inner}", f"\n{outer}")),))
+
+
 def _last_in(document: Document, parent: Element, *lines: str) -> TextEdit:
     text, outer = document.text, indent_of(document.text, parent)
     if parent.elements:

@@ -34,12 +34,28 @@ _HIDING = frozenset(
 is fixed, so a fix may reveal findings."""
 
 
+_CONSEQUENCES = frozenset(("unused-parameter",))
+"""The rules about what nothing uses, maybe because of a mistake in another file: its removal would hide the mistake."""
+
+
 def harmless(snapshot: Snapshot, code: str, actions: Iterable[CodeAction]) -> Iterator[CodeAction]:
-    """The fixes of a finding of the rule `code` that add no error and no warning, in their order. If each fix of a rule
-    about unreadable parts adds some, all of its fixes are offered, because they may only reveal them."""
+    """The fixes of a finding of the rule `code` that add no error and no warning, in their order.
+
+    If each fix of a rule about unreadable parts adds some, all of its fixes are offered, because they may only reveal
+    them. What nothing uses is not removed while its system has errors or warnings of other rules.
+    """
     actions = tuple(actions)
+    if code in _CONSEQUENCES and any(_has_others(snapshot, action) for action in actions):
+        return
     without = [action for action in actions if action.resources or not _adds_findings(snapshot, action)]
     yield from without or (actions if code in _HIDING else ())
+
+
+def _has_others(snapshot: Snapshot, action: CodeAction) -> bool:
+    """Whether the systems of the file of a fix have errors or warnings of other rules."""
+    assert action.diagnostic is not None
+    problems = _problems(snapshot, _members(snapshot, (action.diagnostic.path,)))
+    return any(code not in _CONSEQUENCES for _, code in problems)
 
 
 def _adds_findings(snapshot: Snapshot, action: CodeAction) -> bool:

@@ -61,7 +61,7 @@ def _halted(context: MachineContext) -> Iterator[tuple[SystemAutomaton, SystemAu
 def _missed(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
     for path in missed(context, behavior, HALT):
         lines, title = ("<bt_return_halted />",), "Add `<bt_return_halted />`"
-        fixes = answered(context, path, behavior.chart.states, title, lines, preferred=True)
+        fixes = answered(context, path, behavior, title, lines, preferred=True)
         yield RULE.at(path.span, _message(path), *fixes, severity=path.severity, related=path.related)
 
 

@@ -120,7 +120,7 @@ def _fixes(context: MachineContext, behavior: Behavior, path: OpenPath, request_
     interface = context.interface("srv", declaration.type.value)
     if isinstance(interface, InterfaceType):
         lines, title = response(declaration, interface), "Answer with `<ros_service_send_response>`"
-        yield from answered(context, path, behavior.chart.states, title, lines, preferred=False)
+        yield from answered(context, path, behavior, title, lines, preferred=False)
 
 
 RULE = Rule("unanswered-request", Severity.ERROR, "A request is not answered on every path.", machine=check, whole=True)

@@ -122,7 +122,7 @@ def _fixes(context: MachineContext, behavior: Behavior, path: OpenPath) -> Itera
                 preferred=False,
             )
     title = "Return `SUCCESS` from the tick"
-    yield from answered(context, path, behavior.chart.states, title, (ANSWER,), preferred=False)
+    yield from answered(context, path, behavior, title, (ANSWER,), preferred=False)
 
 
 def _add_handler(context: MachineContext) -> Iterator[Fix]:

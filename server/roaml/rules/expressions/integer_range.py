@@ -5,10 +5,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Severity
+from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import constant
 from roaml.expr.operators import Operator
-from roaml.expr.tree import ArrayLiteral, Binary, Conditional, Expr, Member, Name, Number, ObjectLiteral, walk
+from roaml.expr.tree import ArrayLiteral, Binary, Call, Conditional, Expr, Member, Name, Number, ObjectLiteral, walk
 from roaml.expr.types import INTEGER_RANGES, Array, Scalar, ScalarKind, Struct, Type, is_kind, unwrap
 from roaml.model.machine import Assign, Handler, statements
 from roaml.model.syntax import Expression
@@ -20,7 +20,7 @@ from roaml.model.values.evaluate import Evaluator, place_of
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.retype import as_type, wide_enough
 from roaml.rules.support.written import written
-from roaml.text import Span
+from roaml.text import Span, TextEdit
 
 MAX_COUNTED = 2**8
 """The maximum number up to which a variable without a limit is assumed to count."""
@@ -77,12 +77,22 @@ def _computed(context: MachineContext, value: TypedValue) -> Iterator[Finding]:
             wider = wide_enough(int(reached), type_)
             verb = "is" if values.value is not None else "can be"
             message = f"the value {verb} {reached:g}, which does not fit into {range_}"
-            yield RULE.at(tree.span, message, *(as_type(context, value, wider) if wider else ()))
+            fixes = (*_limited(tree, above=above), *(as_type(context, value, wider) if wider else ()))
+            yield RULE.at(tree.span, message, *fixes)
         else:
             side = "greater" if above else "smaller"
             message = f"no condition limits this value, so it can become {side} than {range_}"
             yield RULE.at(tree.span, message, severity=Severity.INFORMATION)
         return
+
+
+def _limited(tree: Expr, *, above: bool) -> Iterator[Fix]:
+    """A fix that exchanges `Math.min` and `Math.max` if the wrong side is limited: `Math.min(x, 0)` is at most 0."""
+    wrong, right = ("max", "min") if above else ("min", "max")
+    if not isinstance(tree, Call) or not isinstance(tree.function, Member):
+        return
+    if tree.function.name == wrong and any(constant(argument) is not None for argument in tree.arguments):
+        yield Fix(f"Change to `Math.{right}`", (TextEdit(tree.function.name_span, right),))
 
 
 def _is_consequence(chart: ChartValues, tree: Expr, low: int, high: int) -> bool:

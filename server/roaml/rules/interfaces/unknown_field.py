@@ -5,14 +5,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Severity
+from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import remove
 from roaml.expr.infer import UnknownMember
 from roaml.expr.types import Struct, Unknown, leaves, unwrap
 from roaml.model.machine import Param, RosSend
+from roaml.model.value_types import find_handle
 from roaml.rules.rule import MachineContext, Rule, close_names, did_you_mean, replacements
-from roaml.rules.support.fields import is_ros, sent_part
+from roaml.rules.support.fields import is_ros, part_of, sent_part
 from roaml.suggest import MAX_LISTED, alternatives, listing
+from roaml.text import TextEdit
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -44,10 +46,23 @@ def _fields(context: MachineContext, statement: RosSend) -> Iterator[Finding]:
             advice = f"check the definition of `{part}`, and add the folders of its packages with `ros-path`"
             yield RULE.at(field.name.span, f"{message}; {advice}")
         elif field.name.value not in paths:
-            yield _unknown(context, field, part, paths)
+            yield _unknown(context, statement, field, part, paths)
 
 
-def _unknown(context: MachineContext, field: Param, part: Struct, paths: list[str]) -> Finding:
+def _renamed(context: MachineContext, statement: RosSend) -> Iterator[Fix]:
+    """A fix that names another declaration of the same kind, if only that one has all fields of an element."""
+    own = find_handle(context.machine, statement)
+    names = {field.name.value for field in statement.fields if field.name is not None}
+    fitting = []
+    for other in context.machine.declarations:
+        part = part_of(context, other, statement) if own and other is not own and other.kind is own.kind else None
+        if part is not None and other.handle is not None and names <= {".".join(path) for path, _ in leaves(part)}:
+            fitting.append(other.handle.value)
+    if len(fitting) == 1 and statement.handle is not None:
+        yield Fix(f"Change to `{fitting[0]}`", (TextEdit(statement.handle.span, fitting[0]),))
+
+
+def _unknown(context: MachineContext, statement: RosSend, field: Param, part: Struct, paths: list[str]) -> Finding:
     assert field.name is not None
     name = field.name.value
     inside = [path for path in paths if path.startswith(f"{name}.")]
@@ -58,8 +73,8 @@ def _unknown(context: MachineContext, field: Param, part: Struct, paths: list[st
     if not close:
         close = tuple(path for path in paths if path.rpartition(".")[2] == name)
     message = f"`{part}` has no field `{name}`{_instead(close, paths)}"
-    drop = [] if close else [remove(context.document, field.element)]
-    return RULE.at(field.name.span, message, *replacements(field.name.span, close), *drop)
+    others = () if close else (*_renamed(context, statement), remove(context.document, field.element))
+    return RULE.at(field.name.span, message, *replacements(field.name.span, close), *others)
 
 
 def _instead(close: tuple[str, ...], fields: list[str]) -> str:

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from roaml.diagnostics import Fix, Related, Severity
-from roaml.edit.elements import after, first_in, last_in
+from roaml.edit.elements import after, first_in, last_in, without_tags
 from roaml.language import HL_SCXML
 from roaml.model.behavior.duties import Possible, always, is_suspicious, untaken
 from roaml.model.behavior.explore import Behavior, BehaviorStep, Fault, FaultKind, explore
@@ -323,20 +323,23 @@ def _is_misspelled(element: Element) -> bool:
 def answered(
     context: MachineContext,
     path: OpenPath,
-    states: Iterable[State],
+    behavior: Behavior,
     title: str,
     lines: tuple[str, ...],
     *,
     preferred: bool,
 ) -> Iterator[Fix]:
-    """A fix that adds an answer at the end of an open path. No fix is offered if no place on the path is certain.
+    """Fixes that answer at the end of an open path. No fix is offered if no place on the path is certain.
 
-    If the handler already answers in some parts of one `<if>`, the answer is added to the part that lacks it. Nothing
-    is added after an `<if>` that may already have answered, or to a handler that has no content.
+    If states that answer are never entered, the path probably leads to the wrong state: the first fixes change its
+    target. If the handler already answers in some parts of one `<if>`, the answer is added to the part that lacks it;
+    if the condition of this `<if>` is constant or cannot be evaluated, the first fix answers without it. Nothing is
+    added after an `<if>` that may already have answered, or to a handler that has no content.
 
     Args:
         lines: the elements that answer.
     """
+    states = behavior.chart.states
     step, document = path.step, context.document
     target = step.handler.targets[step.choice]
     element = target.element or step.handler.element
@@ -351,9 +354,24 @@ def answered(
     if any(_may_answer(context.machine, statement, path.loss.duty) for statement in on_entry):
         return
     if not answering:
+        yield from _redirected(context, behavior, path)
         yield Fix(title, (last_in(document, element, *lines),), preferred=preferred)
     elif len(answering) == 1 and isinstance(answering[0], If):
         yield from _in_branches(context, answering[0], path.loss.duty, title, lines)
+
+
+def _redirected(context: MachineContext, behavior: Behavior, path: OpenPath) -> Iterator[Fix]:
+    """A fix for each state that answers and is never entered, which makes it the target of the path."""
+    target = path.step.handler.targets[path.step.choice].state
+    entered = {configuration.state for configuration in behavior.configurations}
+    for state in behavior.chart.states if target is not None else ():
+        if state.id is None or state.id.value in entered:
+            continue
+        bodies = (target.body for handler in state.handlers for target in handler.targets)
+        executed = (*(state.entry.statements if state.entry else ()), *(s for body in bodies for s in body))
+        if any(_may_answer(context.machine, statement, path.loss.duty) for statement in executed):
+            assert target is not None
+            yield Fix(f"Go to the state `{state.id.value}`, which answers", (TextEdit(target.span, state.id.value),))
 
 
 def _in_branches(context: MachineContext, choice: If, duty: Duty, title: str, lines: tuple[str, ...]) -> Iterator[Fix]:
@@ -370,9 +388,22 @@ def _in_branches(context: MachineContext, choice: If, duty: Duty, title: str, li
             else:
                 edit = after(document, part.element, *lines)
             yield Fix(f"{title} in this part of the `<if>`", (edit,), preferred=False)
+    if choice.otherwise is None and len(choice.branches) == 1 and _is_pointless(context, choice):
+        yield without_tags(context.document, choice.element, "Answer without this condition")
     if choice.otherwise is None:
         edit = last_in(document, choice.element, "<else />", *lines)
         yield Fix(f"{title} if no condition holds", (edit,), preferred=False)
+
+
+def _is_pointless(context: MachineContext, choice: If) -> bool:
+    """Whether the first condition of an `<if>` is always the same for what the machines send, or names something that
+    does not exist."""
+    cond = choice.branches[0].cond
+    if cond is None:
+        return False
+    conditions = (values.conditions.get(cond.span) for values in context.values.charts.values())
+    constant = any(known is not None and known.alone.value is not None for known in conditions)
+    return constant or any(value.problems for value in context.typed.values if value.value is cond)
 
 
 def _may_answer(machine: Machine, statement: Statement, duty: Duty) -> bool:
