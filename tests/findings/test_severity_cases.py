@@ -120,3 +120,27 @@ def test_a_port_with_a_number_that_no_model_can_have(tmp_path: Path, number: str
 """
     diagnostics, _ = check_text(tmp_path, text)
     assert [(d.code, d.severity) for d in diagnostics] == [("port-value", severity)]
+
+
+@pytest.mark.parametrize(("value", "severity"), [("_msg.data", Severity.HINT), ("n + _msg.data", Severity.WARNING)])
+def test_a_variable_that_counts_and_is_never_read(value: str, severity: Severity, tmp_path: Path) -> None:
+    text = f"""
+-- main.xml --
+<roaml>
+    <parameters><max_time value="10" unit="s" /></parameters>
+    <node_models><input type="node-ascxml" src="a.ascxml" /></node_models>
+    <properties><input type="jani" src="properties.jani" /></properties>
+</roaml>
+-- a.ascxml --
+<ascxml name="A" version="1.0" initial="a">
+    <datamodel><data id="n" type="int32" expr="0" /></datamodel>
+    <ros_topic_subscriber name="t" topic="/t" type="std_msgs/Int32" />
+    <state id="a">
+        <ros_topic_callback name="t" target="a"><assign location="n" expr="{value}" /></ros_topic_callback>
+    </state>
+</ascxml>
+-- properties.jani --
+{{"properties": []}}
+"""
+    diagnostics, _ = check_text(tmp_path, text)
+    assert [d.severity for d in diagnostics if d.code == "unused-variable"] == [severity]

@@ -96,6 +96,7 @@ from roaml.rules.files import (
 )
 from roaml.rules.interfaces import (
     cancel_never_sent,
+    constant_message,
     duplicate_field,
     duplicate_handle,
     interface_type_conflict,
@@ -191,6 +192,7 @@ from roaml.rules.trees import (
     unused_tree,
 )
 from roaml.rules.variables import (
+    constant_variable,
     duplicate_data,
     invalid_bounds,
     invalid_name,

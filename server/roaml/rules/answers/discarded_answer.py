@@ -7,14 +7,16 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import after
+from roaml.language import HL_SCXML
 from roaml.model.behavior.explore import Behavior
 from roaml.model.behavior.phases import Subject
-from roaml.model.machine import Handler, State
+from roaml.model.machine import Handler, RosSend, State
 from roaml.model.value_types import GOAL_STATUSES, find_handle
 from roaml.model.values.analyse import RESULT_CODE, DataChannel
 from roaml.model.values.describe import described
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support import misspelled
 from roaml.rules.support.answers import behaviors
 
 _HANDLERS = {
@@ -30,6 +32,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     if context.system is None:
         return
     for behavior in behaviors(context):
+        yield from _unhandled(context, behavior)
         for state in behavior.chart.states:
             yield from _results(context, behavior, state)
             yield from _responses(context, behavior, state)
@@ -51,6 +54,26 @@ def _results(context: MachineContext, behavior: Behavior, state: State) -> Itera
                 )
                 assert state.id is not None
                 yield RULE.at(state.id.span, message, *_fixes(context, handlers, code))
+
+
+def _unhandled(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
+    """Report the goals whose results no state handles."""
+    handled = {
+        find_handle(context.machine, handler)
+        for state in behavior.chart.states
+        for handler in state.handlers
+        if handler.trigger is ProtocolPart.RESULT
+    }
+    tags = tuple(_HANDLERS.values())
+    if any(misspelled.among(context.machine.element.walk(), tag, HL_SCXML) for tag in tags):
+        return
+    for statement in behavior.chart.statements:
+        if isinstance(statement, RosSend) and statement.part is ProtocolPart.GOAL:
+            declaration = find_handle(context.machine, statement)
+            if declaration is not None and declaration not in handled:
+                handled.add(declaration)
+                message = "no state handles the result of this goal, so the machine does not notice when the goal ends"
+                yield RULE.at(statement.element.name_span, f"{message}; add a `<{tags[0]}>`")
 
 
 def _is_reported(context: MachineContext, name: str, code: int) -> bool:

@@ -92,9 +92,25 @@ def _finding(context: MachineContext, behavior: Behavior, step: BehaviorStep, fa
     related.append(Related(fault.statement.element.name_span, again))
     # An answer that is sent when a state is entered may be correct on another path into the state.
     shared = where == fault.statement.element.name_span and not _twice(step, fault)
+    if shared and _is_certain(behavior, step, fault):
+        state, tag = behavior.configurations[step.target].state, fault.statement.element.name
+        message = f"this leads to the state `{state}`, which sends `<{tag}>`, but no {_QUESTION[fault.duty.kind]} waits"
+        return RULE.at(step.handler.element.name_span, f"{message} for it; go to another state", related=related[-1:])
     severity = Severity.INFORMATION if shared else None
     message = _message(behavior, step, fault, first)
     return RULE.at(where, message, *_fixes(context, step, fault, first), severity=severity, related=related)
+
+
+def _is_certain(behavior: Behavior, step: BehaviorStep, fault: Fault) -> bool:
+    """Whether nothing waits for the answer whenever the handler of a step is taken, unlike on other paths to it."""
+
+    def is_wrong(other: BehaviorStep) -> bool:
+        return any(f.statement is fault.statement for f in other.faults)
+
+    own = [s for s in behavior.steps if (s.handler, s.choice) == (step.handler, step.choice) and not s.ignored]
+    events = _answers(fault)
+    others = (s for s in behavior.steps if s not in own and not events.isdisjoint(s.sent))
+    return all(map(is_wrong, own)) and any(s.target == step.target and not is_wrong(s) for s in others)
 
 
 def _message(behavior: Behavior, step: BehaviorStep, fault: Fault, first: Statement | None) -> str:

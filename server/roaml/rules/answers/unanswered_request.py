@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.language import HL_SCXML
 from roaml.model.behavior.explore import Behavior
 from roaml.model.behavior.phases import Duty, DutyKind
 from roaml.model.machine import Handler, State
@@ -24,6 +25,7 @@ from roaml.rules.support.answers import (
     named_right,
 )
 from roaml.rules.support.interfaces import response
+from roaml.xml_syntax import Element
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -45,6 +47,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 def _waiting(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
     """Report a state that handles one of two requests of a client and waits for nothing else, although all other states
     that handle this request handle both: the client that sends the other request waits for ever."""
+    yield from _ended(context, behavior)
     entered = {configuration.state for configuration in behavior.configurations}
     requests = {state: _requests(context, state) for state in behavior.chart.states}
     for state, handled in requests.items():
@@ -60,6 +63,27 @@ def _waiting(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
                     "`<ros_service_handle_request>`"
                 )
                 yield RULE.at(state.id.span, message, severity=Severity.WARNING)
+
+
+def _ended(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
+    """Report states without handlers of a server of several services, which it enters although a client may send
+    further requests. A server of one service may answer once, if its client asks once."""
+    names = {step.event.name for step in behavior.steps if step.event and step.event.part is ProtocolPart.REQUEST}
+    requested = sorted(name for name in names if _clients(context, name))
+    entered = {configuration.state for configuration in behavior.configurations}
+    for state in behavior.chart.states if len(requested) > 1 else ():
+        if state.id is None or state.id.value not in entered or any(h.effective for h in state.handlers):
+            continue
+        if state.element.complete and not any(map(_is_unknown, state.element.elements)):
+            message = (
+                f"the machine never leaves the state `{state.id.value}`, which handles no requests, so a request for "
+                f"`{requested[0]}` that arrives in it is never answered; add a `<transition>`"
+            )
+            yield RULE.at(state.id.span, message, severity=Severity.WARNING)
+
+
+def _is_unknown(element: Element) -> bool:
+    return not element.prefix and HL_SCXML.find(element.name) is None
 
 
 def _requests(context: MachineContext, state: State) -> frozenset[str]:

@@ -7,11 +7,12 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.expr.operators import OperatorKind
-from roaml.expr.tree import Binary, Call, Expr, Member, Name, walk
+from roaml.expr.tree import Binary, Call, Expr, Member, Name, is_draw, walk
 from roaml.model.syntax import Expression
 from roaml.model.value_types import ValueUse
 from roaml.model.values.analyse import ChartValues
 from roaml.model.values.describe import described
+from roaml.model.values.domain import exactly
 from roaml.model.values.evaluate import place_of
 from roaml.rules.rule import MachineContext, Rule
 
@@ -26,10 +27,14 @@ def check(context: MachineContext) -> Iterator[Finding]:
             continue
         reported: list[Expr] = []
         for node in walk(value.value.tree):
-            if not _chooses(node) or any(node in walk(outer) for outer in reported):
+            if not (_chooses(node) or _draws(node)) or any(node in walk(outer) for outer in reported):
                 continue
             known = chart.at(node)
-            if known is not None and known.value is not None and _varies(chart, node):
+            if known is None:
+                continue
+            if _draws(node) and known.only is None and known.low == known.high:
+                known = exactly(int(known.low))
+            if known.value is not None and (_varies(chart, node) or _is_same(node) or _draws(node)):
                 reported.append(node)
                 message = f"this is always {described(known)}, because {_why(chart, node)}"
                 yield RULE.at(node.span, message)
@@ -40,6 +45,19 @@ def _chooses(node: Expr) -> bool:
     if isinstance(node, Binary):
         return node.operator.kind in (OperatorKind.EQUALITY, OperatorKind.ORDER)
     return isinstance(node, Call) and isinstance(node.function, Member) and node.function.name in ("min", "max")
+
+
+def _draws(node: Expr) -> bool:
+    """Whether an expression rounds a random number."""
+    return isinstance(node, Call) and any(is_draw(part) for part in walk(node) if part is not node)
+
+
+def _is_same(node: Expr) -> bool:
+    """Whether a comparison compares a variable with itself."""
+    if not isinstance(node, Binary):
+        return False
+    left, right = place_of(node.left), place_of(node.right)
+    return left is not None and left == right
 
 
 def _varies(chart: ChartValues, node: Expr) -> bool:

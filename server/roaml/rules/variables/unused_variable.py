@@ -29,8 +29,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 yield RULE.at(data.id.span, message, _remove(context, data), tags=(Tag.UNNECESSARY,))
             elif data.id.value in written:
                 message = f"the variable `{data.id.value}` is assigned, but its value is never read"
-                related = [Related(span, "assigned here") for span in written[data.id.value]]
-                yield RULE.at(data.id.span, message, related=related)
+                spans, counts = written[data.id.value]
+                related = [Related(span, "assigned here") for span in spans]
+                yield RULE.at(data.id.span, message, related=related, severity=Severity.WARNING if counts else None)
 
 
 def _remove(context: MachineContext, data: Data) -> Fix:
@@ -42,8 +43,9 @@ def _remove(context: MachineContext, data: Data) -> Fix:
     return Fix(title, (removal(text, Span(start, data.element.span.end)),))
 
 
-def _only_written(values: list[Value], chart: Chart) -> dict[str, list[Span]]:
-    """Variable that is assigned and read nowhere else than in its own assignments -> the places of the assignments."""
+def _only_written(values: list[Value], chart: Chart) -> dict[str, tuple[list[Span], bool]]:
+    """Variable that is assigned and read nowhere else than in its own assignments -> the places of the assignments, and
+    whether one of them reads it, as in `n + 1`."""
     assigned: dict[str, list[Span]] = {}
     own: dict[Span, str] = {}
     for statement in chart.statements:
@@ -53,15 +55,15 @@ def _only_written(values: list[Value], chart: Chart) -> dict[str, list[Span]]:
             own[statement.location.span] = root
             if isinstance(statement.value, Expression):
                 own[statement.value.span] = root
-    read = {
-        node.name
-        for value in values
-        if isinstance(value, Expression)
-        for node in walk(value.tree)
-        if isinstance(node, Name) and own.get(value.span) != node.name
-    }
-    read |= _named(chart)
-    return {name: spans for name, spans in assigned.items() if name not in read}
+    read, counting = _named(chart), set()
+    locations = {span for spans in assigned.values() for span in spans}
+    for value in values:
+        for node in walk(value.tree) if isinstance(value, Expression) else ():
+            if isinstance(node, Name) and own.get(value.span) != node.name:
+                read.add(node.name)
+            elif isinstance(node, Name) and value.span not in locations:
+                counting.add(node.name)
+    return {name: (spans, name in counting) for name, spans in assigned.items() if name not in read}
 
 
 def _used(values: list[Value], chart: Chart) -> set[str]:

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The rule `constant-message`, which constant_message.md describes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.expr.tree import Boolean
+from roaml.expr.types import ScalarKind, is_kind, leaves
+from roaml.model.machine import Declaration, RosSend
+from roaml.model.syntax import Expression
+from roaml.model.value_types import find_handle
+from roaml.roles import ProtocolPart
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.fields import sent_part
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    """Report all places where a machine publishes the same Boolean constant on a topic, if there are several."""
+    if not context.automata:
+        return
+    for statements in _published(context).values():
+        constants = [_constant(context, statement) for statement in statements]
+        values = [constant for constant in constants if constant is not None]
+        if len(statements) < 2 or len(values) < len(statements) or len({value.value for value in values}) > 1:
+            continue
+        for value in values:
+            text = "true" if value.value else "false"
+            message = f"all messages that this machine publishes on the topic are `{text}`, so receivers learn nothing"
+            others = [Related(other.span, "also here") for other in values if other is not value]
+            yield RULE.at(value.span, f"{message} from the value; change one of them", related=others)
+
+
+def _published(context: MachineContext) -> dict[Declaration, list[RosSend]]:
+    """The publishers, with the elements that publish."""
+    result: dict[Declaration, list[RosSend]] = {}
+    for chart in context.machine.charts:
+        for statement in chart.statements:
+            if isinstance(statement, RosSend) and statement.part is ProtocolPart.MESSAGE:
+                declaration = find_handle(context.machine, statement)
+                if declaration is not None:
+                    result.setdefault(declaration, []).append(statement)
+    return result
+
+
+def _constant(context: MachineContext, statement: RosSend) -> Boolean | None:
+    """The constant that is sent, if the message has one field, which is a Boolean."""
+    part = sent_part(context, statement)
+    fields = list(leaves(part)) if part is not None else []
+    if len(fields) != 1 or len(statement.fields) != 1 or not is_kind(fields[0][1], ScalarKind.BOOL):
+        return None
+    value = statement.fields[0].value
+    return value.tree if isinstance(value, Expression) and isinstance(value.tree, Boolean) else None
+
+
+RULE = Rule(
+    "constant-message",
+    Severity.WARNING,
+    "All messages that a machine publishes on a topic contain the same Boolean.",
+    machine=check,
+    whole=True,
+)

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The rule `constant-variable`, which constant_variable.md describes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Severity
+from roaml.expr.tree import Index, Member, Name, access_path, walk
+from roaml.expr.types import Scalar, Type, leaves
+from roaml.model.machine import Assign, Chart, Data, Declaration
+from roaml.model.ros import InterfaceType
+from roaml.model.syntax import Expression
+from roaml.model.value_types import INTERFACE_KINDS, ValueUse, find_handle, section_of
+from roaml.model.values.analyse import data_place
+from roaml.model.values.describe import described
+from roaml.model.values.domain import ValueSet, joined
+from roaml.model.values.evaluate import is_within, literal, place_of
+from roaml.roles import ProtocolPart
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.assignments import is_unchanged
+
+_RECEIVED = (ProtocolPart.MESSAGE, ProtocolPart.REQUEST, ProtocolPart.GOAL)
+"""What other machines send without being asked."""
+
+_CONDITIONS = (ValueUse.CONDITION, ValueUse.BRANCH)
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    """Report variables that should change but always have their initial value, except those in constant conditions:
+    constant-condition reports these."""
+    if not context.automata:
+        return
+    for chart in context.machine.charts:
+        assigned = _assigned(chart)
+        candidates = _read(context, chart)
+        for data in chart.data:
+            if data.id is not None and data.id.value in candidates and not data.id.value.isupper():
+                value = _only_value(context, chart, data, assigned.get(data.id.value, []))
+                if value is not None:
+                    yield from _constant(context, chart, data.id.value, data, value, assigned.get(data.id.value, []))
+
+
+def _constant(
+    context: MachineContext, chart: Chart, name: str, data: Data, value: ValueSet, statements: list[Assign]
+) -> Iterator[Finding]:
+    assert data.id is not None
+    shown = described(value)
+    computed = [(s, s.value) for s in statements if isinstance(s.value, Expression) and name in _variables(s.value)]
+    if computed:
+        statement, kept = computed[0]
+        if not is_unchanged(statement):  # self-assignment
+            yield RULE.at(kept.span, f"this never changes `{name}`, which is always {shown}; change the expression")
+    elif value.value:
+        return  # a named constant
+    elif statements and any(isinstance(s.value, Expression) and _variables(s.value) for s in statements):
+        return  # a consequence of other variables
+    elif statements:
+        message = f"`{name}` is always {shown}, because all assignments assign its initial value; assign other values"
+        yield RULE.at(data.id.span, message)
+    else:
+        unread = next(_unread(context, chart, context.typed.variables[chart.scope][name]), None)
+        if unread is not None:
+            message = f"`{name}` is always {shown}, because nothing assigns it, and nothing reads `{unread}`"
+            yield RULE.at(data.id.span, f"{message}; assign received data to it, or remove it")
+
+
+def _only_value(context: MachineContext, chart: Chart, data: Data, statements: list[Assign]) -> ValueSet | None:
+    """The initial value of a scalar variable, if it never has another one."""
+    assert data.id is not None
+    values = context.local_values.charts.get(chart.scope)
+    type_ = context.typed.variables.get(chart.scope, {}).get(data.id.value)
+    if values is None or not isinstance(type_, Scalar) or not isinstance(data.value, Expression):
+        return None
+    known = [dict(literal("", data.value.tree)).get("")]
+    known += [values.at(s.value.tree) if isinstance(s.value, Expression) else None for s in statements]
+    every = [value for value in known if value is not None]
+    together = joined(every)
+    return together if len(every) == len(known) and together.value is not None else None
+
+
+def _assigned(chart: Chart) -> dict[str, list[Assign]]:
+    result: dict[str, list[Assign]] = {}
+    for statement in chart.statements:
+        if isinstance(statement, Assign) and statement.location is not None:
+            result.setdefault((access_path(statement.location.tree) or ("",))[0], []).append(statement)
+    return result
+
+
+def _read(context: MachineContext, chart: Chart) -> set[str]:
+    """The variables that are read, but not in a condition whose result is always the same, and not as the id of a goal,
+    which wrong-goal-id checks."""
+    values = context.local_values.charts.get(chart.scope)
+    read: set[str] = set()
+    explained: set[str] = set()
+    for value in context.typed.values:
+        if value.place.chart is chart and isinstance(value.value, Expression) and value.use is not ValueUse.LOCATION:
+            known = values.conditions.get(value.value.span) if values and value.use in _CONDITIONS else None
+            is_explained = value.use is ValueUse.ARGUMENT or (known is not None and known.alone.value is not None)
+            (explained if is_explained else read).update(_variables(value.value))
+    return read - explained
+
+
+def _variables(expression: Expression) -> set[str]:
+    return {node.name for node in walk(expression.tree) if isinstance(node, Name)}
+
+
+def _unread(context: MachineContext, chart: Chart, type_: Type) -> Iterator[str]:
+    """The places of data that arrive in handlers of a chart, have the kind of the scalar `type_`, and are not read."""
+    for handler in (handler for state in chart.states for handler in state.handlers):
+        part, declaration = handler.trigger, find_handle(context.machine, handler)
+        if part not in _RECEIVED or declaration is None or declaration.type is None:
+            continue
+        interface = context.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
+        struct = dict(interface.parts).get(section_of(part)) if isinstance(interface, InterfaceType) else None
+        read = set(_places(context, declaration))
+        for path, leaf in leaves(struct) if struct is not None else ():
+            place = ".".join((data_place(part) or "", *path))
+            is_alike = isinstance(leaf, Scalar) and isinstance(type_, Scalar) and leaf.kind is type_.kind
+            if is_alike and not any(is_within(place, outer) for outer in read):
+                yield place
+
+
+def _places(context: MachineContext, declaration: Declaration) -> Iterator[str]:
+    """The places that the handlers of a declaration read."""
+    for value in context.typed.values:
+        handler = value.place.handler
+        if handler is None or not isinstance(value.value, Expression):
+            continue
+        if find_handle(context.machine, handler) is declaration:
+            nodes = list(walk(value.value.tree))
+            inner = {node.object.span for node in nodes if isinstance(node, Member | Index)}
+            whole = (node for node in nodes if node.span not in inner)
+            yield from (place for node in whole if (place := place_of(node)) is not None)
+
+
+RULE = Rule(
+    "constant-variable",
+    Severity.WARNING,
+    "A variable that should change always has its initial value.",
+    machine=check,
+    whole=True,
+)
