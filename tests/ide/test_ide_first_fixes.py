@@ -11,6 +11,7 @@ from mending import applied, found
 from roaml.diagnostics import Severity
 from roaml.ide.code_actions import quick_fixes
 from roaml.ide.code_actions.action import CodeAction
+from roaml.ide.code_actions.harmless import _affected
 from roaml.project.settings import Settings
 from roaml.project.workspace import Snapshot, Workspace
 
@@ -153,3 +154,19 @@ def test_an_unused_parameter_stays_while_there_are_other_mistakes() -> None:
     ]
     wrong = unused.replace('prob="0.5"', 'prob="7"')
     assert not fixes(snapshot_with(wrong), "main.xml", "unused-parameter")
+
+
+def test_machines_without_common_data_are_not_checked_for_a_fix() -> None:
+    lamp = '<ascxml name="Lamp" version="1.0" initial="on"><state id="on" /></ascxml>\n'
+    workspace = Workspace((path_of(""),), Settings())
+    main = MAIN.replace('src="gate.ascxml" />', 'src="gate.ascxml" /><input type="node-ascxml" src="lamp.ascxml" />')
+    texts = {"main.xml": main, "gate.ascxml": GATE, "robot.ascxml": ROBOT, "lamp.ascxml": lamp, "p.jani": "{}"}
+    for name, text in texts.items():
+        workspace.open(path_of(name), text)
+    snapshot = workspace.snapshot()
+    paths = {path_of(name) for name in texts}
+    assert set(_affected(snapshot, [path_of("gate.ascxml")])) == paths - {path_of("lamp.ascxml")}
+    assert set(_affected(snapshot, [path_of("lamp.ascxml")])) == paths - {
+        path_of(f"{n}.ascxml") for n in ("gate", "robot")
+    }
+    assert set(_affected(snapshot, [path_of("main.xml")])) == paths

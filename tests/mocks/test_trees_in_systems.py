@@ -15,7 +15,8 @@ from trees_in_systems import FOLDER, files
 
 from examples import TIMES, examples
 from roaml import api
-from roaml.lower.programs.automaton import node_automaton
+from roaml.lower.programs.automaton import NodeAutomaton, node_automaton
+from roaml.lower.programs.code import NodeCode
 
 TICKS = 12
 
@@ -62,6 +63,24 @@ def test_a_parent_knows_the_statuses_of_its_children(drawn: Drawn) -> None:
     for child in recorded:
         built = node_automaton(codes[child.address]).child
         assert (built.answers, built.is_stateless) == (child.answers, child.is_stateless), as_xml(tree)
+
+
+def test_nodes_are_explored_once_for_all_versions_of_a_system(monkeypatch: pytest.MonkeyPatch) -> None:
+    main, texts = f"{FOLDER}/main.xml", files(Drawn("Sequence", (), (Drawn("Act1"), Drawn("Act2"))), TICKS)
+    snapshot = api.check([main], texts=texts).snapshot
+    explored = []
+
+    def explore(code: NodeCode) -> NodeAutomaton:
+        explored.append(code.program.name)
+        return node_automaton(code)
+
+    monkeypatch.setattr("roaml.lower.library_tree.node_automaton", explore)
+    longer = {path: text.replace('unit="ms"', 'unit="s"') for path, text in texts.items()}
+    assert snapshot.with_texts(longer).analysis.library_tree(main) is not None
+    assert not explored
+    reactive = {path: text.replace("Sequence", "ReactiveSequence") for path, text in texts.items()}
+    assert snapshot.with_texts(reactive).analysis.library_tree(main) is not None
+    assert explored[0] == "ReactiveSequence"
 
 
 def test_a_subtree_resets_a_child_that_has_ended() -> None:

@@ -87,9 +87,12 @@ class LibraryTreeBuilder:
     Args:
         system: the system; `System.entries` is not used.
         files: the tree files of the system, by path.
+        known_children: the shapes of nodes that were explored for other trees; `child` adds those of this tree.
     """
 
-    def __init__(self, system: System, files: Mapping[str, TreeFile]) -> None:
+    def __init__(
+        self, system: System, files: Mapping[str, TreeFile], known_children: dict[Hashable, Child | None]
+    ) -> None:
         self.system = system
         self.links = TreeLinks(files, {})
         self.refusals: list[TreeRefusal] = []
@@ -105,7 +108,7 @@ class LibraryTreeBuilder:
         self.board = build_board(self.tree_of_parts, {}, used, self.machine_types())
         self.index = {id(part): index for index, part in enumerate(nodes)}
         self.tick_rate = Fraction(str(system.parameters.tick_rate))
-        self.known_children: dict[Hashable, Child | None] = {}
+        self.known_children = known_children
 
     # ------------------------------------------------------------------- parts
 

@@ -7,11 +7,14 @@ same, because editors request the fixes again whenever the caret moves.
 
 from __future__ import annotations
 
+import itertools
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 
 from roaml.diagnostics import Severity
 from roaml.ide.code_actions.action import CodeAction, WorkspaceEdit
+from roaml.model.kinds import FileKind
+from roaml.model.system import System, SystemAutomaton
 from roaml.project.workspace import Snapshot
 from roaml.text import Span, apply_edits
 
@@ -34,6 +37,9 @@ _HIDING = frozenset(
 is fixed, so a fix may reveal findings."""
 
 
+MAX_TRIED = 10
+"""The maximum number of fixes of a finding that are tried and offered, because each takes a check."""
+
 _CONSEQUENCES = frozenset(("unused-parameter",))
 """The rules about what nothing uses, maybe because of a mistake in another file: its removal would hide the mistake."""
 
@@ -44,7 +50,7 @@ def harmless(snapshot: Snapshot, code: str, actions: Iterable[CodeAction]) -> It
     If each fix of a rule about unreadable parts adds some, all of its fixes are offered, because they may only reveal
     them. What nothing uses is not removed while its system has errors or warnings of other rules.
     """
-    actions = tuple(actions)
+    actions = tuple(itertools.islice(actions, MAX_TRIED))
     if code in _CONSEQUENCES and any(_has_others(snapshot, action) for action in actions):
         return
     without = [action for action in actions if action.resources or not _adds_findings(snapshot, action)]
@@ -77,8 +83,35 @@ def _adds(snapshot: Snapshot, change: WorkspaceEdit) -> bool:
     sources = {path: snapshot.analysis.source(path) for path in change.edits}
     texts = {path: apply_edits(s.text, tuple(sorted(change.edits[path]))) for path, s in sources.items() if s}
     after = snapshot.with_texts(texts)
-    paths = dict.fromkeys((*_members(snapshot, texts), *_members(after, texts)))
-    return bool(_problems(after, paths) - _problems(snapshot, paths))
+    paths = dict.fromkeys((*_affected(snapshot, texts), *_affected(after, texts)))
+    return any(_problems(after, (path,)) - _problems(snapshot, (path,)) for path in paths)
+
+
+def _affected(snapshot: Snapshot, changed: Collection[str]) -> Iterator[str]:
+    """The files whose findings depend on changed files: all members of their systems; but if all changed files are
+    machines, only those machines that exchange data with them."""
+    analysis, members = snapshot.analysis, _members(snapshot, changed)
+    yield from changed
+    near = set(changed)
+    for main in dict.fromkeys(main for path in changed for main in analysis.memberships.get(path, ())):
+        system = analysis.system(main)
+        if system is None or not all(map(system.automata_of, changed)):
+            yield from members
+            return
+        near |= {other.path for name in changed for own in system.automata_of(name) for other in _partners(system, own)}
+    yield from (path for path in members if path in near or analysis.kind(path) is not FileKind.MACHINE)
+
+
+def _partners(system: System, automaton: SystemAutomaton) -> Iterator[SystemAutomaton]:
+    """The automata that exchange messages, requests, goals or events with an automaton."""
+    for use in automaton.outline.interfaces:
+        channel = system.channel(automaton, use)
+        if channel is not None:
+            yield from (endpoint.automaton for endpoint in (*channel.sources, *channel.users))
+    for name in (*(e.event for e in automaton.outline.sent), *(e.event for e in automaton.outline.received)):
+        event = system.events.get(name)
+        if event is not None:
+            yield from (other for other, _ in (*event.senders, *event.receivers))
 
 
 def _members(snapshot: Snapshot, paths: Iterable[str]) -> tuple[str, ...]:

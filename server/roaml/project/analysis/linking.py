@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from typing import TYPE_CHECKING, Protocol
 
 from roaml.expr.types import Struct, Type
@@ -34,6 +34,10 @@ from roaml.scxml.event_data import Round, infer_in_rounds
 
 if TYPE_CHECKING:
     from roaml.lower.library_tree import LibraryTree
+    from roaml.lower.programs.code import Child
+
+MAX_SHAPES = 2000
+"""The maximum number of explored nodes that are remembered."""
 
 
 class ExpandedSystem(Protocol):
@@ -131,7 +135,7 @@ class Linking:
         from roaml.lower.library_tree import LibraryTreeBuilder  # noqa: PLC0415 - most trees do not need it
 
         files = self._tree_files(system)
-        builder = LibraryTreeBuilder(system, files)
+        builder = LibraryTreeBuilder(system, files, self._shapes())
         completed = replace(system, entries=builder.entries())
         self._sources.memo.get("library tree builder", path, (completed, tuple(files.values())), lambda: builder)
         return completed
@@ -149,10 +153,19 @@ class Linking:
             return expanded.library_tree(path)
         from roaml.lower.library_tree import LibraryTreeBuilder  # noqa: PLC0415 - most trees do not need it
 
-        files = self._tree_files(system)
+        files, shapes = self._tree_files(system), self._shapes()
         key = (system, tuple(files.values()))
-        builder = self._sources.memo.get("library tree builder", path, key, lambda: LibraryTreeBuilder(system, files))
+        builder = self._sources.memo.get(
+            "library tree builder", path, key, lambda: LibraryTreeBuilder(system, files, shapes)
+        )
         return self._sources.memo.get("library tree", path, key, builder.tree)
+
+    def _shapes(self) -> dict[Hashable, Child | None]:
+        """The nodes of trees that were explored before, by their shapes. They do not depend on files."""
+        shapes: dict[Hashable, Child | None] = self._sources.memo.get("shapes of nodes", "", (), dict)
+        if len(shapes) > MAX_SHAPES:
+            shapes.clear()
+        return shapes
 
     def forest(self, path: str, system: str | None = None) -> Forest | None:
         """The trees that are analysed together with the tree file `path`, with the definitions of their nodes, in a
