@@ -50,7 +50,9 @@ class TreeEffects:
         """
         instance, bound = self._of_automaton(node)
         numbers = instance.children
-        if bound.program is None or SUCCESS not in self._without(node, ()).answers:
+        if bound.program is None:
+            return waits.get(instance.number, 0)
+        if SUCCESS not in self._without(node, ()).answers:
             return 0
         inside = [self._time_of_child(system, number, waits) for number in numbers]
         own = waits.get(instance.number, 0)

@@ -34,6 +34,7 @@ from roaml.model.machine import (
 )
 from roaml.model.syntax import Expression, Name, PortRead, Value
 from roaml.model.value_types import TypedMachine, ValueUse, find_handle
+from roaml.model.waits import PortWait, port_waits
 from roaml.record import Record
 from roaml.roles import Direction, ProtocolPart, SymbolKind
 from roaml.xml_syntax import Element
@@ -130,6 +131,7 @@ class PluginOutline(Record, frozen=True):
         ticked_children: the literal indices of the children that it ticks; `None` if it may tick any child.
         halts_children: whether it halts children and waits for their answer.
         acts_on_first_halt: whether a halt before its first tick does more than confirm the halt.
+        port_waits: the ports that set how long it takes until it can return SUCCESS.
     """
 
     ticked: bool
@@ -141,6 +143,7 @@ class PluginOutline(Record, frozen=True):
     ticked_children: frozenset[int] | None
     halts_children: bool
     acts_on_first_halt: bool = False
+    port_waits: tuple[PortWait, ...] = ()
 
 
 class MachineOutline(Record, frozen=True, dict=True):
@@ -388,6 +391,7 @@ def _plugin(machine: Machine) -> PluginOutline:
         None if None in ticked else frozenset(index for index in ticked if index is not None),
         any(call.halts for call in calls if call.child) and ProtocolPart.CHILD_HALTED in triggers,
         _acts_on_first_halt(machine),
+        tuple(dict.fromkeys(port_waits(machine))),
     )
 
 

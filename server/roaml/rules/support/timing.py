@@ -10,13 +10,17 @@ from fractions import Fraction
 from roaml.durations import NANOSECONDS, duration_text
 from roaml.exact_number import exact_number
 from roaml.libraries.programs.assembly import programs
+from roaml.model.expand import PortConstant
 from roaml.model.machine import Declaration
 from roaml.model.syntax import Name
-from roaml.model.timing import NANOSECONDS_PER_SECOND, TimerRate, period
+from roaml.model.system import SystemAutomaton
+from roaml.model.timing import NANOSECONDS_PER_SECOND, TimerRate, period, rate
 from roaml.model.tree import TreeNode
+from roaml.model.waits import Wait, waits
 from roaml.record import Record
 from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, TreeContext
+from roaml.rules.support.instances import instances
 from roaml.rules.support.settings import constant_settings, integer_of
 
 
@@ -42,6 +46,35 @@ def durations(context: TreeContext) -> Iterator[tuple[TreeNode, str, int]]:
             milliseconds = integer_of(text)
             if milliseconds is not None and milliseconds > 0:
                 yield node, port, milliseconds * NANOSECONDS["ms"]
+
+
+def port_durations(context: TreeContext) -> Iterator[tuple[TreeNode, SystemAutomaton, str, Fraction, int]]:
+    """The executed nodes whose plugins count ticks of a timer up to the value of a port: node, automaton, port, the
+    rate of the timer in Hz, and the time until the node can return SUCCESS, in ns."""
+    for node, automaton in instances(context):
+        for wait in automaton.outline.plugin.port_waits:
+            value = automaton.port(wait.port)
+            limit = exact_number(value.text) if isinstance(value, PortConstant) else None
+            hertz = _rate_of(automaton, wait.timer)
+            if limit is not None and limit > 0 and hertz is not None:
+                ticks = math.ceil(limit * wait.ticks_per_unit)
+                yield node, automaton, wait.port, hertz, ticks * period(hertz).nanoseconds
+
+
+def _rate_of(automaton: SystemAutomaton, name: str) -> Fraction | None:
+    timer = next((timer for timer in automaton.outline.timers if timer.name == name), None)
+    return rate(automaton, timer.rate, timer.port) if timer is not None else None
+
+
+def counted_waits(context: MachineContext) -> Iterator[tuple[Wait, Fraction, int]]:
+    """The comparisons of a machine with a number that first hold after some ticks of a timer, with the rate of the
+    timer in Hz and the time in ns; in the automaton in which it is least."""
+    for chart in context.machine.charts:
+        for wait in waits(chart):
+            hertz = [rate for a in context.automata if (rate := _rate_of(a, wait.timer)) is not None]
+            if not wait.port and wait.limit > 0 and hertz and len(hertz) == len(context.automata):
+                ticks = math.ceil(wait.ticks(wait.limit))
+                yield wait, max(hertz), ticks * period(max(hertz)).nanoseconds
 
 
 def tick_period(context: TreeContext) -> int | None:

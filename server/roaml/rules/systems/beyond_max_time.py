@@ -11,10 +11,11 @@ from roaml.model.property_links import LinkedFile
 from roaml.model.property_problems import ProblemKind
 from roaml.model.system import System
 from roaml.model.timing import period, periods, rates
+from roaml.model.tree import TreeNode
 from roaml.rules.rule import MachineContext, Rule, SystemContext, TreeContext
 from roaml.rules.support.property_problems import problems
 from roaml.rules.support.settings import place_of
-from roaml.rules.support.timing import duration, durations, timers
+from roaml.rules.support.timing import counted_waits, duration, durations, port_durations, timers
 
 SHORT_RUN = 10**10
 """The `max_time`, in ns, from which on it is probably right if no timer ticks before it: 10 s."""
@@ -34,6 +35,13 @@ def _machine(context: MachineContext) -> Iterator[Finding]:
                 "(`max_time`)"
             )
             yield RULE.at(rate.span, message)
+    for wait, hertz, ns in counted_waits(context):
+        if end < ns and period(hertz).nanoseconds <= end:
+            message = (
+                f"this never holds: `{wait.variable}` counts ticks of `{wait.timer}`, which take {duration(ns)}, and "
+                f"the system runs for {duration(end)} (`max_time`)"
+            )
+            yield RULE.at(wait.span, message)
 
 
 def _tree(context: TreeContext) -> Iterator[Finding]:
@@ -42,6 +50,15 @@ def _tree(context: TreeContext) -> Iterator[Finding]:
         if end is not None and ns > end:
             effect = "it never ends the child" if port == "msec" and node.children else "it never ends"
             message = f"{duration(ns)} is longer than the system runs, {duration(end)} (`max_time`), so {effect}"
+            yield RULE.at(place_of(node, port), message)
+    reported: set[tuple[TreeNode, str]] = set()
+    for node, _, port, hertz, ns in port_durations(context) if end is not None else ():
+        if end is not None and ns > end >= period(hertz).nanoseconds and (node, port) not in reported:
+            reported.add((node, port))
+            message = (
+                f"with this value the node counts ticks of a timer for {duration(ns)}, which is longer than the system "
+                f"runs, {duration(end)} (`max_time`), so it never succeeds"
+            )
             yield RULE.at(place_of(node, port), message)
 
 

@@ -14,7 +14,7 @@ from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.instances import instances
 from roaml.rules.support.property_problems import problems
 from roaml.rules.support.settings import place_of
-from roaml.rules.support.timing import duration, durations, tick_period
+from roaml.rules.support.timing import duration, durations, port_durations, tick_period
 
 
 def _tree(context: TreeContext) -> Iterator[Finding]:
@@ -43,6 +43,9 @@ def _timeouts(context: TreeContext, times: Mapping[TreeNode, tuple[str, int]]) -
         for node, automaton in timed
         if automaton.instance and effects.waits(automaton)
     }
+    for _, automaton, _, _, ns in port_durations(context):
+        if automaton.instance is not None:
+            waits[automaton.instance.number] = ns
     reported: set[TreeNode] = set()
     for node, automaton in timed:
         port, ns = times[node]
@@ -53,8 +56,8 @@ def _timeouts(context: TreeContext, times: Mapping[TreeNode, tuple[str, int]]) -
         if least >= ns:
             reported.add(node)
             message = (
-                f"this timeout of {duration(ns)} ends its child before the child can succeed: its delays take "
-                f"{duration(least)}"
+                f"this timeout of {duration(ns)} ends its child before the child can succeed, which takes "
+                f"{duration(least)} at least"
             )
             yield RULE.at(place_of(node, port), message)
 
