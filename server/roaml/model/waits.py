@@ -4,7 +4,7 @@ a port or a number provides."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 
 from roaml.expr.infer import constant
@@ -55,12 +55,12 @@ class PortWait(Record, frozen=True):
     ticks_per_unit: Fraction
 
 
-def waits(chart: Chart) -> Iterator[Wait]:
-    """The waits in conditions of a chart."""
+def waits(chart: Chart, expressions: Iterable[Expression]) -> Iterator[Wait]:
+    """The waits in expressions of a chart."""
     counts = _counts(chart)
     limits = _limits(chart)
-    for condition in _conditions(chart) if counts else ():
-        for node in walk(condition.tree):
+    for expression in expressions if counts else ():
+        for node in walk(expression.tree):
             if isinstance(node, Binary) and node.operator in _REACHES:
                 smaller, greater = (node.right, node.left) if _REACHES[node.operator] else (node.left, node.right)
                 yield from _wait(node.span, counts, limits, greater, smaller)
@@ -69,7 +69,7 @@ def waits(chart: Chart) -> Iterator[Wait]:
 def port_waits(machine: Machine) -> Iterator[PortWait]:
     """The ports that set how long a plugin takes until it can return SUCCESS."""
     chart = machine.chart
-    for wait in waits(chart):
+    for wait in waits(chart, _conditions(chart)):
         returns = [s for s in chart.executed if isinstance(s, ReturnStatus)]
         early = {s for s in returns if s.status is None or s.status.value == "SUCCESS"} - set(
             _guarded(chart, wait.span)

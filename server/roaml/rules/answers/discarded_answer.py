@@ -33,6 +33,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         return
     for behavior in behaviors(context):
         yield from _unhandled(context, behavior)
+        yield from _exchanged(context, behavior)
         for state in behavior.chart.states:
             yield from _results(context, behavior, state)
             yield from _responses(context, behavior, state)
@@ -74,6 +75,27 @@ def _unhandled(context: MachineContext, behavior: Behavior) -> Iterator[Finding]
                 handled.add(declaration)
                 message = "no state handles the result of this goal, so the machine does not notice when the goal ends"
                 yield RULE.at(statement.element.name_span, f"{message}; add a `<{tags[0]}>`")
+
+
+def _exchanged(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
+    """Report handlers of decisions on goals after which only a rejected goal's results are handled."""
+    waiting = {
+        state.id.value: _by_handle(context, state, ProtocolPart.RESULT).keys()
+        for state in behavior.chart.states
+        if state.id is not None
+    }
+    for handler in (handler for state in behavior.chart.states for handler in state.handlers):
+        declaration = find_handle(context.machine, handler)
+        if handler.trigger is not ProtocolPart.GOAL_RESPONSE or declaration is None or declaration.handle is None:
+            continue
+        names = [target.state.value if target.state else "" for target in handler.targets]
+        handles = [declaration.handle.value in waiting.get(name, ()) for name in names]
+        if handles == [False, True]:
+            message = (
+                f"an accepted goal leads to `{names[0]}`, where its result is discarded, and a rejected one, which has "
+                f"no result, to `{names[1]}`, which waits for it; exchange `accept` and `reject`"
+            )
+            yield RULE.at(handler.element.name_span, message)
 
 
 def _is_reported(context: MachineContext, name: str, code: int) -> bool:

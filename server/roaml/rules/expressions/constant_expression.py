@@ -6,38 +6,87 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
-from roaml.expr.operators import OperatorKind
+from roaml.expr.operators import Operator, OperatorKind
 from roaml.expr.tree import Binary, Call, Expr, Member, Name, is_draw, walk
+from roaml.model.behavior.explore import condition_facts
+from roaml.model.behavior.knowledge import NOTHING, ConditionFacts, variables_in
 from roaml.model.syntax import Expression
 from roaml.model.value_types import ValueUse
 from roaml.model.values.analyse import ChartValues
 from roaml.model.values.describe import described
-from roaml.model.values.domain import exactly
+from roaml.model.values.domain import ValueSet, exactly
 from roaml.model.values.evaluate import place_of
 from roaml.rules.rule import MachineContext, Rule
 
 _USES = (ValueUse.ASSIGNED, ValueUse.FIELD, ValueUse.PARAMETER, ValueUse.OUTPUT)
 
+_CONDITIONS = (ValueUse.CONDITION, ValueUse.BRANCH)
+
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report comparisons, and calls of `Math.min` and `Math.max`, with the same value whatever their variables are."""
-    for value in context.typed.values:
-        chart = context.local_values.charts.get(value.place.chart.scope)
-        if chart is None or value.use not in _USES or not isinstance(value.value, Expression) or value.value.broken:
+    """Report parts of expressions that have the same value whatever their variables are."""
+    for chart in context.machine.charts:
+        values, facts = context.local_values.charts.get(chart.scope), condition_facts(chart)
+        for value in context.typed.values if values is not None else ():
+            is_checked = value.place.chart is chart and (value.use in _USES or value.use in _CONDITIONS)
+            if is_checked and isinstance(value.value, Expression) and not value.value.broken and values is not None:
+                yield from _constant(values, facts, value.value, value.use)
+
+
+def _constant(values: ChartValues, facts: ConditionFacts, expression: Expression, use: ValueUse) -> Iterator[Finding]:
+    """The findings in an expression. In conditions, constant-condition reports what is not arithmetic."""
+    reported: list[Expr] = []
+    for node in walk(expression.tree):
+        if any(node in walk(outer) for outer in reported):
             continue
-        reported: list[Expr] = []
-        for node in walk(value.value.tree):
-            if not (_chooses(node) or _draws(node)) or any(node in walk(outer) for outer in reported):
-                continue
-            known = chart.at(node)
-            if known is None:
-                continue
-            if _draws(node) and known.only is None and known.low == known.high:
-                known = exactly(int(known.low))
-            if known.value is not None and (_varies(chart, node) or _is_same(node) or _draws(node)):
-                reported.append(node)
-                message = f"this is always {described(known)}, because {_why(chart, node)}"
-                yield RULE.at(node.span, message)
+        if use in _CONDITIONS and not (isinstance(node, Binary) and node.operator.kind is OperatorKind.ARITHMETIC):
+            continue
+        constant = _of_itself(node) or _of_logic(facts, node) or _of_values(values, node)
+        if constant is not None:
+            value, why = constant
+            reported.append(node)
+            yield RULE.at(node.span, f"this is always {described(value)}, because {why}")
+
+
+_SAME = {
+    **dict.fromkeys((Operator.EQUAL, Operator.LESS_EQUAL, Operator.GREATER_EQUAL), True),
+    **dict.fromkeys((Operator.NOT_EQUAL, Operator.LESS, Operator.GREATER), False),
+    **dict.fromkeys((Operator.SUBTRACT, Operator.REMAINDER), 0),
+    Operator.DIVIDE: 1,
+}
+"""Operator -> its result if both operands are the same variable."""
+
+
+def _of_itself(node: Expr) -> tuple[ValueSet, str] | None:
+    """The value of an operation on a variable and itself, with the reason."""
+    if not isinstance(node, Binary) or node.operator not in _SAME:
+        return None
+    place = place_of(node.left)
+    if place is None or "[" in place or place != place_of(node.right):
+        return None
+    return exactly(_SAME[node.operator]), f"both sides are `{place}`"
+
+
+def _of_logic(facts: ConditionFacts, node: Expr) -> tuple[ValueSet, str] | None:
+    """The value of a combination of conditions that contradict or complete each other, with the reason."""
+    if not isinstance(node, Binary) or node.operator.kind is not OperatorKind.LOGICAL:
+        return None
+    for result in (True, False):
+        if not any(facts.assume(NOTHING, node, not result)) and variables_in((node,)):
+            return exactly(result), "its parts cover all values" if result else "its parts contradict each other"
+    return None
+
+
+def _of_values(values: ChartValues, node: Expr) -> tuple[ValueSet, str] | None:
+    """The value of a comparison, a limit or a rounded random number, with the values of its operands as the reason."""
+    known = values.at(node)
+    if known is None or not (_chooses(node) or _draws(node)):
+        return None
+    if _draws(node) and known.only is None and known.low == known.high:
+        known = exactly(int(known.low))
+    if known.value is None or not (_draws(node) or _varies(values, node)):
+        return None
+    return known, _why(values, node)
 
 
 def _chooses(node: Expr) -> bool:
@@ -50,14 +99,6 @@ def _chooses(node: Expr) -> bool:
 def _draws(node: Expr) -> bool:
     """Whether an expression rounds a random number."""
     return isinstance(node, Call) and any(is_draw(part) for part in walk(node) if part is not node)
-
-
-def _is_same(node: Expr) -> bool:
-    """Whether a comparison compares a variable with itself."""
-    if not isinstance(node, Binary):
-        return False
-    left, right = place_of(node.left), place_of(node.right)
-    return left is not None and left == right
 
 
 def _varies(chart: ChartValues, node: Expr) -> bool:

@@ -34,6 +34,8 @@ _FROM_SENDERS = {ProtocolPart.MESSAGE: "_msg.", ProtocolPart.EVENT: "_event.data
 _ASKED = {ProtocolPart.REQUEST: "_req.", ProtocolPart.GOAL: "_goal."}
 """What clients ask for -> the beginning of the places of its data."""
 
+_CHOSEN = (*_FROM_SENDERS.values(), *_ASKED.values())
+
 _CONDITIONS = (ValueUse.CONDITION, ValueUse.BRANCH)
 
 MAX_TRIED = 8
@@ -132,7 +134,10 @@ def _letters(text: str) -> str:
 def _numbers_never_sent(context: MachineContext, reported: Collection[Span]) -> Iterator[Finding]:
     """Report the comparisons of a field of a message or event with a constant whose result is the same for all numbers
     that machines send."""
-    stored = {chart.scope: _received_variables(chart) for chart in context.machine.charts}
+    stored = {
+        chart.scope: (_received_variables(chart, _CHOSEN), _received_variables(chart, (*_CHOSEN, "_res.")))
+        for chart in context.machine.charts
+    }
     for value in context.typed.values:
         checkpoint()
         chart = context.values.charts.get(value.place.chart.scope)
@@ -146,10 +151,10 @@ def _numbers_never_sent(context: MachineContext, reported: Collection[Span]) -> 
                     if sent is not None:
                         yield from _compared_with_sent(chart, node, field, other, tree, sent)
                         continue
-                    names = stored[value.place.chart.scope]
+                    chosen, limited = stored[value.place.chart.scope]
                     if node.operator is Operator.EQUAL and value.use in _CONDITIONS:
-                        yield from _never_chosen(context, value.place, chart, node, field, other, names)
-                    elif node.operator.kind is OperatorKind.ORDER and place_of(field) in names:
+                        yield from _never_chosen(context, value.place, chart, node, field, other, chosen)
+                    elif node.operator.kind is OperatorKind.ORDER and place_of(field) in limited:
                         known = chart.at(field)
                         if known is not None:
                             yield from _compared_with_sent(chart, node, field, other, tree, known)
@@ -184,9 +189,8 @@ def _compared_values(context: MachineContext, values: ChartValues, name: str) ->
     return joined(known for n in names if (known := values.at(n)) is not None)
 
 
-def _received_variables(chart: Chart) -> frozenset[str]:
-    """The variables to which all assignments store a field of a message, event, request or goal as it is."""
-    prefixes = (*_FROM_SENDERS.values(), *_ASKED.values())
+def _received_variables(chart: Chart, prefixes: tuple[str, ...]) -> frozenset[str]:
+    """The variables to which all assignments store a received field as it is, whose place begins with a prefix."""
     stores: dict[str, bool] = {}
     for statement in chart.statements:
         name = place_of(statement.location.tree) if isinstance(statement, Assign) and statement.location else None

@@ -12,7 +12,7 @@ from roaml.exact_number import exact_number
 from roaml.libraries.programs.assembly import programs
 from roaml.model.expand import PortConstant
 from roaml.model.machine import Declaration
-from roaml.model.syntax import Name
+from roaml.model.syntax import Expression, Name
 from roaml.model.system import SystemAutomaton
 from roaml.model.timing import NANOSECONDS_PER_SECOND, TimerRate, period, rate
 from roaml.model.tree import TreeNode
@@ -70,7 +70,8 @@ def counted_waits(context: MachineContext) -> Iterator[tuple[Wait, Fraction, int
     """The comparisons of a machine with a number that first hold after some ticks of a timer, with the rate of the
     timer in Hz and the time in ns; in the automaton in which it is least."""
     for chart in context.machine.charts:
-        for wait in waits(chart):
+        values = (v.value for v in context.typed.values if v.place.chart is chart)
+        for wait in waits(chart, (value for value in values if isinstance(value, Expression))):
             hertz = [rate for a in context.automata if (rate := _rate_of(a, wait.timer)) is not None]
             if not wait.port and wait.limit > 0 and hertz and len(hertz) == len(context.automata):
                 ticks = math.ceil(wait.ticks(wait.limit))
