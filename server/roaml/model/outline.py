@@ -32,6 +32,7 @@ from roaml.model.machine import (
     Statement,
     statements,
 )
+from roaml.model.port_checks import PortChoice, PortRefusal, port_choices, port_refusals
 from roaml.model.syntax import Expression, Name, PortRead, Value
 from roaml.model.value_types import TypedMachine, ValueUse, find_handle
 from roaml.model.waits import PortWait, port_waits
@@ -132,6 +133,7 @@ class PluginOutline(Record, frozen=True):
         halts_children: whether it halts children and waits for their answer.
         acts_on_first_halt: whether a halt before its first tick does more than confirm the halt.
         port_waits: the ports that set how long it takes until it can return SUCCESS.
+        port_refusals, port_choices: the values of ports that it refuses, and among which it distinguishes.
     """
 
     ticked: bool
@@ -144,6 +146,8 @@ class PluginOutline(Record, frozen=True):
     halts_children: bool
     acts_on_first_halt: bool = False
     port_waits: tuple[PortWait, ...] = ()
+    port_refusals: tuple[PortRefusal, ...] = ()
+    port_choices: tuple[PortChoice, ...] = ()
 
 
 class MachineOutline(Record, frozen=True, dict=True):
@@ -223,7 +227,7 @@ def outline(machine: Machine, typed: TypedMachine, gaps: Iterable[PlacedGap]) ->
         tuple(
             ThreadOutline(thread.server.value if thread.server else "", thread.count or 1) for thread in machine.threads
         ),
-        _plugin(machine),
+        _plugin(machine, typed),
         _declares_all_ports(machine),
         tuple(summarised(machine, chart) for chart in machine.charts),
     )
@@ -374,7 +378,9 @@ def _port_key(value: Name | PortRead | None) -> str:
     return value.key.value if isinstance(value, PortRead) and value.key else ""
 
 
-def _plugin(machine: Machine) -> PluginOutline:
+def _plugin(machine: Machine, typed: TypedMachine) -> PluginOutline:
+    values = (v.value for v in typed.values if v.use is not ValueUse.LOCATION)
+    expressions = (value for value in values if isinstance(value, Expression))
     triggers = {handler.trigger for handler in _handlers(machine)}
     statements = list(_executed(machine))
     calls = [statement for statement in statements if isinstance(statement, CallChild)]
@@ -392,6 +398,8 @@ def _plugin(machine: Machine) -> PluginOutline:
         any(call.halts for call in calls if call.child) and ProtocolPart.CHILD_HALTED in triggers,
         _acts_on_first_halt(machine),
         tuple(dict.fromkeys(port_waits(machine))),
+        tuple(dict.fromkeys(port_refusals(machine))),
+        tuple(port_choices(machine, expressions)),
     )
 
 

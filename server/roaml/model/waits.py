@@ -58,7 +58,7 @@ class PortWait(Record, frozen=True):
 def waits(chart: Chart, expressions: Iterable[Expression]) -> Iterator[Wait]:
     """The waits in expressions of a chart."""
     counts = _counts(chart)
-    limits = _limits(chart)
+    limits = fixed_variables(chart)
     for expression in expressions if counts else ():
         for node in walk(expression.tree):
             if isinstance(node, Binary) and node.operator in _REACHES:
@@ -170,7 +170,7 @@ def _is_zero(value: Value | None) -> bool:
     return isinstance(value, Expression) and constant(value.tree) == 0
 
 
-def _limits(chart: Chart) -> dict[str, PortRead | Fraction]:
+def fixed_variables(chart: Chart) -> dict[str, PortRead | Fraction]:
     """The variables that hold the value of one port, or the same number all the time."""
     values: dict[str, list[Value | None]] = {}
     for statement in chart.executed:
