@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which fixes of a finding are offered: those that add no error and no warning to the systems of the changed files.
+"""Which fixes of a finding are offered: those that remove it, and add no error and no warning to the systems of the
+changed files.
 
 Each fix is made in a copy of the workspace, which is checked. The result is remembered as long as the files stay the
 same, because editors request the fixes again whenever the caret moves.
@@ -11,7 +12,7 @@ import itertools
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator
 
-from roaml.diagnostics import Severity
+from roaml.diagnostics import Diagnostic, Severity
 from roaml.ide.code_actions.action import CodeAction, WorkspaceEdit
 from roaml.model.kinds import FileKind
 from roaml.model.system import System, SystemAutomaton
@@ -65,7 +66,8 @@ def _has_others(snapshot: Snapshot, action: CodeAction) -> bool:
 
 
 def _adds_findings(snapshot: Snapshot, action: CodeAction) -> bool:
-    """Whether a file that a fix changes, or another one of its systems, has an additional error or warning after it."""
+    """Whether a file that a fix changes, or another one of its systems, has an additional error or warning after it, or
+    still has the finding."""
     diagnostic = action.diagnostic
     assert diagnostic is not None
     members = _members(snapshot, (diagnostic.path,))
@@ -75,16 +77,19 @@ def _adds_findings(snapshot: Snapshot, action: CodeAction) -> bool:
     )
     fix = (diagnostic.code, diagnostic.span, diagnostic.message, action.title)
     if fix not in known:
-        known[fix] = _adds(snapshot, action.make())
+        known[fix] = _harms(snapshot, diagnostic, action.make())
     return known[fix]
 
 
-def _adds(snapshot: Snapshot, change: WorkspaceEdit) -> bool:
+def _harms(snapshot: Snapshot, diagnostic: Diagnostic, change: WorkspaceEdit) -> bool:
     sources = {path: snapshot.analysis.source(path) for path in change.edits}
     texts = {path: apply_edits(s.text, tuple(sorted(change.edits[path]))) for path, s in sources.items() if s}
     after = snapshot.with_texts(texts)
     paths = dict.fromkeys((*_affected(snapshot, texts), *_affected(after, texts)))
-    return any(_problems(after, (path,)) - _problems(snapshot, (path,)) for path in paths)
+    if any(_problems(after, (path,)) - _problems(snapshot, (path,)) for path in paths):
+        return True
+    own, place = (diagnostic.path,), (diagnostic.path, diagnostic.code)
+    return diagnostic.severity >= Severity.WARNING and _problems(after, own)[place] >= _problems(snapshot, own)[place]
 
 
 def _affected(snapshot: Snapshot, changed: Collection[str]) -> Iterator[str]:
