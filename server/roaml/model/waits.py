@@ -17,14 +17,14 @@ from roaml.roles import ProtocolPart
 from roaml.text import Span
 
 
-class Count(Record, frozen=True):
+class TickCount(Record, frozen=True):
     """A variable that starts at 0 and that a tick of a timer increases by at most `step`."""
 
     timer: str
     step: Fraction
 
 
-class Wait(Record, frozen=True):
+class CountedWait(Record, frozen=True):
     """A comparison that first holds after some ticks of a timer.
 
     Attributes:
@@ -55,7 +55,7 @@ class PortWait(Record, frozen=True):
     ticks_per_unit: Fraction
 
 
-def waits(chart: Chart, expressions: Iterable[Expression]) -> Iterator[Wait]:
+def waits(chart: Chart, expressions: Iterable[Expression]) -> Iterator[CountedWait]:
     """The waits in expressions of a chart."""
     counts = _counts(chart)
     limits = fixed_variables(chart)
@@ -89,8 +89,8 @@ _REACHES = {
 
 
 def _wait(
-    span: Span, counts: Mapping[str, Count], limits: Mapping[str, PortRead | Fraction], growing: Expr, limit: Expr
-) -> Iterator[Wait]:
+    span: Span, counts: Mapping[str, TickCount], limits: Mapping[str, PortRead | Fraction], growing: Expr, limit: Expr
+) -> Iterator[CountedWait]:
     name, factor = _scaled(growing)
     if name not in counts or factor <= 0:
         return
@@ -108,7 +108,7 @@ def _wait(
     port = known.key.value if isinstance(known, PortRead) and known.key else ""
     if port or isinstance(known, Fraction):
         value = known if isinstance(known, Fraction) else Fraction(1)
-        yield Wait(span, name, counts[name].timer, port, value, ticks)
+        yield CountedWait(span, name, counts[name].timer, port, value, ticks)
 
 
 def _scaled(tree: Expr) -> tuple[str, Fraction]:
@@ -127,16 +127,16 @@ def _scaled(tree: Expr) -> tuple[str, Fraction]:
     return "", Fraction(0)
 
 
-def _counts(chart: Chart) -> dict[str, Count]:
+def _counts(chart: Chart) -> dict[str, TickCount]:
     """The variables that count ticks: all other assignments set them to 0."""
-    steps: dict[str, list[Count]] = {}
+    steps: dict[str, list[TickCount]] = {}
     others: set[str] = set()
-    counting: dict[Statement, Count] = {}
+    counting: dict[Statement, TickCount] = {}
     for handler in (h for state in chart.states for h in state.handlers):
         for statement in (s for target in handler.targets for s in statements(target.body)):
             step = _step(statement)
             if step is not None and handler.trigger is ProtocolPart.TICK and handler.handle is not None:
-                counting[statement] = Count(handler.handle.value, step)
+                counting[statement] = TickCount(handler.handle.value, step)
     for statement in chart.executed:
         if isinstance(statement, Assign) and statement.location is not None:
             name = statement.location.tree.name if isinstance(statement.location.tree, Name) else ""
@@ -146,7 +146,7 @@ def _counts(chart: Chart) -> dict[str, Count]:
                 others.add(name)
     others |= {data.id.value for data in chart.data if data.id and not _is_zero(data.value)}
     return {
-        name: Count(counts[0].timer, sum((count.step for count in counts), Fraction(0)))
+        name: TickCount(counts[0].timer, sum((count.step for count in counts), Fraction(0)))
         for name, counts in steps.items()
         if name not in others and len({count.timer for count in counts}) == 1
     }

@@ -16,7 +16,7 @@ from roaml.model.syntax import Expression, Name
 from roaml.model.system import SystemAutomaton
 from roaml.model.timing import NANOSECONDS_PER_SECOND, TimerRate, period, rate
 from roaml.model.tree import TreeNode
-from roaml.model.waits import Wait, waits
+from roaml.model.waits import CountedWait, waits
 from roaml.record import Record
 from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, TreeContext
@@ -66,7 +66,7 @@ def _rate_of(automaton: SystemAutomaton, name: str) -> Fraction | None:
     return rate(automaton, timer.rate, timer.port) if timer is not None else None
 
 
-def counted_waits(context: MachineContext) -> Iterator[tuple[Wait, Fraction, int]]:
+def counted_waits(context: MachineContext) -> Iterator[tuple[CountedWait, Fraction, int]]:
     """The comparisons of a machine with a number that first hold after some ticks of a timer, with the rate of the
     timer in Hz and the time in ns; in the automaton in which it is least."""
     for chart in context.machine.charts:
