@@ -240,6 +240,35 @@ def test_a_new_plugin() -> None:
     assert not new_warnings(snapshot, texts)
 
 
+def test_ports_of_different_types() -> None:
+    """Either port can get the type of the other one, in the file of its machine."""
+    plugin = """
+<ascxml name="{name}" version="1.0" initial="ready">
+    <bt_declare_port_in key="{port}" type="{type}" />
+    <state id="ready">
+        <bt_tick target="ready"><bt_return_status status="SUCCESS" /></bt_tick>
+        <bt_halt target="ready"><bt_return_halted /></bt_halt>
+    </state>
+</ascxml>
+"""
+    one = plugin.format(name="One", port="a", type="int8")
+    two = plugin.format(name="Two", port="b", type="int16")
+    inputs = "".join(f'<input type="bt-plugin-ascxml" src="{name}.ascxml" />' for name in ("one", "two"))
+    files = f"""-- main.xml --
+<roaml>
+    <parameters><max_time value="10" unit="s" /></parameters>
+    <behavior_tree><input type="bt.cpp-xml" src="tree.xml" />{inputs}</behavior_tree>
+</roaml>
+-- tree.xml --
+<root BTCPP_format="4"><BehaviorTree ID="Main">
+    <Sequence><SetBlackboard value="3" output_key="x" /><One a="{{x}}" /><Two b="{{‸x}}" /></Sequence>
+</BehaviorTree></root>
+-- one.ascxml --{one}-- two.ascxml --{two}"""
+    first, second = done(files, "Declare `b` of `Two` as int8"), done(files, "Declare `a` of `One` as int16")
+    assert [text.strip() for text in first.values()] == [two.replace("int16", "int8").strip()]
+    assert [text.strip() for text in second.values()] == [one.replace("int8", "int16").strip()]
+
+
 def test_mocks_for_leaves() -> None:
     """For the leaf at the caret, for all leaves of a system, and a new system for a tree without one."""
     two = SYSTEM.replace("<CountUp", '<Turn angle="{sum}" /><CountUp')

@@ -227,15 +227,20 @@ class Forest(Record, frozen=True, eq=False, dict=True):
 
     def _with_defaults(self, node: Node) -> Node:
         """A node of a system, whose ports need not be set if models give them defaults."""
-        defaults = {
-            port.name.value
-            for _, file in self.files
-            for model in file.models
-            for port in model.ports
-            if model.id is not None and model.id.value == node.name and port.name and port.default is not None
-        }
+        defaults = self.defaults.get(node.name, {})
         ports = (replace(port, required=port.required and port.name not in defaults) for port in node.ports)
         return replace(node, ports=tuple(ports)) if defaults else node
+
+    @cached_property
+    def defaults(self) -> Mapping[str, Mapping[str, str]]:
+        """Type of a node, or name of a tree -> port -> its default in a model. If several models have the same name,
+        the first is used."""
+        defaults: dict[str, dict[str, str]] = {}
+        for model in (model for _, file in self.files for model in file.models if model.id is not None):
+            for port in model.ports:
+                if model.id is not None and port.name is not None and port.default is not None:
+                    defaults.setdefault(model.id.value, {}).setdefault(port.name.value, port.default)
+        return defaults
 
     def _is_own(self, node: Node) -> bool:
         """Whether the program has a node of its own with the name of a node of a library: a model in another file of
@@ -315,7 +320,8 @@ class Forest(Record, frozen=True, eq=False, dict=True):
     @cached_property
     def host_entries(self) -> frozenset[str]:
         """The blackboard entries set by the program that executes the trees."""
-        return frozenset(entry for known in self.libraries for entry in known.entries)
+        known = self.libraries if self.system is None else tuple(library(name) for name in LIBRARIES)
+        return frozenset(entry for library_ in known for entry in library_.entries)
 
     @cached_property
     def all_nodes(self) -> tuple[tuple[str, Tree, TreeNode], ...]:

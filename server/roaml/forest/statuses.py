@@ -11,8 +11,8 @@ from __future__ import annotations
 import functools
 from collections.abc import Iterator, Sequence
 
-from roaml.forest.entries import entry_of
 from roaml.forest.forest import Forest
+from roaml.forest.names import entry_of
 from roaml.forest.ports import ports_of
 from roaml.forest.scripts import script_attributes
 from roaml.libraries import Node

@@ -5,26 +5,21 @@ entries to which names in this use refer (docs/spec/mocks.md#blackboard)."""
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 
-from roaml.forest.entries import bound_entry, is_autoremapped
+from roaml.forest.expanded import forest_outlines
 from roaml.forest.forest import Forest
-from roaml.forest.ports import ports_of
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree, FrameNames, TreeLinks, identifier
 from roaml.lower.programs.refusal import TreeRefusal
 from roaml.model.expand import (
-    AUTOREMAP,
     MAX_NODES,
     MAX_SUBTREES,
     ROOT_NUMBER,
     Expansion,
     PortConstant,
-    Written,
     entered_uses,
     expand,
-    tree_file_outline,
 )
-from roaml.model.tree import Tree, TreeNode
+from roaml.model.tree import Tree
 from roaml.text import Location
 
 UNNAMED = "BehaviorTree_0"
@@ -49,7 +44,7 @@ def unfold(forest: Forest) -> ExecutedTree:
     """
     tree = main_tree(forest)
     name = tree.id.value if tree.id is not None else ""
-    files = tuple(tree_file_outline(path, file, partial(_read, forest)) for path, file in forest.files)
+    files = forest_outlines(forest)
     main = next(each for file in files for each in file.trees if each.id == name and (name or file.path == forest.path))
     expansion = expand(files, main, takes_all=True)
     links = TreeLinks(dict(forest.files), {}, _Names)
@@ -127,15 +122,3 @@ def main_tree(forest: Forest) -> Tree:
     if not named:
         raise TreeRefusal(place, "the file has no tree with an `ID`")
     raise TreeRefusal(place, "it is not clear which tree is executed; set `main_tree_to_execute`")
-
-
-def _read(forest: Forest, node: TreeNode) -> Written:
-    """A node of a forest. The attributes of a `<SubTree>` are those of version 4; others are not needed."""
-    if not forest.calls_tree(node):
-        return False, ()
-    is_autoremap = is_autoremapped(node, version_3=forest.is_of_version_3(node))
-    attributes = [(AUTOREMAP, "true")] if is_autoremap else []
-    for setting in ports_of(node):
-        bound = bound_entry(forest, node, setting)
-        attributes.append((setting.attribute.name, setting.value.value if bound is None else f"{{{bound}}}"))
-    return True, tuple(attributes)

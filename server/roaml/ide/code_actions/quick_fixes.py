@@ -378,20 +378,21 @@ def _unused_plugin(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeA
 
 
 def _type_conflict(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAction]:
-    """An action that declares a port with the type of another port that is bound to the same variable."""
+    """Actions that declare one of two ports that are bound to the same variable with the type of the other one."""
     analysis = snapshot.analysis
     facts, node = diagnostic.facts, _node_at(analysis, diagnostic)
     if not isinstance(facts, TypeConflict) or node is None or node.plugin is None:
         return
-    key, other = facts.port, facts.other_type
+    own, other = (node.plugin.value, facts.port), (facts.other_node, facts.other_port)
     for system in analysis.memberships.get(diagnostic.path, ())[:1]:
         linked = analysis.system(system)
-        path = linked.plugin(node.plugin.value)[0] if linked else ""
-        machine = analysis.machine(path) if path else None
-        port = next((p for p in machine.ports if p.key and p.key.value == key), None) if machine else None
-        if port is not None and port.type is not None:
-            change = WorkspaceEdit({path: (TextEdit(port.type.span, other),)})
-            yield _action(diagnostic, f"Declare `{key}` of `{node.plugin.value}` as {other}", known(change))
+        for (plugin, key), type_ in ((own, facts.other_type), (other, facts.type)):
+            path = linked.plugin(plugin)[0] if linked else ""
+            machine = analysis.machine(path) if path else None
+            port = next((p for p in machine.ports if p.key and p.key.value == key), None) if machine else None
+            if port is not None and port.type is not None:
+                change = WorkspaceEdit({path: (TextEdit(port.type.span, type_),)})
+                yield _action(diagnostic, f"Declare `{key}` of `{plugin}` as {type_}", known(change))
 
 
 # --------------------------------------------------------------------- names

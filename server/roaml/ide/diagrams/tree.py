@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 
-from roaml.forest.entries import entry_of, is_autoremapped
+from roaml.forest.names import entry_of, is_autoremapped
 from roaml.forest.ports import ports_of as node_ports
 from roaml.ide.diagrams.diagram import (
     Detail,

@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Protocol
 
-from roaml.forest.entries import entry_of
+from roaml.forest.names import entry_of
 from roaml.forest.ports import ports_of
 from roaml.libraries import Node
 from roaml.libraries.version import NEWEST_VERSION, Version

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from roaml.diagnostics import Severity
 from roaml.forest.cpp_types import ANY, STRING
-from roaml.forest.entries import Entries, Key
+from roaml.forest.entries import Entries
 from roaml.forest.forest import Forest
 from roaml.forest.scripts import ScriptUse, scripts_of
 from roaml.libraries.version import CONSTANTS_TYPED_SINCE
@@ -36,7 +36,8 @@ def type_problems(context: TreeContext) -> Iterator[tuple[ScriptUse, ScriptProbl
         own = tree.id.value if tree.id else ""
 
         def lookup(name: str, own: str = own) -> Type:
-            return types.get(entries.entry(own, name), Type.UNKNOWN)
+            known = {types.get(key, Type.UNKNOWN) for key in entries.entries(own, name)}
+            return known.pop() if len(known) == 1 else Type.UNKNOWN
 
         if problems:
             continue
@@ -46,35 +47,32 @@ def type_problems(context: TreeContext) -> Iterator[tuple[ScriptUse, ScriptProbl
             yield from ((use, problem, True, Severity.WARNING) for problem in assignments_as_conditions(script))
 
 
-def _types(entries: Entries) -> dict[Key, Type]:
+def _types(entries: Entries) -> dict[str, Type]:
     """The types of the entries whose ports all have the same type."""
-    types_of: Mapping[Key, set[str]] = {
-        key: {use.type for use in uses if not use.script} for key, uses in entries.by_entry.items()
+    types_of: Mapping[str, set[str]] = {
+        key: {bound.use.type for bound in uses if not bound.use.script} for key, uses in entries.by_entry.items()
     }
     single = {key: next(iter(types)) for key, types in types_of.items() if len(types) == 1}
     return {key: _TYPES[name] for key, name in single.items() if name != ANY and name in _TYPES}
 
 
-def _assigned(forest: Forest, entries: Entries) -> dict[Key, Type]:
+def _assigned(forest: Forest, entries: Entries) -> dict[str, Type]:
     """The types of the entries that only scripts use. An entry has a type if all assignments that create it assign
     values of one type."""
-    others = {key for key, uses in entries.by_entry.items() if not all(use.script for use in uses)}
-    types: dict[Key, set[Type]] = {}
+    others = {key for key, uses in entries.by_entry.items() if not all(bound.use.script for bound in uses)}
+    types: dict[str, set[Type]] = {}
     for _, tree, node in forest.all_nodes:
         own = tree.id.value if tree.id else ""
         for use in scripts_of(forest, node):
             for name, type_ in created_in(use.attribute.value):
-                types.setdefault(entries.entry(own, name), set()).add(type_)
+                for key in entries.entries(own, name):
+                    types.setdefault(key, set()).add(type_)
     return {key: given.pop() for key, given in types.items() if len(given) == 1 and key not in others}
 
 
-def _constants(forest: Forest, entries: Entries) -> dict[Key, Type]:
+def _constants(forest: Forest, entries: Entries) -> dict[str, Type]:
     """The entries that only constants of `<SubTree>` nodes set, if the version of the library stores these as texts."""
     if forest.settings.version >= CONSTANTS_TYPED_SINCE:
         return {}
-    writers = {key: [use for use in uses if use.writes is not False] for key, uses in entries.by_entry.items()}
-    return {
-        key: Type.TEXT
-        for key, uses in writers.items()
-        if uses and all(use.node.is_subtree and not use.script and use.creates for use in uses)
-    }
+    writers = {key: [b.use for b in uses if b.use.writes is not False] for key, uses in entries.by_entry.items()}
+    return {key: Type.TEXT for key, uses in writers.items() if uses and all(use.into for use in uses)}

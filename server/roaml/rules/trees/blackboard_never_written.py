@@ -3,119 +3,136 @@
 
 from __future__ import annotations
 
-import functools
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from roaml.diagnostics import Finding, Related, Severity
-from roaml.forest.entries import Entries, Key, Use
+from roaml.forest.entries import BoundUse, Entries, Use
 from roaml.forest.forest import Forest
-from roaml.libraries import LIBRARIES, library
 from roaml.model.gaps import GapAct
-from roaml.model.system import System
+from roaml.model.tree import is_variable_name
 from roaml.roles import Direction
 from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, replacements
-from roaml.rules.support.blackboard import described, places, renamings
+from roaml.rules.support.blackboard import described
 from roaml.rules.support.entries import entries_of
-from roaml.rules.support.forest import forest_of
+from roaml.rules.support.forest import trees_of
 from roaml.suggest import nearest_name
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
-    if context.system is not None:
-        yield from _of_system(context, context.system)
-    elif (forest := forest_of(context)) is not None:
-        yield from _alone(context, forest)
-
-
-def _of_system(context: TreeContext, system: System) -> Iterator[Finding]:
-    board = system.blackboard
-    set_ = [name for name, ports in board.items() if any(bound.port.written for bound in ports)]
-    for variable, ports in board.items():
-        entry = system.entries.get(variable)
-        if variable in set_ or (entry is not None and entry.written) or system.may(GapAct.VARIABLE, variable):
-            continue
-        if variable in _hosted() and not any(bound.automaton.path for bound in ports):
-            continue
-        close = close_names(variable, set_)
-        for bound, span, written in places(context, variable, ports):
-            if bound.port.direction is Direction.OUT:
-                yield RULE.at(span, f"`{bound.automaton.outline.name}` never writes its port `{bound.port.key}`")
-            else:
-                message = f"no node writes {described(variable, written)}{did_you_mean(close)}"
-                yield RULE.at(span, message, *renamings(span, written, variable, close))
-
-
-@functools.cache
-def _hosted() -> frozenset[str]:
-    """The blackboard entries that the programs of libraries set, for example those of Nav2."""
-    return frozenset(entry for name in LIBRARIES for entry in library(name).entries)
-
-
-# ------------------------------------------------------------ trees without a system
-
-
-def _alone(context: TreeContext, forest: Forest) -> Iterator[Finding]:
+    forest = trees_of(context)
+    if forest is None:
+        return
     entries = entries_of(forest)
-    executed = forest.executed
-    by_entry = entries.by_entry
-    written = {key for key, uses in by_entry.items() if any(use.writes is not False for use in uses)}
-    names: dict[str, dict[str, Key]] = {}
-    for key in written:
-        for use in by_entry[key]:
-            names.setdefault(use.tree, {}).setdefault(use.name, key)
+    written = {key for key, uses in entries.by_entry.items() if any(bound.use.writes is not False for bound in uses)}
+    names = _names(entries, written)
+    reported: set[Use] = set()
     misspelled: dict[Use, Use] = {}
-    for key, uses in by_entry.items():
-        hosted = any(use.name.removeprefix("@") in forest.host_entries for use in uses)
-        if key in written or not any(use.reads for use in uses):
+    for key, uses in entries.by_entry.items():
+        if key in written or not _is_needed(forest, entries, uses):
             continue
-        if any(entries.is_intended(use.tree, use.name) for use in uses):
-            continue  # port-value reports the output port that should write the entry
-        for use in uses:
-            if use.path == context.source.path and _is_outermost(forest, entries, use) and use.tree in executed:
-                known = names.get(use.tree, {})
-                near = nearest_name(use.name, known)
-                is_right = hosted or len(uses) > 1 or use.name in _keys(use)
-                writer = _only_written(by_entry[known[near]]) if near is not None and is_right else None
+        is_hosted = _is_hosted(forest, uses)
+        for bound in uses:
+            use = bound.use
+            if use in reported or use.path != context.source.path or not _is_outermost(forest, bound):
+                continue
+            if _is_output(forest, use):
+                reported.add(use)
+                yield RULE.at(use.span, f"`{_name(use)}` never writes its port `{use.port}`")
+                continue
+            known = {name: key for name, key in names.get(use.tree, {}).items() if name != use.name}
+            close = _close(forest, use.name, known)
+            if forest.system is None:
+                is_right = is_hosted or len({other.use for other in uses}) > 1 or use.name == use.port
+                writer = _only_written(entries.by_entry[known[close[0]]]) if close and is_right else None
                 if writer is not None and writer.path == use.path:
                     misspelled.setdefault(writer, use)
-                elif not hosted:
-                    yield _unwritten(use, near)
+                    continue
+            if not is_hosted:
+                reported.add(use)
+                yield _unwritten(forest, bound, close)
     for writer, reader in misspelled.items():
         yield _unread(writer, reader)
 
 
-def _is_outermost(forest: Forest, entries: Entries, use: Use) -> bool:
-    """Whether a use reads an entry, or passes it to a subtree, in the outermost tree that has a name for the entry."""
-    if use.script or "{" in use.name or not (use.reads or use.remaps):
+def _names(entries: Entries, written: set[str]) -> Mapping[str, Mapping[str, str]]:
+    """Name of a tree -> name of a written entry in it -> key of the entry. The order is that of execution."""
+    names: dict[str, dict[str, str]] = {}
+    for key, uses in entries.by_entry.items():
+        for bound in uses if key in written else ():
+            names.setdefault(bound.use.tree, {}).setdefault(bound.use.name, key)
+    return names
+
+
+def _is_needed(forest: Forest, entries: Entries, uses: tuple[BoundUse, ...]) -> bool:
+    """Whether a node needs that the entry is written, and no other finding can be the reason why it is not."""
+    if not any(bound.use.reads or _is_output(forest, bound.use) for bound in uses):
         return False
-    return (use.tree, use.name) not in entries.remapped and not _is_parameter(forest, use)
+    if any(entries.is_intended(bound.use.tree, bound.use.name) for bound in uses):
+        return False  # port-value reports the output port that should write the entry
+    variable = uses[0].variable
+    return _is_valid(forest, variable) and (forest.system is None or not forest.system.may(GapAct.VARIABLE, variable))
+
+
+def _is_valid(forest: Forest, name: str) -> bool:
+    """Whether a name can be that of an entry; port-value reports other names."""
+    return is_variable_name(name) if forest.system is not None else "{" not in name
+
+
+def _is_hosted(forest: Forest, uses: Iterable[BoundUse]) -> bool:
+    """Whether the program that executes the trees sets the entry, as that of Nav2 does."""
+    is_known = any(bound.use.name.removeprefix("@") in forest.host_entries for bound in uses)
+    declared = (forest.known_node(bound.use.node) for bound in uses)
+    return is_known and not any(node is not None and forest.is_machine(node) for node in declared)
+
+
+def _is_output(forest: Forest, use: Use) -> bool:
+    """Whether a use is an output port that the machine of the node never writes."""
+    if forest.system is None or use.script or use.remaps or use.writes is not False:
+        return False
+    known = forest.known_node(use.node)
+    port = known.port(use.port) if known is not None else None
+    return port is not None and port.direction is Direction.OUT
+
+
+def _is_outermost(forest: Forest, bound: BoundUse) -> bool:
+    """Whether a use reads an entry, or passes it to a subtree, in the outermost tree that has a name for the entry."""
+    use = bound.use
+    if not bound.executed or use.script or not _is_valid(forest, use.name):
+        return False
+    if not (use.reads or use.remaps or _is_output(forest, use)):
+        return False
+    return use.name not in bound.frame.remapped and not _is_parameter(forest, use)
 
 
 def _is_parameter(forest: Forest, use: Use) -> bool:
     """Whether the model of a subtree has a port for an entry; missing-port reports a port that is not set."""
-    model = forest.subtree_models.get(use.tree)
+    model = forest.subtree_models.get(use.tree) if forest.system is None else None
     port = model.port(use.name) if model is not None else None
     return port is not None and port.direction.reads
 
 
-def _keys(use: Use) -> set[str]:
-    """The attributes of the node that name the entry, as in `path="{path}"`, where the name is certainly intended."""
-    return {attribute.name for attribute in use.node.element.attributes if attribute.value_span == use.span}
+def _close(forest: Forest, name: str, known: Mapping[str, str]) -> tuple[str, ...]:
+    """The written entries with similar names. Without a system, the name may be right."""
+    if forest.system is not None:
+        return close_names(name, known)
+    near = nearest_name(name, known)
+    return () if near is None else (near,)
 
 
-def _only_written(uses: Iterable[Use]) -> Use | None:
+def _only_written(uses: Iterable[BoundUse]) -> Use | None:
     """The place that writes an entry, if its name is written there and nothing reads the entry."""
-    writers = [use for use in uses if use.writes]
-    is_read = any(use.reads is not False or use.remaps for use in uses)
+    places = {bound.use: None for bound in uses}
+    writers = [use for use in places if use.writes]
+    is_read = any(use.reads is not False or use.remaps for use in places)
     return None if is_read or len(writers) != 1 or writers[0].script else writers[0]
 
 
-def _unwritten(use: Use, near: str | None) -> Finding:
-    close = (near,) if near else ()
-    hint = did_you_mean(close) or "; the program that runs the tree must set it"
-    fixes = replacements(use.span, tuple(f"{{{name}}}" for name in close))
-    severity = Severity.WARNING if close else Severity.INFORMATION
-    return RULE.at(use.span, f"no node writes {described(use.name, use.name)}{hint}", *fixes, severity=severity)
+def _unwritten(forest: Forest, bound: BoundUse, close: tuple[str, ...]) -> Finding:
+    use, certain = bound.use, forest.system is not None
+    hint = did_you_mean(close) or ("" if certain else "; the program that runs the tree must set it")
+    fixes = () if use.is_default else replacements(use.span, tuple(f"{{{name}}}" for name in close))
+    severity = Severity.ERROR if certain else Severity.WARNING if close else Severity.INFORMATION
+    return RULE.at(use.span, f"no node writes {described(bound.variable, use.name)}{hint}", *fixes, severity=severity)
 
 
 def _unread(writer: Use, reader: Use) -> Finding:
@@ -124,6 +141,10 @@ def _unread(writer: Use, reader: Use) -> Finding:
     related = [Related(reader.span, f"`{reader.name}` is read here")]
     fixes = replacements(writer.span, (f"{{{reader.name}}}",))
     return RULE.at(writer.span, message, *fixes, severity=Severity.WARNING, related=related)
+
+
+def _name(use: Use) -> str:
+    return use.node.plugin.value if use.node.plugin is not None else ""
 
 
 RULE = Rule("blackboard-never-written", Severity.ERROR, "A blackboard variable is read but never written.", tree=check)

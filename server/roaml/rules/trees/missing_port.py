@@ -8,8 +8,8 @@ from collections.abc import Iterator, Sequence
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Symbol
 from roaml.forest.cpp_types import normal
-from roaml.forest.entries import is_autoremapped
 from roaml.forest.forest import CPP, Forest, is_model_of
+from roaml.forest.names import is_autoremapped
 from roaml.forest.ports import missing_ports, probable_ports
 from roaml.libraries import LIBRARIES, Node, Port, library
 from roaml.model.tree import TreeNode

@@ -11,8 +11,8 @@ from roaml.expr.infer import ADVICE, constant, infer
 from roaml.expr.parse import parse
 from roaml.expr.types import BASE_TYPES, BOOL, INTEGER_RANGES, ScalarKind, fits, is_kind, is_number
 from roaml.forest.cpp_types import is_converted, mismatch
-from roaml.forest.entries import entry_of
 from roaml.forest.forest import Forest
+from roaml.forest.names import entry_of
 from roaml.libraries import Node, Port
 from roaml.libraries.scripts import SCRIPT
 from roaml.model.expand import PortConstant

@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
-from roaml.forest.entries import Key
 from roaml.forest.forest import Forest
 from roaml.forest.scripts import script_attributes
 from roaml.model.tree import Tree, nodes
@@ -48,13 +47,13 @@ _NOTHING = "nothing in the trees creates"
 
 def _uncreated(context: TreeContext, forest: Forest) -> Iterator[Finding]:
     entries = entries_of(forest)
-    created: set[Key] = set()
+    created: set[str] = set()
     names: dict[str, list[str]] = {}
     for key, uses in entries.by_entry.items():
-        if any(use.creates for use in uses):
+        if any(bound.use.creates for bound in uses):
             created.add(key)
-            for use in uses:
-                names.setdefault(use.tree, []).append(use.name)
+            for bound in uses:
+                names.setdefault(bound.use.tree, []).append(bound.use.name)
     for tree, _, script, problems in scripts(context):
         own = tree.id.value if tree.id else ""
         for name, operator in _names(script) if not problems else ():
@@ -63,7 +62,7 @@ def _uncreated(context: TreeContext, forest: Forest) -> Iterator[Finding]:
             plain = name.name.removeprefix("@")
             if entries.is_intended(own, name.name):
                 continue  # port-value reports the output port that should create the entry
-            if entries.entry(own, name.name) not in created and plain not in forest.host_entries:
+            if not entries.entries(own, name.name) <= created and plain not in forest.host_entries:
                 yield _finding(name, operator, nearest_name(name.name, names.get(own, ())), _is_closed(forest, tree))
 
 

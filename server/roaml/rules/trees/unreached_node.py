@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity, Tag
-from roaml.forest.entries import entry_of
 from roaml.forest.forest import CPP
+from roaml.forest.names import entry_of
 from roaml.forest.statuses import statuses_of
 from roaml.model.tree import PortSetting, TreeNode
 from roaml.rules.rule import Rule, TreeContext
