@@ -31,7 +31,7 @@ from as2fm_lsp.session import Moment, Session
 from roaml.diagnostics import Diagnostic
 from roaml.ide.names.occurrences import uses
 from roaml.interruption import Interrupted
-from roaml.project.provisional import Checked, after, checked
+from roaml.project.provisional import MIN_CHARACTERS, Checked, after, checked
 from roaml.project.workspace import Snapshot
 from roaml.text import SourceFile
 
@@ -159,8 +159,11 @@ class Diagnostics:
             log.exception("%s cannot be checked", path)
         else:
             self._send(path, diagnostics, moment.versions.get(path))
-            if path in moment.versions and (result := checked(moment.snapshot(path).checker, path)) is not None:
-                self._checked[path] = result
+            is_long = len(self.session.text(path) or "") >= MIN_CHARACTERS
+            if is_long and path in moment.versions:
+                result = checked(moment.snapshot(path).checker, path)
+                if result is not None:
+                    self._checked[path] = result
 
     async def _interruptible(self, compute: Callable[[], T]) -> T:
         """The result of a computation that stops when a message arrives and begins again afterwards. After
@@ -195,18 +198,18 @@ class Diagnostics:
     def of(self, moment: Moment, path: str) -> list[types.Diagnostic]:
         """The diagnostics of a file, in the protocol's types; empty if the file does not exist."""
         snapshot = moment.snapshot(path)
-        source = snapshot.analysis.source(path)
-        if source is None:
-            return []
-        return self.converted(snapshot, source, snapshot.checker.diagnostics(path))
+        diagnostics = snapshot.checker.diagnostics(path)
+        source = next((diagnostic.source for diagnostic in diagnostics), None)
+        return [] if source is None else self.converted(snapshot, source, diagnostics)
 
     def converted(
         self, snapshot: Snapshot, source: SourceFile, diagnostics: Iterable[Diagnostic]
     ) -> list[types.Diagnostic]:
         """Diagnostics of a file, in the protocol's types."""
         diagnostics = tuple(diagnostics)
-        related = {r.location.path for d in diagnostics for r in d.related}
-        sources: dict[str, SourceFile] = {p: s for p in related if (s := snapshot.analysis.source(p)) is not None}
+        others = {r.location.path for d in diagnostics for r in d.related} - {source.path}
+        sources = {path: other for path in others if (other := snapshot.analysis.source(path)) is not None}
+        sources[source.path] = source
         return [self.session.convert.diagnostic(d, source, sources) for d in diagnostics]
 
     def document_report(

@@ -15,7 +15,6 @@ from roaml.jani.model import Model as JaniModel
 from roaml.model.expand import MAX_NODES, MAX_SUBTREES
 from roaml.model.size import Limits, total
 from roaml.project.settings import Settings
-from roaml.project.translation import size_of_translation
 from roaml.record import Record
 
 BY_NAME = {dimension.name: dimension for dimension in DIMENSIONS}
@@ -76,7 +75,7 @@ def parts(model: JaniModel) -> int:
 @pytest.mark.parametrize("model", [*systems(), *GROWN], ids=lambda model: model.name)
 def test_the_size_is_known_beforehand(model: Model) -> None:
     system = api.load(model.main, model.ros_paths, Settings(), model.texts)
-    size = size_of_translation(system.analysis, model.main)
+    size = system.analysis.size_of_translation(model.main)
     assert size is not None
     translated = api.to_jani(system)
     # The clock and the threads of actions have some variables of their own.

@@ -85,15 +85,14 @@ class Checked(Record, frozen=True, eq=False):
 
 def checked(runner: RuleRunner, path: str) -> Checked | None:
     """A machine after a complete check; `None` if it is short, is not in the language, or cannot be analysed."""
-    analysis = runner.analysis
-    source, systems = analysis.source(path), analysis.memberships.get(path, ()) or (None,)
-    if source is None or len(source.text) < MIN_CHARACTERS:
+    file = runner.analysis.checked_file(path)
+    if file is None or len(file.source.text) < MIN_CHARACTERS:
         return None
-    contexts = [runner.contexts(path, system) for system in systems]
-    document = analysis.document(path)
+    source, document = file.source, file.document
+    contexts = [runner.contexts(subject) for subject in file.subjects]
     if document is None or document.root is None or None in contexts:
         return None
-    root, environments = document.root, map(analysis.environment, systems)
+    root, environments = document.root, [runner.analysis.environment(subject.system_path) for subject in file.subjects]
     blank, parts = _without_content(source.text, root.elements), tuple(element.span for element in root.elements)
     empty = parse_xml(blank)
     surroundings = tuple(

@@ -8,15 +8,11 @@ from collections.abc import Iterator
 from roaml.comparison import read_comparison
 from roaml.jani.properties import Property
 from roaml.lower.program import TranslatableSystem
-from roaml.lower.size import size_of
 from roaml.model.expand import nodes_of
 from roaml.model.kinds import FileKind
-from roaml.model.machine import Machine
 from roaml.model.property_file import PortVariableKind
 from roaml.model.property_links import LinkedFile, LinkedProperty
 from roaml.model.property_ports import LinkedVariable
-from roaml.model.size import Size
-from roaml.model.system import System
 from roaml.model.tree import TreeNode
 from roaml.project.analysis import Analysis
 from roaml.project.placed import placed
@@ -100,22 +96,5 @@ def program_of(analysis: Analysis, path: str) -> TranslatableSystem:
     place = Location(path, file.element.name_span)
     library = analysis.library_tree(path)
     return TranslatableSystem(
-        system, _machines(analysis, system), analysis.environment(path), place, nodes, system.parameters, library
+        system, analysis.machines_in(system), analysis.environment(path), place, nodes, system.parameters, library
     )
-
-
-def size_of_translation(analysis: Analysis, path: str) -> Size | None:
-    """The size of the translation of a system, even if it has errors; `None` if there is no system in the file."""
-    system, file = analysis.system(path), analysis.system_file(path)
-    if system is None or file is None:
-        return None
-    machines = _machines(analysis, system)
-    environment, place = analysis.environment(path), Location(path, file.element.name_span)
-    program = TranslatableSystem(system, machines, environment, place, {}, system.parameters)
-    key = (system, tuple(machines.items()))
-    return analysis.memo.get("size", path, key, lambda: size_of(program, analysis.globals(path)))
-
-
-def _machines(analysis: Analysis, system: System) -> dict[str, Machine]:
-    paths = dict.fromkeys(path for path, _ in (*system.nodes, *system.plugins))
-    return {path: machine for path in paths if (machine := analysis.machine(path)) is not None}

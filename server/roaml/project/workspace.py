@@ -66,14 +66,8 @@ class Snapshot:
     def files(self) -> tuple[str, ...]:
         """All files of the workspace that are checked, without duplicates: those of systems, and other supported
         files."""
-        analysis = self.analysis
-        files = dict.fromkeys(path for system in analysis.system_paths for path in analysis.files_of(system))
-        for path in self._listed:
-            if path not in files and analysis.kind(path) not in _NOT_BY_THEMSELVES:
-                files[path] = None
-        if origin := self.checker.settings.origin:  # the configuration may be outside of the folders
-            files[origin] = None
-        return tuple(path for path in files if analysis.source(path) is not None)
+        origin = self.checker.settings.origin  # the configuration may be outside of the folders
+        return self.analysis.present((*self._listed, *((origin,) if origin else ())), _NOT_BY_THEMSELVES)
 
     def configuration_of(self, system: str) -> str:
         """The configuration file that applies to a system; it need not exist."""

@@ -6,8 +6,8 @@
   cached by the text of the file, types and outlines by the text and the declarations, a system by the outlines of
   its files.
 - An analysis reports no findings; `roaml.project.checking` runs the rules.
-- The work is divided by subject. A module uses only those before it: `sources`, `interfaces`, `tree_files`, `systems`,
-  `families`, `expanding`, `machines`, `gaps`, `linking`, `values`. Other packages use only `Analysis`.
+- The work is divided by subject. A module uses only those before it: `sources`, `tree_files`, `systems`,
+  `families`, `expanding`, `machines`, `gaps`, `linking`, `values`, `subjects`. Other packages use only `Analysis`.
 - A system with parameters or instances is expanded to other texts, which have an analysis of their own (`expanded`).
 """
 
@@ -22,16 +22,17 @@ from roaml.model.parameters import NO_OVERRIDES, Overrides
 from roaml.project.analysis.expanding import ExpandedFiles, Expanding, Expansions
 from roaml.project.analysis.families import Families
 from roaml.project.analysis.gaps import Gaps
-from roaml.project.analysis.interfaces import Interfaces
 from roaml.project.analysis.linking import Linking
 from roaml.project.analysis.machines import NO_STRUCTS, Machines, Structs
 from roaml.project.analysis.sources import SourceFiles
+from roaml.project.analysis.subjects import Rooms, Subjects
 from roaml.project.analysis.systems import Systems
 from roaml.project.analysis.tree_files import TreeFiles
 from roaml.project.analysis.values import ReachedValues
 from roaml.project.expanded import Expanded
 from roaml.project.files import Files
 from roaml.project.memo import Memo
+from roaml.project.ros_types import Interfaces
 
 __all__ = ["NO_STRUCTS", "Analysis", "Expanded", "Structs"]
 
@@ -86,7 +87,12 @@ class Analysis:
         values = ReachedValues(sources, interfaces, self._systems, linking)
         self.arriving_at = values.arriving_at
         self.values_in = values.values_in
-        self.local_values = values.local_values
+        rooms = Rooms(sources, interfaces, tree_files, self._systems, families, machines, gaps, linking, values)
+        subjects = Subjects(rooms, expansions.system, expansions.file)
+        self.present = subjects.present
+        self.checked_file = subjects.checked_file
+        self.subject = subjects.subject
+        self.contexts = subjects.contexts
 
     def _open_files(self, sources: SourceFiles, interfaces: Interfaces) -> None:
         self.source = sources.source
@@ -95,26 +101,20 @@ class Analysis:
         self.json = sources.json
         self.configuration = sources.configuration
         self.properties = sources.properties
-        self.violations = sources.violations
         self.machine = sources.machine
         self.tree = sources.tree
         self.property_file = sources.property_file
         self.system_file = sources.system_file
         self.struct_declarations = sources.struct_declarations
         self.interface = interfaces.interface
-        self.interfaces_of = interfaces.interfaces_of
-        self.repeated_types = interfaces.repeated_types
 
     def _open_trees(self, tree_files: TreeFiles, families: Families) -> None:
         self.trees_from = tree_files.trees_from
         self.outlines_from = tree_files.outlines_from
         self.includes = tree_files.includes
         self.include_path = tree_files.include_path
-        self.include_places = tree_files.include_places
-        self.named_path = tree_files.named_path
         self.family = families.family
         self.family_outlines = families.family_outlines
-        self.outlines_around = families.outlines_around
 
     def _open_systems(self, systems: Systems, machines: Machines, gaps: Gaps, linking: Linking) -> None:
         self.system_paths = systems.paths
@@ -124,14 +124,14 @@ class Analysis:
         self.tree_outlines = systems.tree_outlines
         self.files_of = systems.files_of
         self.systems_of = systems.systems_of
-        self.names_before = systems.names_before
         self.structs = machines.structs
         self.interface_files_of = machines.interface_files_of
-        self.machine_gaps = machines.machine_gaps
         self.gaps = gaps.gaps
         self.system = linking.system
         self.forest = linking.forest
         self.library_tree = linking.library_tree
+        self.machines_in = linking.machines_in
+        self.size_of_translation = linking.size_of_translation
         self.linked_properties = linking.linked_properties
         self.typed_in = linking.typed_in
         self.environment = linking.environment

@@ -11,6 +11,8 @@ from roaml.expr.types import Struct, Type
 from roaml.forest.forest import Forest
 from roaml.forest.settings import NEWEST
 from roaml.jani.properties import identifiers
+from roaml.lower.program import TranslatableSystem
+from roaml.lower.size import size_of
 from roaml.model.expand import TreeFileOutline, expand
 from roaml.model.gaps import Gap
 from roaml.model.globals import GlobalVariable, event_parameters, global_variables
@@ -19,18 +21,20 @@ from roaml.model.machine import Machine
 from roaml.model.outline import MachineOutline
 from roaml.model.property_links import LinkedFile, link
 from roaml.model.property_ports import observed_names
+from roaml.model.size import Size
 from roaml.model.system import System
 from roaml.model.system_file import ListedFile, SystemFile, SystemSection
 from roaml.model.tree import TreeFile
 from roaml.model.value_types import Environment, TypedMachine
 from roaml.project.analysis.families import Families
 from roaml.project.analysis.gaps import Gaps
-from roaml.project.analysis.interfaces import Interfaces
 from roaml.project.analysis.machines import NO_STRUCTS, MachineEnvironment, Machines, Structs
 from roaml.project.analysis.sources import SourceFiles
 from roaml.project.analysis.systems import Systems
+from roaml.project.ros_types import Interfaces
 from roaml.record import replace
 from roaml.scxml.event_data import Round, infer_in_rounds
+from roaml.text import Location
 
 if TYPE_CHECKING:
     from roaml.lower.library_tree import LibraryTree
@@ -242,6 +246,21 @@ class Linking:
         return MachineEnvironment(
             self._interfaces, self._machines.structs(system), linked.event_data if linked else {}, published
         )
+
+    def machines_in(self, system: System) -> dict[str, Machine]:
+        """The machines of a system, by path."""
+        paths = dict.fromkeys(path for path, _ in (*system.nodes, *system.plugins))
+        return {path: machine for path in paths if (machine := self._sources.machine(path)) is not None}
+
+    def size_of_translation(self, path: str) -> Size | None:
+        """The size of the translation of a system, even if it has errors; `None` if there is no system in the file."""
+        system, file = self.system(path), self._sources.system_file(path)
+        if system is None or file is None:
+            return None
+        machines, place = self.machines_in(system), Location(path, file.element.name_span)
+        program = TranslatableSystem(system, machines, self.environment(path), place, {}, system.parameters)
+        key = (system, tuple(machines.items()))
+        return self._sources.memo.get("size", path, key, lambda: size_of(program, self.globals(path)))
 
     def globals(self, system: str) -> Mapping[str, GlobalVariable]:
         """The global variables of the translated system, by name."""

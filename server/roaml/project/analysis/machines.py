@@ -21,9 +21,9 @@ from roaml.model.structs import StructOutline, resolve_structs
 from roaml.model.syntax import Name
 from roaml.model.system_file import SystemSection
 from roaml.model.value_types import INTERFACE_KINDS, TypedMachine, type_machine
-from roaml.project.analysis.interfaces import Interfaces
 from roaml.project.analysis.sources import SourceFiles
 from roaml.project.analysis.systems import Systems
+from roaml.project.ros_types import Interfaces
 from roaml.record import Record
 from roaml.roles import SymbolKind
 from roaml.scxml.names import sanitise

@@ -16,10 +16,10 @@ from roaml.model.system import System
 from roaml.model.values.analyse import Arriving, MachineValues, Sent, analyse
 from roaml.model.values.arriving import arriving, arriving_by_type
 from roaml.model.values.remembered import Memory
-from roaml.project.analysis.interfaces import Interfaces
 from roaml.project.analysis.linking import Linking
 from roaml.project.analysis.sources import SourceFiles
 from roaml.project.analysis.systems import Systems
+from roaml.project.ros_types import Interfaces
 
 ROUNDS = 2
 
