@@ -88,6 +88,17 @@ def parser() -> ArgumentParser:
     add("--expect", action="append", default=[], metavar="'NAME >= P'", help="expect this of the "
         "property NAME, with >=, <=, >, < or ==, and exit with 1 if it does not hold; may be repeated")  # fmt: skip
     add_sampling(result)
+    _add_search(result)
+    add_model_arguments(result)
+    _add_traces(result)
+    add("--format", action=WordAction, words=Format, default=Format.TEXT,
+        help="format of the results")  # fmt: skip
+    return result
+
+
+def _add_search(parser: ArgumentParser) -> None:
+    """The options for the search through all states."""
+    add = parser.add_argument
     add("--scheduler", action=WordAction, words=Scheduler,
         help="how nondeterminism is resolved: uniformly at random (uniform), or by "
         "schedulers that are sampled for the minimum and the maximum probability (lss); default: uniformly at random, "
@@ -104,7 +115,11 @@ def parser() -> ArgumentParser:
     add("--no-reductions", action="store_true", help="with --exhaustive: explore all states even if there are many; "
         "without it, choices are left out that change neither the minimum nor the maximum, and states that differ only "
         "in variables without influence are one state")  # fmt: skip
-    add_model_arguments(result)
+
+
+def _add_traces(parser: ArgumentParser) -> None:
+    """The options for traces, and for the computers that generate them."""
+    add = parser.add_argument
     add("--stuck", action=WordAction, words=StuckLevel, default=StuckLevel.WARNING,
         help="report traces that get stuck as a "
         "warning (default), or as an error with exit status 1")  # fmt: skip
@@ -125,12 +140,9 @@ def parser() -> ArgumentParser:
         "repeated")  # fmt: skip
     add("--quantiles", type=_shares, default=(), metavar="P,...", help="also estimate the values that these shares of "
         "the traces do not exceed, for each reward, such as 0.5,0.9")  # fmt: skip
-    add_curves(result)
+    add_curves(parser)
     add("--dask", metavar="ADDRESS", help="run on the Dask cluster with the scheduler at this address (needs the "
         "Python package distributed)")  # fmt: skip
-    add("--format", action=WordAction, words=Format, default=Format.TEXT,
-        help="format of the results")  # fmt: skip
-    return result
 
 
 def add_sampling(parser: ArgumentParser, *, has_jobs: bool = True) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 
 from as2fm_lsp.context import Context
 from as2fm_lsp.handlers.parameters import document_uri, optional_string, string, strings
+from as2fm_lsp.session import Session
 from roaml.figures.drawing import Drawing
 from roaml.figures.layout import LayoutDirection
 from roaml.figures.pdf import pdf_file
@@ -25,54 +26,6 @@ FILE_METHOD = "as2fm/pictureFile"
 def register(context: Context) -> None:
     session = context.session
 
-    def place(analysis: Analysis, location: Location | None) -> dict[str, object] | None:
-        source = analysis.source(location.path) if location else None
-        if source is None or location is None:
-            return None
-        start, end = (session.convert.position(source, offset) for offset in location.span)
-        return {
-            "uri": session.convert.uri(location.path),
-            "range": {
-                "start": {"line": start.line, "character": start.character},
-                "end": {"line": end.line, "character": end.character},
-            },
-        }
-
-    def convert(analysis: Analysis, kind: DiagramKind, picture: Picture) -> dict[str, object]:
-        parts = PictureParts(analysis)
-        return {
-            "kind": kind.value,
-            "title": picture.title,
-            "nodes": [
-                {
-                    "id": node.id,
-                    "kind": node.kind.value,
-                    "label": node.label,
-                    "details": [detail.text for detail in node.details],
-                    "parent": node.parent,
-                    "initial": node.initial,
-                    "place": place(analysis, node.place),
-                    "actions": [action.value for action in parts.actions(node.place)],
-                    "use": place(analysis, node.use),
-                    "useActions": [action.value for action in parts.actions(node.use)],
-                }
-                for node in picture.nodes
-            ],
-            "edges": [
-                {
-                    "source": edge.source,
-                    "target": edge.target,
-                    "kind": edge.kind.value,
-                    "labels": [*edge.labels, *(f"/ {action}" for action in edge.actions)],
-                    "probabilistic": edge.probabilistic,
-                    "place": place(analysis, edge.place),
-                    "actions": [action.value for action in parts.actions(edge.place)],
-                }
-                for edge in picture.edges
-            ],
-            "drawings": [_drawing(draw(kind, picture, direction)) for direction in LayoutDirection],
-        }
-
     def asked(params: Any) -> tuple[Analysis, DiagramKind, Picture] | None:
         kind = next((kind for kind in DiagramKind if kind.value == string(params, "kind")), None)
         hidden = strings(params, "collapsed")
@@ -89,7 +42,7 @@ def register(context: Context) -> None:
     def picture(params: Any) -> dict[str, object] | None:
         """The diagram, drawn in each direction; null if the file has no diagram of this kind."""
         shown = asked(params)
-        return convert(*shown) if shown else None
+        return _converted(session, *shown) if shown else None
 
     @context.feature(FILE_METHOD)
     def picture_file(params: Any) -> dict[str, object] | None:
@@ -106,6 +59,60 @@ def register(context: Context) -> None:
         if getattr(params, "format", None) != "pdf":
             return {"svg": svg}
         return {"svg": svg, "pdf": b64encode(pdf_file(svg)).decode("ascii")}
+
+
+def _place(session: Session, analysis: Analysis, location: Location | None) -> dict[str, object] | None:
+    source = analysis.source(location.path) if location else None
+    if source is None or location is None:
+        return None
+    start, end = (session.convert.position(source, offset) for offset in location.span)
+    return {
+        "uri": session.convert.uri(location.path),
+        "range": {
+            "start": {"line": start.line, "character": start.character},
+            "end": {"line": end.line, "character": end.character},
+        },
+    }
+
+
+def _converted(session: Session, analysis: Analysis, kind: DiagramKind, picture: Picture) -> dict[str, object]:
+    parts = PictureParts(analysis)
+
+    def place(location: Location | None) -> dict[str, object] | None:
+        return _place(session, analysis, location)
+
+    return {
+        "kind": kind.value,
+        "title": picture.title,
+        "nodes": [
+            {
+                "id": node.id,
+                "kind": node.kind.value,
+                "label": node.label,
+                "details": [detail.text for detail in node.details],
+                "parent": node.parent,
+                "initial": node.initial,
+                "place": place(node.place),
+                "actions": [action.value for action in parts.actions(node.place)],
+                "use": place(node.use),
+                "useActions": [action.value for action in parts.actions(node.use)],
+            }
+            for node in picture.nodes
+        ],
+        "edges": [
+            {
+                "source": edge.source,
+                "target": edge.target,
+                "kind": edge.kind.value,
+                "labels": [*edge.labels, *(f"/ {action}" for action in edge.actions)],
+                "probabilistic": edge.probabilistic,
+                "place": place(edge.place),
+                "actions": [action.value for action in parts.actions(edge.place)],
+            }
+            for edge in picture.edges
+        ],
+        "drawings": [_drawing(draw(kind, picture, direction)) for direction in LayoutDirection],
+    }
 
 
 def _drawing(drawing: Drawing) -> dict[str, object]:

@@ -24,6 +24,7 @@ from roaml.verification.results import (
     Computed,
     CutShort,
     Estimated,
+    Outcome,
     Refused,
     Result,
     RewardQuantile,
@@ -338,6 +339,34 @@ def as_json(
     return json.dumps(value, indent=1, ensure_ascii=False) + "\n"
 
 
+def _outcome_row(outcome: Outcome) -> dict[str, Any]:
+    match outcome:
+        case Refused(reason=refusal):
+            return {"error": _refusal_row(refusal)}
+        case Undecided(reason=reason, growing=growing):
+            return {"undecided": reason, "growing": _growing_rows(growing)}
+        case CutShort(states=states, growing=growing):
+            return {"explored": states, "growing": _growing_rows(growing)} if states else {}
+        case Estimated() as estimated:
+            return _estimated_row(estimated)
+        case Computed() as computed:
+            values = {} if computed.sample is None else _estimated_row(computed.sample)
+            estimate = {name: values[name] for name in exact_report.ESTIMATE if name in values}
+            if computed.sample is not None:
+                values.update(exact_report.estimate_row(computed))
+                if computed.has_uniform_estimate:
+                    values["uniform"] = estimate
+            return {**values, "exact": exact_report.row(computed.exact)}
+        case Sampled(extremes=extremes, tried=tried):
+            by_side: dict[str, Any] = {
+                extreme.side.value: {**_answer(extreme.answer), "scheduler": extreme.scheduler, "by": extreme.words}
+                for extreme in extremes
+            }
+            return {**by_side, "schedulers": {"wanted": "lss", "tried": tried}} if tried else by_side
+        case never:
+            return assert_never(never)
+
+
 def row(result: Result) -> dict[str, Any]:
     """A result as a value for JSON."""
     values: dict[str, Any] = {"property": result.name, "seconds": round(result.seconds, 3)}
@@ -345,34 +374,7 @@ def row(result: Result) -> dict[str, Any]:
         values["comment"] = result.comment
     if about := warning(result):
         values["warning"] = about
-    match result.outcome:
-        case Refused(reason=refusal):
-            values["error"] = _refusal_row(refusal)
-        case Undecided(reason=reason, growing=growing):
-            values["undecided"] = reason
-            values["growing"] = _growing_rows(growing)
-        case CutShort(states=states, growing=growing):
-            if states:
-                values["explored"] = states
-                values["growing"] = _growing_rows(growing)
-        case Estimated() as estimated:
-            values.update(_estimated_row(estimated))
-        case Computed() as computed:
-            if computed.sample is not None:
-                values.update(_estimated_row(computed.sample))
-                estimate = {name: values[name] for name in exact_report.ESTIMATE if name in values}
-                values.update(exact_report.estimate_row(computed))
-                if computed.has_uniform_estimate:
-                    values["uniform"] = estimate
-            values["exact"] = exact_report.row(computed.exact)
-        case Sampled(extremes=extremes, tried=tried):
-            for extreme in extremes:
-                row_ = {**_answer(extreme.answer), "scheduler": extreme.scheduler, "by": extreme.words}
-                values[extreme.side.value] = row_
-            if tried:
-                values["schedulers"] = {"wanted": "lss", "tried": tried}
-        case never:
-            assert_never(never)
+    values.update(_outcome_row(result.outcome))
     if result.conditional:
         values["conditional"] = [_conditional_row(under) for under in result.conditional]
     if result.quantiles:

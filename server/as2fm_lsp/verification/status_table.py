@@ -12,7 +12,7 @@ from roaml.smc.story import Story
 from roaml.text import Location
 
 COLUMNS = ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED")
-MAX_NODES = 40
+MAX_LISTED_NODES = 40
 """The maximum number of nodes in a table."""
 
 
@@ -23,7 +23,7 @@ def status_table(
 
     Args:
         nodes: the nodes of the tree, in its order.
-        is_whole: whether the table may have more than `MAX_NODES` nodes.
+        is_whole: whether the table may have more than `MAX_LISTED_NODES` nodes.
     """
     returned = _returned(story)
     rows: list[tuple[str, ...]] = [("node", "ticks", *COLUMNS)]
@@ -35,7 +35,7 @@ def status_table(
             continue
         numbers = (str(sum(counts.values())), *(str(counts[name]) for name in COLUMNS))
         rows.append((f"{node.name} ({place_of(node.origin)})", *numbers))
-    left_out = 0 if is_whole else max(0, len(rows) - 1 - MAX_NODES)
+    left_out = 0 if is_whole else max(0, len(rows) - 1 - MAX_LISTED_NODES)
     lines = list(_aligned(rows[: len(rows) - left_out]))
     if left_out:
         lines.append(f"  … {left_out} more nodes (--verbose) …")

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from roaml.api.systems import LoadedSystem
     from roaml.comparison import Comparison
     from roaml.explicit.space import StateLimits
+    from roaml.mocks.network import MockOptions
     from roaml.smc.model import ModelChecker
     from roaml.smc.run import Options
     from roaml.verification.expectations import Expectation
@@ -68,33 +69,50 @@ def target(
         MockError: a mock is not valid.
         MissingMocksError: leaves of the tree have no mock.
     """
-    from roaml.verification.target import target_of  # noqa: PLC0415
-
-    beside = mocks_path(path)
-    if mocks is not None or (not path.endswith(".jani") and os.path.exists(beside)):
-        from roaml.api.trees import load_tree  # noqa: PLC0415
-        from roaml.mocks.mock import named_mocks, read_mocks  # noqa: PLC0415
-        from roaml.mocks.network import DEFAULT_RATE, MockOptions  # noqa: PLC0415
-
-        if mocks is None:
-            declared = read_mocks(required(beside, MAX_DATA).decode("utf-8", "replace"))
-        else:
-            declared = named_mocks(mocks)
-        rate = DEFAULT_RATE if tick_rate is None else Fraction(str(tick_rate))
+    if mocks is not None or (not path.endswith(".jani") and os.path.exists(mocks_path(path))):
         assumed = overrides.reaction_time or (None if settings is None else settings.reaction_time)
-        options = MockOptions(declared, entries or {}, rate, reaction_time=assumed)
-        loaded = load_tree(path, options, settings, texts)
-        return loaded.target.expecting(_expected(settings))
-    if not path.endswith(".jani"):
+        options = _mock_options(path, mocks, entries or {}, tick_rate, assumed)
+        from roaml.api.trees import load_tree  # noqa: PLC0415
+
+        read = load_tree(path, options, settings, texts).target
+    elif path.endswith(".jani"):
+        read = _jani_target(path, texts, overrides, constants)
+    else:
         if constants:
             raise ConstantError("a system has no constants; only JANI models have them")
         from roaml.api.systems import load  # noqa: PLC0415 - a JANI model needs no system
 
-        return as_target(load(path, ros_paths, settings, texts, overrides)).expecting(_expected(settings))
+        read = as_target(load(path, ros_paths, settings, texts, overrides))
+    return read.expecting(_expected(settings))
+
+
+def _mock_options(
+    path: str,
+    mocks: Mapping[str, str] | None,
+    entries: Mapping[str, str],
+    tick_rate: float | None,
+    reaction_time: ReactionTime | None,
+) -> MockOptions:
+    """The options of a tree with mocks, which are read from the file beside the tree if they are not given."""
+    from roaml.mocks.mock import named_mocks, read_mocks  # noqa: PLC0415
+    from roaml.mocks.network import DEFAULT_RATE, MockOptions  # noqa: PLC0415
+
+    if mocks is None:
+        declared = read_mocks(required(mocks_path(path), MAX_DATA).decode("utf-8", "replace"))
+    else:
+        declared = named_mocks(mocks)
+    rate = DEFAULT_RATE if tick_rate is None else Fraction(str(tick_rate))
+    return MockOptions(declared, entries, rate, reaction_time=reaction_time)
+
+
+def _jani_target(
+    path: str, texts: Mapping[str, str | bytes] | None, overrides: Overrides, constants: Sequence[str]
+) -> VerificationTarget:
+    from roaml.jani.constants import with_constants  # noqa: PLC0415
+    from roaml.verification.target import target_of  # noqa: PLC0415
+
     if replace(overrides, reaction_time=None) != NO_OVERRIDES:
         raise ConstantError("a JANI model has no parameters to override; only systems have them")
-    from roaml.jani.constants import with_constants  # noqa: PLC0415
-
     model, source = read_jani(path, texts)
     try:
         model = with_constants(model, constants)
@@ -102,7 +120,7 @@ def target(
             model = _reacting(model, overrides.reaction_time)
     except ValueError as error:
         raise ConstantError(str(error)) from None
-    return target_of(model, path, (path,), lambda _: source).expecting(_expected(settings))
+    return target_of(model, path, (path,), lambda _: source)
 
 
 def _reacting(model: Model, time: ReactionTime) -> Model:

@@ -90,18 +90,19 @@ def measure_exactly(mocked: MockedTree, target: VerificationTarget, limits: Stat
     rate = float(mocked.options.rate)
     times = {ticks / rate: share for ticks, share in ends.successes.items() if share > 0}
     success = math.fsum(times.values())
+    mean = math.fsum(time * share for time, share in times.items()) / success if times else None
     return TreeOutcome(
-        None,
-        1.0,
-        exactly(success),
-        exactly(ends.failure),
-        exactly(ends.unfinished),
-        exactly(ends.stuck),
-        None,
-        exactly(math.fsum(time * share for time, share in times.items()) / success) if times else None,
-        tuple(_quantiles(times, success)),
-        tuple(counts),
-        influences,
+        traces=None,
+        confidence=1.0,
+        success=exactly(success),
+        failure=exactly(ends.failure),
+        unfinished=exactly(ends.unfinished),
+        exceptions=exactly(ends.stuck),
+        rare=None,
+        time=None if mean is None else exactly(mean),
+        quantiles=tuple(_quantiles(times, success)),
+        counts=tuple(counts),
+        influences=influences,
     )
 
 

@@ -266,46 +266,14 @@ class Compilation:
 
     def program(self, marks: Marks) -> Program:
         """The program with all code that has been written so far."""
-        gates: dict[tuple[int, ...], list[int]] = {}
-        slot_vector = [-1] * len(self.network.slots)
-        vector_missing = [0] * len(self.network.vectors)
-        for number, slot in enumerate(self.network.slots):
-            if len(slot.vectors) == 1:
-                slot_vector[number] = slot.vectors[0]
-                vector_missing[slot.vectors[0]] += 1
-            elif slot.vectors:
-                gates.setdefault(tuple(slot.vectors), []).append(number)
-        gate_start, gate_vector, gate_missing = [0], list[int](), list[int]()
-        for gate, (vectors, slots) in enumerate(gates.items()):
-            for number in slots:
-                slot_vector[number] = -2 - gate
-            gate_vector += vectors
-            gate_start.append(len(gate_vector))
-            gate_missing.append(len(slots))
-            for vector in vectors:
-                vector_missing[vector] += 1
+        slot_vector, gate_tables = self._gate_tables()
         inert = [all(s.is_inert for steps in slot.steps.values() for s in steps) for slot in self.network.slots]
         active = [[s for s in slots if not inert[s]] for slots, _ in self.network.vectors]
         active_start, active_slot = _ranges(active)
         updates = self._updates(slot_vector, active)
         all_start, all_slot = _ranges([slots for slots, _ in self.network.vectors])
         settle, location_code = self._write_transient()
-        indexes = Indexes()
-        self._constants, self._fixed = self.tape.constants, dict[int, dict[int, int]]()
-        group_index = self._edge_indexes(indexes)
-        watch_start, watch_instance, watch_table, watched_start, watched_group, watched_index = self._watch_tables(
-            indexes
-        )
-        cell_watch = self._cell_watch()
-        indexed: list[list[int]] = [[] for _ in self.watched]
-        for register in sorted({dimension.register for dimension in indexes.dimensions}):
-            if cell_watch[register] >= 0:  # a cell of a constant array is not watched
-                indexed[cell_watch[register]].append(register)
-        indexed_start, indexed_register = _ranges(indexed)
-        initial = [
-            self.network.location_of[number][instance.automaton.initial_locations[0]]
-            for number, instance in enumerate(self.layout.instances)
-        ]
+        index_tables = self._index_tables()
         return Program(
             code=_ints(self.tape.code),
             functions=list(self.tape.functions),
@@ -314,8 +282,13 @@ class Compilation:
             int_count=self.int_count,
             real_count=self.real_count,
             instances=len(self.layout.instances),
-            initial=_ints(initial),
+            initial=_ints(
+                self.network.location_of[number][instance.automaton.initial_locations[0]]
+                for number, instance in enumerate(self.layout.instances)
+            ),
             **self._initial_tables(),
+            **gate_tables,
+            **index_tables,
             first_location=_ints(self.network.first_location),
             group_start=_ints(self.group_start),
             group_slot=_ints(self.group_slot),
@@ -333,11 +306,6 @@ class Compilation:
             group_update=updates.group_update,
             updates=updates.updates,
             slot_instance=_ints([slot.instance for slot in self.network.slots]),
-            slot_vector=_ints(slot_vector),
-            gate_start=_ints(gate_start),
-            gate_vector=_ints(gate_vector),
-            gate_missing=_ints(gate_missing),
-            vector_missing=_ints(vector_missing),
             first_held=self.network.first_held,
             active_start=active_start,
             active_slot=active_slot,
@@ -348,33 +316,13 @@ class Compilation:
             phase_index=_ints(self.phase_index),
             phase_read=_ints(self.phase_read),
             phase_write=_ints(self.phase_write),
-            watch_start=watch_start,
-            watch_instance=watch_instance,
-            watch_table=watch_table,
-            watched_start=watched_start,
-            watched_group=watched_group,
-            cell_watch=cell_watch,
-            watched_index=watched_index,
-            indexed_start=indexed_start,
-            indexed_register=indexed_register,
-            group_index=_ints(group_index),
-            dimension_start=_ints(indexes.dimension_start),
-            dimension_register=_ints([dimension.register for dimension in indexes.dimensions]),
-            dimension_low=array("q", [dimension.low for dimension in indexes.dimensions]),
-            dimension_size=_ints([dimension.size for dimension in indexes.dimensions]),
-            first_list=_ints(indexes.first_list),
-            list_start=_ints(indexes.list_start),
-            list_item=_ints(indexes.items),
             settle=settle,
             location_code=location_code,
             location_mark=_ints(
                 marks.get((self.layout.instances[number].automaton.name, location), 0)
                 for number, location in self.network.locations
             ),
-            zero_slots=_ints([0] * len(self.network.slots)),
-            zero_vectors=_ints([0] * len(self.network.vectors)),
-            zero_variables=_ints([0] * len(self.watched)),
-            zero_instances=_ints([0] * len(self.layout.instances)),
+            **self._zero_tables(),
         )
 
     @property
@@ -407,6 +355,78 @@ class Compilation:
             cells = [first + s.base for first, s in zip(firsts, choice.storages, strict=True)]
             choices.append((cells, choice.rows))
         return choices
+
+    def _gate_tables(self) -> tuple[list[int], dict[str, Any]]:
+        """For each slot its only vector, or -2 minus the gate of its vectors, or -1 if there is no vector; and the
+        members of `Program` about gates."""
+        gates: dict[tuple[int, ...], list[int]] = {}
+        slot_vector = [-1] * len(self.network.slots)
+        vector_missing = [0] * len(self.network.vectors)
+        for number, slot in enumerate(self.network.slots):
+            if len(slot.vectors) == 1:
+                slot_vector[number] = slot.vectors[0]
+                vector_missing[slot.vectors[0]] += 1
+            elif slot.vectors:
+                gates.setdefault(tuple(slot.vectors), []).append(number)
+        gate_start, gate_vector, gate_missing = [0], list[int](), list[int]()
+        for gate, (vectors, slots) in enumerate(gates.items()):
+            for number in slots:
+                slot_vector[number] = -2 - gate
+            gate_vector += vectors
+            gate_start.append(len(gate_vector))
+            gate_missing.append(len(slots))
+            for vector in vectors:
+                vector_missing[vector] += 1
+        return slot_vector, {
+            "slot_vector": _ints(slot_vector),
+            "gate_start": _ints(gate_start),
+            "gate_vector": _ints(gate_vector),
+            "gate_missing": _ints(gate_missing),
+            "vector_missing": _ints(vector_missing),
+        }
+
+    def _index_tables(self) -> dict[str, Any]:
+        """The members of `Program` about watched variables and indexes of guards."""
+        indexes = Indexes()
+        self._constants, self._fixed = self.tape.constants, dict[int, dict[int, int]]()
+        group_index = self._edge_indexes(indexes)
+        watch_start, watch_instance, watch_table, watched_start, watched_group, watched_index = self._watch_tables(
+            indexes
+        )
+        cell_watch = self._cell_watch()
+        indexed: list[list[int]] = [[] for _ in self.watched]
+        for register in sorted({dimension.register for dimension in indexes.dimensions}):
+            if cell_watch[register] >= 0:  # a cell of a constant array is not watched
+                indexed[cell_watch[register]].append(register)
+        indexed_start, indexed_register = _ranges(indexed)
+        return {
+            "watch_start": watch_start,
+            "watch_instance": watch_instance,
+            "watch_table": watch_table,
+            "watched_start": watched_start,
+            "watched_group": watched_group,
+            "cell_watch": cell_watch,
+            "watched_index": watched_index,
+            "indexed_start": indexed_start,
+            "indexed_register": indexed_register,
+            "group_index": _ints(group_index),
+            "dimension_start": _ints(indexes.dimension_start),
+            "dimension_register": _ints([dimension.register for dimension in indexes.dimensions]),
+            "dimension_low": array("q", [dimension.low for dimension in indexes.dimensions]),
+            "dimension_size": _ints([dimension.size for dimension in indexes.dimensions]),
+            "first_list": _ints(indexes.first_list),
+            "list_start": _ints(indexes.list_start),
+            "list_item": _ints(indexes.items),
+        }
+
+    def _zero_tables(self) -> dict[str, Any]:
+        """The members of `Program` with which a kernel clears its tables."""
+        return {
+            "zero_slots": _ints([0] * len(self.network.slots)),
+            "zero_vectors": _ints([0] * len(self.network.vectors)),
+            "zero_variables": _ints([0] * len(self.watched)),
+            "zero_instances": _ints([0] * len(self.layout.instances)),
+        }
 
     def _initial_tables(self) -> dict[str, Any]:
         """The members of `Program` about the choices between initial values."""

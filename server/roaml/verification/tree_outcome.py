@@ -209,19 +209,21 @@ class _Measuring:
         time = Mean()
         for seconds in times:
             time = time.add(seconds)
+        undecided = traces - successes - failures
+        counted = ((node, counter, mean) for (node, counter, _), mean in zip(counters, means, strict=True))
         return TreeOutcome(
-            traces,
-            self.options.confidence,
-            self.share(successes, traces, traces - successes - failures),
-            self.share(failures, traces, traces - successes - failures),
-            self.share(traces - successes - failures - stuck, traces),
-            self.share(stuck, traces),
-            min(successes, traces - successes),
-            self.mean(time) if times else None,
-            tuple(quantile(share, sorted(times), self.options.confidence) for share in QUANTILES) if times else (),
-            tuple((node, counter, self.mean(mean)) for (node, counter, _), mean in zip(counters, means, strict=True)),
-            self.influences(leaves, scores, [answer == SUCCESS for answer in answers]),
-            None if shortest is None else shortest[0],
+            traces=traces,
+            confidence=self.options.confidence,
+            success=self.share(successes, traces, undecided),
+            failure=self.share(failures, traces, undecided),
+            unfinished=self.share(undecided - stuck, traces),
+            exceptions=self.share(stuck, traces),
+            rare=min(successes, traces - successes),
+            time=self.mean(time) if times else None,
+            quantiles=tuple(quantile(share, sorted(times), self.options.confidence) for share in QUANTILES if times),
+            counts=tuple((node, counter, self.mean(mean)) for node, counter, mean in counted),
+            influences=self.influences(leaves, scores, [answer == SUCCESS for answer in answers]),
+            shortest=None if shortest is None else shortest[0],
         )
 
     def trace(self, number: int) -> tuple[int, int, bool]:

@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterator
 
 from roaml.model.behavior.explore import BehaviorStep
 from roaml.model.behavior.phases import DutyKind, ProtocolEvent
-from roaml.model.behavior.summary import START, Needs, Promise
+from roaml.model.behavior.summary import START, ChartOutline, Needs, Promise
 from roaml.model.gaps import Act, GapAct, InterfaceAct
 from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton
 from roaml.record import Record, field
@@ -327,39 +327,8 @@ def can_arrive_again(
     """
     copies = [1, *(thread.count for thread in receiver.outline.threads)]
     frozen = receiver.outline.charts[chart] if copies[chart] == 1 else None
-
-    def sends(solver: _Solver, automaton: SystemAutomaton, sent_event: ProtocolEvent) -> Iterator[ProtocolEvent]:
-        for outline in automaton.outline.charts:
-            if automaton is not receiver or outline is not frozen:
-                yield from (cause for cause, event in outline.reactions if event == sent_event)
-
-    def holds(solver: _Solver, number: int, awaited: ProtocolEvent) -> bool:
-        automaton = system.automata[number]
-        if awaited == START or awaited.part in (
-            ProtocolPart.TICK,
-            ProtocolPart.BT_TICK,
-            ProtocolPart.BT_HALT,
-            ProtocolPart.CHILD_STATUS,
-            ProtocolPart.CHILD_HALTED,
-        ):
-            return True
-        if is_clock(system, automaton, awaited) or may_be_sent(system, automaton, awaited):
-            return True
-        if awaited.part in _PROMISED:
-            server = server_of(system, automaton, awaited)
-            if server is None:
-                return False
-            answers = [(server.automaton, ProtocolEvent(part, server.use.handle)) for part in _ANSWERS[awaited.part]]
-        else:
-            answers = list(solver.senders(automaton, awaited))
-        for sender, answer in answers:
-            if (sender is receiver and answer in sent) or not is_readable(system, sender):
-                return True
-            if any(solver.read(solver.number(sender), cause) for cause in sends(solver, sender, answer)):
-                return True
-        return False
-
-    solver = _Solver(system, holds)
+    again = _Again(system, receiver, frozen, sent)
+    solver = _Solver(system, again.holds)
     if is_clock(system, receiver, event) or (event.part is ProtocolPart.EVENT and event in sent):
         return True
     senders = list(solver.senders(receiver, event))
@@ -371,14 +340,64 @@ def can_arrive_again(
     several = len(senders) > 1 or (event.part is ProtocolPart.THREAD_FREE and max(copies[1:], default=1) > 1)
     for sender, sent_event in senders:
         number = solver.number(sender)
-        if several and any(solver.solve(number, cause) for cause in sends(solver, sender, sent_event)):
+        if several and any(solver.solve(number, cause) for cause in again.causes(sender, sent_event)):
             return True
-        for outline in sender.outline.charts:
-            needs = (
-                dict(outline.repeats).get(sent_event, frozenset())
-                if sender is not receiver or outline is not frozen
-                else ()
-            )
+        for outline in again.moving(sender):
+            needs = dict(outline.repeats).get(sent_event, frozenset())
             if any(all(solver.solve(number, need) for need in alternative) for alternative in needs):
                 return True
     return False
+
+
+class _Again(Record, frozen=True, eq=False):
+    """What can happen while one chart stays in one state (`can_arrive_again`).
+
+    Attributes:
+        frozen: the outline of this chart; `None` if other copies of the thread may move.
+    """
+
+    system: System
+    receiver: SystemAutomaton
+    frozen: ChartOutline | None
+    sent: frozenset[ProtocolEvent]
+
+    def moving(self, automaton: SystemAutomaton) -> Iterator[ChartOutline]:
+        """The charts of an automaton that may change their states."""
+        for outline in automaton.outline.charts:
+            if automaton is not self.receiver or outline is not self.frozen:
+                yield outline
+
+    def causes(self, automaton: SystemAutomaton, sent_event: ProtocolEvent) -> Iterator[ProtocolEvent]:
+        """The events in reaction to which an automaton sends an event."""
+        for outline in self.moving(automaton):
+            yield from (cause for cause, event in outline.reactions if event == sent_event)
+
+    def holds(self, solver: _Solver, number: int, awaited: ProtocolEvent) -> bool:
+        """Whether an event may arrive at an automaton of the system."""
+        automaton = self.system.automata[number]
+        if awaited == START or awaited.part in _OF_THE_TREE:
+            return True
+        if is_clock(self.system, automaton, awaited) or may_be_sent(self.system, automaton, awaited):
+            return True
+        if awaited.part in _PROMISED:
+            server = server_of(self.system, automaton, awaited)
+            if server is None:
+                return False
+            answers = [(server.automaton, ProtocolEvent(part, server.use.handle)) for part in _ANSWERS[awaited.part]]
+        else:
+            answers = list(solver.senders(automaton, awaited))
+        for sender, answer in answers:
+            if (sender is self.receiver and answer in self.sent) or not is_readable(self.system, sender):
+                return True
+            if any(solver.read(solver.number(sender), cause) for cause in self.causes(sender, answer)):
+                return True
+        return False
+
+
+_OF_THE_TREE = (
+    ProtocolPart.TICK,
+    ProtocolPart.BT_TICK,
+    ProtocolPart.BT_HALT,
+    ProtocolPart.CHILD_STATUS,
+    ProtocolPart.CHILD_HALTED,
+)
