@@ -10,7 +10,7 @@ from roaml.ide import navigation
 from roaml.ide.completion import complete, document
 from roaml.ide.hover import hover
 from roaml.ide.names.lookup import symbol_group_at
-from roaml.ide.rename import Renaming, rename
+from roaml.ide.rename import RenameRefusal, Renaming, rename
 from roaml.project.settings import Settings
 from roaml.project.workspace import Snapshot, Workspace
 from roaml.text import apply_edits
@@ -288,3 +288,22 @@ def test_a_system_knows_the_same_nodes_and_entries() -> None:
     ]
     assert described[0] is not None
     assert described[0] == described[1]
+
+
+def test_entries_of_scripts_in_a_system() -> None:
+    """Entries that occur only in scripts are offered and renamed, also where a subtree takes them over."""
+    tree = """<root BTCPP_format="4" main_tree_to_execute="A">
+  <BehaviorTree ID="A"><Sequence>
+    <Script code="count := 1"/><SubTree ID="B" _autoremap="true"/><AlwaysSuccess _skipIf="count == 1"/>
+  </Sequence></BehaviorTree>
+  <BehaviorTree ID="B"><Script code="count += 1; own := 2"/></BehaviorTree>
+</root>
+"""
+    assert "count" in offered(tree.replace("count == 1", "co‸"), system=SYSTEM)
+    analysis = snapshot_of(tree=tree, system=SYSTEM).analysis
+    for piece in ("count :=", "count == 1", "count +="):
+        result = rename(analysis, path_of("tree.xml"), tree.index(piece) + 1, "tries")
+        assert isinstance(result, Renaming), result
+        assert apply_edits(tree, result.edits[path_of("tree.xml")]) == tree.replace("count", "tries")
+    taken = rename(analysis, path_of("tree.xml"), tree.index("count +="), "own")
+    assert taken == RenameRefusal("a blackboard variable `own` already exists")

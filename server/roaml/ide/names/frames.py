@@ -47,7 +47,6 @@ class Frame(Record, frozen=True, eq=False):
         settings: the values of its ports, from the attributes of the subtree node and from defaults.
         outer: the instance of the tree that contains the subtree node; `None` for the main tree.
         names: the names of the variables that occur in the tree or in defaults of the ports of its nodes.
-        is_alone: whether the tree belongs to no system.
     """
 
     expanded: expand.Frame
@@ -56,7 +55,6 @@ class Frame(Record, frozen=True, eq=False):
     settings: Mapping[str, Setting]
     outer: Frame | None
     names: frozenset[str]
-    is_alone: bool = False
 
     @property
     def path(self) -> str:
@@ -83,8 +81,6 @@ class Frame(Record, frozen=True, eq=False):
             return self.settings[name].value.value.strip() == "{=}"
         if self.outer is None or name.startswith("@"):
             return False
-        if self.is_alone:  # the expansion does not know the variables that occur only in scripts
-            return self.takes_all and not name.startswith("_") and self.outer.knows(name)
         return self.expanded.resolve(name) == self.outer.expanded.resolve(name)
 
 
@@ -94,7 +90,7 @@ class Trees:
     Args:
         outlines: the outlines of the files. The file with the main tree comes first.
         owner: the system file, or the first tree file if there is no system.
-        is_alone: whether there is no system. If so, the names in scripts are variables as well.
+        is_alone: whether there is no system.
     """
 
     def __init__(
@@ -123,10 +119,9 @@ class Trees:
     def names_in(self, tree: Tree) -> Iterator[str]:
         """The names of the variables to which a tree refers."""
         yield from names_in(tree)
-        if self.is_alone:
-            for node in nodes(tree):
-                for attribute in script_attributes(node):
-                    yield from (name for name, _ in names_in_script(attribute.value))
+        for node in nodes(tree):
+            for attribute in script_attributes(node):
+                yield from (name for name, _ in names_in_script(attribute.value))
 
     @cached_property
     def defaults(self) -> Mapping[str, Mapping[str, Setting]]:
@@ -183,7 +178,7 @@ class Trees:
             key = expanded.tree.path, expanded.tree.id
             if key not in names:
                 names[key] = self._names(tree)
-            frames[expanded] = Frame(expanded, tree, prefix, settings, outer, names[key], self.is_alone)
+            frames[expanded] = Frame(expanded, tree, prefix, settings, outer, names[key])
         return frames
 
     def _use(self, expanded: expand.Frame, outer: Frame | None) -> tuple[tuple[Piece, ...], Mapping[str, Setting]]:

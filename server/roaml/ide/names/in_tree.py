@@ -47,8 +47,7 @@ class _Tree:
                     symbol = tree_node(self.path, inside, position, node.name.value)
                     yield Occurrence(node.name.span, symbol, defines=True)
                 yield from self.subtree(node, inside) if node.is_subtree else self.node(node, inside)
-                if self.trees.is_alone:
-                    yield from self.scripts(node, inside)
+                yield from self.scripts(node, inside)
         for model in self.file.models:
             yield from self.model(model)
         yield from self.defaults()
@@ -118,7 +117,7 @@ class _Tree:
         return None if start < 0 else decoded.span(start, start + len(name))
 
     def scripts(self, node: TreeNode, inside: str) -> Iterator[Occurrence]:
-        """The variables in the scripts of a node, for a tree that belongs to no system."""
+        """The variables in the scripts of a node, and the one that a node such as `SetBlackboard` names."""
         for attribute in script_attributes(node):
             script, _ = parsed(self.document.decoded(attribute.value_span))
             targets: set[int] = set()
