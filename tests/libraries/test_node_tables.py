@@ -8,14 +8,20 @@ from pathlib import Path
 
 import pytest
 
-from roaml.forest import forest
-from roaml.libraries import LIBRARIES, library, library_node
+from roaml.forest.forest import Forest
+from roaml.forest.settings import NEWEST
+from roaml.language import BEHAVIOR_TREE
+from roaml.libraries import library, library_node, version
 from roaml.libraries.programs.assembly import programs
 from roaml.libraries.programs.effects import Situation, effects
 from roaml.libraries.programs.statuses import FAILURE, RUNNING, SUCCESS
+from roaml.libraries.scripts import AFTERWARDS, CONDITIONS
 from roaml.model.system import builtin_plugins
+from roaml.model.tree import build_tree_file
+from roaml.roles import ValueRole
 from roaml.rules.support.node_calls import WITHOUT_RESETS
 from roaml.rules.trees import tree_semantics
+from roaml.xml_syntax import parse
 
 MACHINES = Path(__file__).parents[2] / "server" / "roaml" / "lower" / "nodes"
 ENDED = frozenset((SUCCESS, FAILURE))
@@ -48,6 +54,45 @@ def test_nodes_that_do_not_reset_their_child() -> None:
     assert {name for name, text in own.items() if "<bt_halt_child" not in text} == WITHOUT_RESETS
 
 
-@pytest.mark.parametrize("name", sorted(forest._COMMON_NAMES))
-def test_common_names(name: str) -> None:
-    assert any(name in library(known).nodes for known in LIBRARIES), "a common name is that of a node of a library"
+NAV2 = library("nav2")
+COMMON = (
+    *("Wait", "Spin", "BackUp", "IsStuck", "IsBatteryLow", "IsBatteryCharging", "GoalReached", "TimeExpired"),
+    *("FollowPath", "FollowObject", "DockRobot", "UndockRobot", "GetCurrentPose", "NavigateToPose", "RoundRobin"),
+    *("GoalUpdated", "InitialPoseReceived"),
+)
+"""The nodes of Nav2 with names that other programs use, too."""
+
+
+@pytest.mark.parametrize("name", sorted(NAV2.nodes))
+def test_one_leaf_shows_that_nav2_is_used_unless_its_name_is_common(name: str) -> None:
+    tree = f'<root BTCPP_format="4"><BehaviorTree ID="A"><Sequence><{name}/></Sequence></BehaviorTree></root>'
+    file = build_tree_file(parse(tree))
+    assert file is not None
+    used = [known.name for known in Forest("tree.xml", (("tree.xml", file),), NEWEST).libraries]
+    assert used == ([] if name in COMMON else [NAV2.name])
+
+
+SPECIFICATION = Path(__file__).parents[2] / "docs" / "spec" / "lone-trees.md"
+
+
+@pytest.mark.parametrize(
+    ("since", "change"),
+    [
+        (version.TAGS_LOOKED_UP_SINCE, "A `ReactiveSequence` cannot have two children"),
+        (version.ASYNC_SEQUENCES_REFUSED_SINCE, "A `ReactiveSequence` cannot have two children"),
+        (version.NAMES_CHECKED_SINCE, "[Names](#names) are checked"),
+        (version.SCRIPTS_CHANGED_SINCE, "Scripts have the grammar"),
+        (version.CONSTANTS_TYPED_SINCE, "A number that a `<SubTree>` gives to an entry is a number"),
+        (version.CASES_WHOLE_SINCE, "A case of a `Switch` is a number only if all of its text is one"),
+    ],
+)
+def test_changes_of_versions_are_those_of_the_specification(since: version.Version, change: str) -> None:
+    rows = [line for line in SPECIFICATION.read_text("utf-8").splitlines() if f"| {change}" in line]
+    assert len(rows) == 1
+    numbers = [int(number) for number in rows[0].split("|")[1].split(".")]
+    assert tuple(since) == (*numbers, 0)[:3]
+
+
+def test_attributes_with_scripts_are_those_of_the_schema() -> None:
+    attributes = BEHAVIOR_TREE.elements["AlwaysSuccess"].attributes.values()
+    assert {each.name for each in attributes if each.value is ValueRole.SCRIPT} == {*CONDITIONS, *AFTERWARDS}
