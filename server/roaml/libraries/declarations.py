@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -18,9 +19,11 @@ def read_library(name: str) -> Library:
     nodes: dict[str, Node] = {}
     renamed: dict[str, Renamed] = {}
     absent: dict[str, Absent] = {}
-    groups = {group.get("id"): tuple(map(_port, group)) for group in root.iterchildren("ports")}
+    needs_ports = root.get("needs-ports") == "true"
+    groups = {group.get("id"): tuple(_ports(group, needs_ports)) for group in root.iterchildren("ports")}
     for element in root.iterchildren("control", "decorator", "action", "condition"):
-        node = _node(element, groups.get(element.get("use"), ()), root.get("name"))
+        ports = (*_ports(element, needs_ports), *groups.get(element.get("use"), ()))
+        node = _node(element, ports, root.get("name"))
         nodes[node.name] = node
     for element in root.iterchildren("renamed"):
         renamed[element.get("id")] = Renamed(element.get("id"), element.get("to"))
@@ -33,13 +36,13 @@ def read_library(name: str) -> Library:
     return Library(root.get("name"), root.get("version"), nodes, renamed, absent, entries, foreign)
 
 
-def _node(element: Any, more: tuple[Port, ...], library_name: str) -> Node:
+def _node(element: Any, ports: tuple[Port, ...], library_name: str) -> Node:
     kind = NodeKind(element.tag)
     running = element.get("running")
     return Node(
         element.get("id"),
         kind,
-        (*map(_port, element.iterchildren("in", "out", "inout")), *more),
+        ports,
         _children(element.get("children")) or kind.children,
         _text(element),
         library_name,
@@ -53,13 +56,20 @@ def _node(element: Any, more: tuple[Port, ...], library_name: str) -> Node:
     )
 
 
-def _port(element: Any) -> Port:
+def _ports(element: Any, needs_ports: bool) -> Iterator[Port]:
+    """The ports in an element. If `needs_ports`, they are needed unless they have a default, or are only written."""
+    for port in element.iterchildren("in", "out", "inout"):
+        has_value = port.get("default") is not None or port.get("alias-of") is not None or port.tag == "out"
+        yield _port(port, port.get("required") == "true" or (needs_ports and not has_value))
+
+
+def _port(element: Any, required: bool) -> Port:
     return Port(
         element.get("name"),
         Direction(element.tag),
         element.get("type"),
         element.get("default"),
-        element.get("required") == "true",
+        required,
         _text(element),
         element.get("alias-of", ""),
         element.get("system-type", ""),
