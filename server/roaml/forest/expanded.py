@@ -16,11 +16,12 @@ from roaml.record import Record
 
 
 class ExpandedTree(Record, frozen=True, eq=False):
-    """A tree that no tree of the forest uses, with its subtrees.
+    """A tree with its subtrees.
 
     Attributes:
         frames: its uses of trees, each after the enclosing one; the tree itself is first.
-        executed: whether the tree is executed, or could be because the files do not name the tree that is.
+        executed: whether the tree is executed, or could be because no tree uses it and the files do not name the tree
+            that is.
     """
 
     frames: tuple[Frame, ...]
@@ -54,20 +55,20 @@ def expanded_trees(forest: Forest) -> Iterator[ExpandedTree]:
         seen |= {(frame.tree.path, frame.tree.id) for frame in frames}
         if frames:
             yield ExpandedTree(frames, True)
-    for tree in _tops_first(forest, files):
+    for tree, is_top in _tops_first(forest, files):
         if (tree.path, tree.id) not in seen:
             seen.add((tree.path, tree.id))
             frames = expand(files, tree, takes_all=True).frames
             seen |= {(frame.tree.path, frame.tree.id) for frame in frames}
             if frames:
-                yield ExpandedTree(frames, forest.system is None and tree.id in forest.executed)
+                yield ExpandedTree(frames, is_top and forest.system is None and tree.id in forest.executed)
 
 
-def _tops_first(forest: Forest, files: tuple[TreeFileOutline, ...]) -> Iterator[TreeOutline]:
+def _tops_first(forest: Forest, files: tuple[TreeFileOutline, ...]) -> Iterator[tuple[TreeOutline, bool]]:
     """The trees: first the executed one if the files name it, then those that no tree uses, then the others, which use
-    each other."""
+    each other, or are parts of a tree that is too large. The latter are marked by false."""
     trees = [tree for file in files for tree in file.trees if tree.root is not None]
-    yield from (tree for tree in trees if tree.id == forest.main)
+    yield from ((tree, True) for tree in trees if tree.id == forest.main)
     used = frozenset[str]().union(*forest.subtrees.values())
-    yield from (tree for tree in trees if tree.id not in used)
-    yield from trees
+    yield from ((tree, True) for tree in trees if tree.id not in used)
+    yield from ((tree, False) for tree in trees)
