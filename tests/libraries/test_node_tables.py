@@ -11,14 +11,14 @@ import pytest
 from roaml.forest.forest import Forest
 from roaml.forest.settings import NEWEST
 from roaml.language import BEHAVIOR_TREE
-from roaml.libraries import library, library_node, version
+from roaml.libraries import BEHAVIORTREE_CPP, library, library_node, version
 from roaml.libraries.programs.assembly import programs
 from roaml.libraries.programs.effects import Situation, effects
 from roaml.libraries.programs.statuses import FAILURE, RUNNING, SUCCESS
 from roaml.libraries.scripts import AFTERWARDS, CONDITIONS
 from roaml.model.system import builtin_plugins
 from roaml.model.tree import build_tree_file
-from roaml.roles import ValueRole
+from roaml.roles import UNBOUNDED, ValueRole
 from roaml.rules.support.node_calls import WITHOUT_RESETS
 from roaml.rules.trees import tree_semantics
 from roaml.xml_syntax import parse
@@ -96,3 +96,33 @@ def test_changes_of_versions_are_those_of_the_specification(since: version.Versi
 def test_attributes_with_scripts_are_those_of_the_schema() -> None:
     attributes = BEHAVIOR_TREE.elements["AlwaysSuccess"].attributes.values()
     assert {each.name for each in attributes if each.value is ValueRole.SCRIPT} == {*CONDITIONS, *AFTERWARDS}
+
+
+CPP = library(BEHAVIORTREE_CPP)
+
+
+def test_declarations_do_not_change_unnoticed() -> None:
+    """Defaults, numbers of children and useful numbers, written a second time: a change must be made in both places."""
+    ports = [(node.name, port) for node in CPP.nodes.values() for port in node.ports]
+    assert {(name, port.name): port.default for name, port in ports if port.default is not None} == {
+        ("Parallel", "success_count"): "-1",
+        ("Parallel", "failure_count"): "1",
+        ("ParallelAll", "max_failures"): "1",
+        ("TryCatch", "catch_on_halt"): "false",
+        ("RunOnce", "then_skip"): "true",
+        ("Precondition", "else"): "FAILURE",
+        **{(f"Loop{type_}", "if_empty"): "SUCCESS" for type_ in ("Int", "Bool", "Double", "String")},
+    }
+    assert {node.name: node.children for node in CPP.nodes.values() if node.children != node.kind.children} == {
+        **dict.fromkeys(("IfThenElse", "WhileDoElse"), (2, 3)),
+        **{f"Switch{cases}": (cases + 1, cases + 1) for cases in range(2, 7)},
+        "TryCatch": (2, UNBOUNDED),
+    }
+    limits = [(name, port.name, port.limits) for name, port in ports if port.limits is not None]
+    assert {(name, port): each.minimum for name, port, each in limits if each.minimum is not None} == {
+        ("Repeat", "num_cycles"): 1,
+        ("RetryUntilSuccessful", "num_attempts"): 1,
+    }
+    assert [(name, port.name) for name, port in ports if port.system_constant] == [
+        ("BlackboardCheckInt", "return_on_mismatch")
+    ]
