@@ -8,10 +8,11 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from smc_models import at, automaton, document, edge, model, op, variable, way, ways
+from smc_models import at, automaton, document, edge, model, op, probability, variable, way, ways
 
 import conformance
 from roaml import api
+from roaml.record import replace
 from roaml.smc.record import VERDICTS, Recorder, Recording, TraceVerdict
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -67,6 +68,17 @@ def test_state_in_the_terms_of_the_user(robot: api.VerificationTarget) -> None:
         "MoveToGoal",
         {"data": 2},
     )
+
+
+def test_a_run_evaluates_a_property_that_its_start_does_not_decide() -> None:
+    counter = automaton("A", "s", [edge("s", way("s", x=op("+", "x", 1)), guard=op("<", "x", 9))])
+    reaches = {
+        name: probability({"op": "F", "exp": op("≥", "x", least)}) for name, least in (("start", 0), ("later", 3))
+    }
+    subject = model(document(counter, variables=[variable("x")], properties=reaches))
+    assert api.session(subject).save().property == "later"
+    assert api.session(subject, "start").save().property == "start"
+    assert api.session(replace(subject, properties=subject.properties[:1])).save().property == "start"
 
 
 def test_a_turn_ends_where_a_machine_waits_again(robot: api.VerificationTarget) -> None:

@@ -37,16 +37,14 @@ def session(
         FaultError: the model cannot be run, the property cannot be answered, or a saved step executes an undefined
             operation.
     """
-    from roaml.simulation.session import Session  # noqa: PLC0415 - checking and translating start faster without it
+    from roaml.simulation.session import Session, default_property  # noqa: PLC0415 - checking and translating start faster without it
 
     target = as_target(subject)
     name = property if saved is None else saved.property
     ready = checker(target.model, None if name is None else [name])
     if name is not None and name in ready.refused:
         raise ready.refused[name]
-    properties = list(ready.compiled_properties) or [ready.stuck]
-    # A property that the initial state decides would end the run before its first step.
-    sessions = (Session(ready, property_, seed, trace, target.clock, saved) for property_ in properties)
-    return next((found for found in sessions if saved or not found.is_decided), None) or Session(
-        ready, properties[0], seed, trace, target.clock, saved
+    evaluated = (
+        default_property(ready, seed, trace) if name is None else next(iter(ready.compiled_properties), ready.stuck)
     )
+    return Session(ready, evaluated, seed, trace, target.clock, saved)

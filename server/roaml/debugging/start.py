@@ -9,7 +9,7 @@ from collections.abc import Callable
 from roaml.debugging.debugger import Debugger, Log
 from roaml.debugging.sources import Sources
 from roaml.record import Record
-from roaml.simulation.session import SavedSession, Session
+from roaml.simulation.session import SavedSession, Session, default_property
 from roaml.simulation.verdicts import Verdicts
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
@@ -58,10 +58,8 @@ def start(sources: Sources, begin: Start, log: Log, watch: Watch = lambda _: Fal
     """
     name = begin.property if begin.saved is None else begin.saved.property
     checker = checker_of(sources.target, None)
-    property_ = (
-        _compiled_property(checker, sources, name) if name else next(iter(checker.compiled_properties), checker.stuck)
-    )
     seed, trace = begin.seed, begin.trace
+    property_ = _compiled_property(checker, sources, name) if name else default_property(checker, seed, trace)
     if begin.nth and begin.saved is None:
         recorder = Recorder(checker, property_, seed, MAX_TRACE_STEPS)
         trace = _nth(recorder, begin, property_.question.name, watch)

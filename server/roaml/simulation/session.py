@@ -117,6 +117,16 @@ MAX_STEPS = 10_000_000
 """The maximum number of steps of a run."""
 
 
+def default_property(checker: ModelChecker, seed: int, trace: int) -> CompiledProperty:
+    """The property that a run evaluates if the user names none: the first one that its initial state does not decide,
+    because another one would end the run before its first step; the first one if there is none; `stuck` if the model
+    has no properties."""
+    properties = checker.compiled_properties or (checker.stuck,)
+    return next(
+        (property_ for property_ in properties if Run(checker, property_, seed, trace).status == UNKNOWN), properties[0]
+    )
+
+
 class Session:
     """A position in a run.
 
