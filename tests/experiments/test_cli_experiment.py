@@ -51,6 +51,18 @@ def test_formats(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert points[0]["value"] == pytest.approx(0.19)
 
 
+def test_estimates_are_not_those_of_all_schedulers(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    model = write(tmp_path, retry())
+    sampled = ("--method", "fixed", "--max-traces", "100")
+    _, text, _ = called(capsys, model, *GRID, *sampled)
+    assert (
+        "estimates from traces with uniform choices (the minimum and maximum over all schedulers are not known): "
+        in text
+    )
+    _, text, _ = called(capsys, model, *GRID, *sampled, "--scheduler", "uniform")
+    assert "estimates from traces with uniform choices: 0.95 confidence" in text
+
+
 def test_plots(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     model = write(tmp_path, retry())
     svg, page, pdf = (tmp_path / f"plot.{suffix}" for suffix in ("svg", "html", "pdf"))

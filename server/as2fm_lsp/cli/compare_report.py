@@ -15,7 +15,7 @@ from roaml.exhaustive import Vocabulary, assert_never
 from roaml.experiments.changes import ValueChange, ValueVerdict
 from roaml.experiments.enough import Met
 from roaml.experiments.points import ExperimentPoint, PointKind
-from roaml.experiments.results import EXACT_NOTES, cell
+from roaml.experiments.results import ESTIMATE_NOTE, EXACT_NOTES, UNKNOWN_EXTREME, cell
 from roaml.figures.plot import page
 from roaml.ide.diagrams.changes import PartChange
 from roaml.ide.diagrams.diagram import Change
@@ -195,9 +195,8 @@ def _notes(report: ComparisonReport) -> list[str]:
         notes.append(f"exact values from all states: {meanings}")
     if any(point.kind is PointKind.ESTIMATE for point in points):
         notes.append(
-            "estimates from traces with uniform choices: the intervals of all values and differences are right "
-            f"together with {report.confidence:g} confidence; a change is significant if its interval does not "
-            "contain 0"
+            f"{ESTIMATE_NOTE}{UNKNOWN_EXTREME}: the intervals of all values and differences are right together with "
+            f"{report.confidence:g} confidence; a change is significant if its interval does not contain 0"
         )
     limited = {f"`{point.name}`: {point.note}" for point in points if point.note}
     return [*notes, *sorted(limited)]

@@ -19,6 +19,8 @@ MAX_LINES = 6
 """The maximum number of lines of a plot. With more values of the second parameter, the plot is a heat map."""
 COLUMNS = ("value", "low", "high", "kind", "schedulers", "minimum", "maximum", "uniform", "states", "traces", "note")
 
+ESTIMATE_NOTE = "estimates from traces with uniform choices"
+UNKNOWN_EXTREME = " (the minimum and maximum over all schedulers are not known)"
 EXACT_NOTES = {
     Schedulers.ALL: "the same for all schedulers",
     Schedulers.MINIMUM: "the minimum over all schedulers where these differ",
@@ -125,8 +127,8 @@ class ExperimentResult(Record, frozen=True):
         if PointKind.ESTIMATE in kinds:
             sampling = self.options.sampling
             notes.append(
-                f"estimates from traces with uniform choices: {sampling.confidence:g} confidence for each point by "
-                f"itself, seed {sampling.seed}"
+                f"{ESTIMATE_NOTE}{'' if self.options.only_uniform else UNKNOWN_EXTREME}: "
+                f"{sampling.confidence:g} confidence for each point by itself, seed {sampling.seed}"
             )
         limited: dict[str, list[ExperimentPoint]] = {}
         for point in self.points:
