@@ -77,11 +77,11 @@ def test_the_file_beside_a_tree_has_its_mocks(tmp_path: Path, capsys: pytest.Cap
     beside.write_text("Drive: 1 in 3 s\nAsk: 1\n", encoding="utf-8")
     assert run(["verify", path]) == 0
     printed = capsys.readouterr()
-    assert "50 % within 3.1 s" in printed.out
+    assert "50, 90 and 99 % within 3.1 s" in printed.out
     assert re.search(r"uses the mocks of \S*tree\.mocks\n", printed.err)
     assert run(["verify", path, "--mock", "*: 1 in 1 s"]) == 0
     printed = capsys.readouterr()
-    assert "50 % within 2.1 s" in printed.out
+    assert "50, 90 and 99 % within 2.1 s" in printed.out
     assert "uses the mocks of" not in printed.err
     beside.write_text("Drive", encoding="utf-8")
     assert "`Drive` is not a mock" in refused(capsys, path)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import bisect
+import itertools
 import math
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -76,11 +77,7 @@ def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf, is_whole
     if outcome.exceptions.value:
         yield f"  ended by an exception of the library: {_interval(outcome.exceptions)}"
     if outcome.time is not None:
-        within = (
-            f"{quantile.share * 100:g} % within {_interval(Measured(quantile.value, quantile.bounds))} s"
-            for quantile in outcome.quantiles
-        )
-        yield f"  time until success: mean {_interval(outcome.time)} s; {', '.join(within)}"
+        yield f"  time until success: mean {_interval(outcome.time)} s; {', '.join(_quantiles(outcome))}"
     for node, counter, value in outcome.counts:
         is_constant = value.bounds.lower == value.bounds.upper and not outcome.is_exact
         mean = f"{value.value:g} in all traces" if is_constant else f"{_interval(value)} in a run, on average"
@@ -101,7 +98,16 @@ def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf, is_whole
             yield f"    {_influence(influence, place_of)}"
         more = len(outcome.influences) - MAX_LEAVES
         if more > 0 and not is_whole:
-            yield f"    … {more} more leaves with less influence (--verbose) …"
+            yield f"    … {more} more leaves (--verbose) …"
+
+
+def _quantiles(outcome: TreeOutcome) -> Iterator[str]:
+    """Quantiles of the time, such as `50 % within 8 s`; those with the same time together."""
+    times = [_interval(Measured(quantile.value, quantile.bounds)) for quantile in outcome.quantiles]
+    shares = [f"{quantile.share * 100:g}" for quantile in outcome.quantiles]
+    for time, group in itertools.groupby(zip(shares, times, strict=True), key=lambda pair: pair[1]):
+        *others, last = (share for share, _ in group)
+        yield f"{', '.join(others)}{' and ' if others else ''}{last} % within {time} s"
 
 
 def _influence(influence: Influence, place_of: PlaceOf) -> str:

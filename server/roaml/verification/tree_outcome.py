@@ -122,8 +122,9 @@ class TreeOutcome(Record, frozen=True, eq=False):
         time: the time until the tree succeeds, in s; `None` if it never does.
         quantiles: the quantiles of this time.
         counts: nodes, their counters, and the expected value of each counter at the end of a trace.
-        influences: the influences of the leaves, the greatest first; leaves whose mock never or always succeeds are
-            omitted. Empty if all traces had the same outcome, which shows no influence.
+        influences: the influences of the leaves; first those whose sign is known, each time the greatest first. Leaves
+            whose mock never or always succeeds are omitted. Empty if all traces had the same outcome, which shows no
+            influence.
         shortest: the number of the shortest trace that does not succeed; `None` if there is none.
     """
 
@@ -277,7 +278,7 @@ class _Measuring:
                 others = (total - outcome) / max(1, traces - 1)  # excludes the trace itself, which avoids a bias
                 mean = mean.add((outcome - others) * row[position])
             influences.append(Influence(leaf, mean.mean, mean.bounds(self.options.confidence)))
-        return tuple(sorted(influences, key=lambda influence: -abs(influence.value)))
+        return tuple(sorted(influences, key=lambda i: (i.bounds.lower <= 0 <= i.bounds.upper, -abs(i.value))))
 
 
 def quantile(share: float, values: Sequence[float], confidence: float) -> Quantile:
