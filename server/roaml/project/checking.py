@@ -19,6 +19,7 @@ from typing import TypeAlias
 from roaml.diagnostics import Diagnostic, Finding, Related, RelatedPlace, Severity, Symbol, Tag
 from roaml.exhaustive import assert_never
 from roaml.expansion import ExpandedText
+from roaml.expansion.problems import ExpansionProblem
 from roaml.model.kinds import FileKind
 from roaml.model.machine import Dialect
 from roaml.model.property_links import LinkedFile
@@ -173,15 +174,18 @@ class RuleRunner:
         and instances.
 
         A finding at a place that cannot be expanded is a consequence, and is left out. So is a finding that is not an
-        error and that depends on the values of parameters: it does not occur with other values.
+        error and that depends on the values of parameters: it does not occur with other values. While a number cannot
+        be drawn, a constant replaces it, so that all findings that are not errors may be consequences.
         """
         path, system = subject.path, subject.system_path
         own = expanded.expansion.findings.get(path, ())
         broken = [finding.span for finding in own if _own_severity(finding) is Severity.ERROR]
+        has_invalid_draw = any(finding.code in _INVALID_DRAWS for finding in own)
         findings = [
             finding
             for finding in self._mapped_findings(expanded, path, system)
             if not any(span.start < finding.span.end and finding.span.start < span.end for span in broken)
+            and (_own_severity(finding) is Severity.ERROR or not has_invalid_draw)
         ]
         if path in expanded.expansion.variants and any(_own_severity(f) < Severity.ERROR for f in findings):
             analysis = self.analysis
@@ -224,6 +228,9 @@ class RuleRunner:
             location = locate(self.analysis, related.place)
             return None if location is None else RelatedPlace(location, related.message)
         return RelatedPlace(Location(path, related.place), related.message)
+
+
+_INVALID_DRAWS = (ExpansionProblem.DISTRIBUTION.value, ExpansionProblem.MISPLACED.value)
 
 
 def _in_all_copies(text: ExpandedText, findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
