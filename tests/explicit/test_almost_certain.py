@@ -8,6 +8,12 @@ from smc_models import automaton, document, edge, model, op, probability, variab
 
 from as2fm_lsp.verification import exact_report
 from roaml import api
+from roaml.experiments.points import Schedulers, exact_point
+from roaml.record import replace
+from roaml.smc.goal import Question
+from roaml.smc.statistics import Bounds
+from roaml.verification.results import Exact, is_same
+from roaml.verification.small import choices_of
 
 
 @pytest.mark.parametrize(
@@ -28,3 +34,50 @@ def test_a_failing_trace_excludes_1(tosses: int, shown: str) -> None:
     assert result.exact is not None
     (first, *_) = exact_report.lines("p", result.exact, 0.0)
     assert first.startswith(shown)
+
+
+def choice_of(least: float, greatest: float) -> Exact:
+    """The exact values of a property with a choice between two probabilities."""
+    edges = [edge("l", way("m", share, x=1), way("n", 1 - share)) for share in (least, greatest)]
+    goal = {"p": probability(op("F", op("=", "x", 1)))}
+    written = document(automaton("a", "l m n", edges), variables=[variable("x")], properties=goal)
+    (result,) = api.verify(model(written), exact_if_small=True)
+    assert result.exact is not None
+    return result.exact
+
+
+def test_close_extremes_are_not_the_same_for_all_schedulers() -> None:
+    exact = choice_of(0.9999989, 0.9999998)
+    assert not exact.agrees
+    assert not choices_of(exact).agreement
+    (first, *_) = exact_report.lines("p", exact, 0.0)
+    assert first.startswith("p: minimum 0.9999989, maximum 0.9999998, ")
+
+
+def test_extremes_have_enough_digits_to_differ() -> None:
+    exact = choice_of(0.5, 0.5 + 2e-9)
+    (first, *_) = exact_report.lines("p", exact, 0.0)
+    assert first.startswith("p: minimum 0.5, maximum 0.500000002, ")
+    assert exact_report.short(exact, Question("p", "Pmin", False, None, ())).startswith(
+        "minimum 0.5, maximum 0.500000002, exact"
+    )
+
+
+def test_a_value_that_is_only_enclosed_is_not_shown_as_equal() -> None:
+    exact = replace(choice_of(0.25, 0.25 + 8e-7), uniform=Bounds(0.25, 0.25 + 8e-7))
+    (first, *_) = exact_report.lines("p", exact, 0.0)
+    assert first.startswith("p: minimum 0.25, maximum 0.2500008, between them under uniform choices, exact")
+    (first, *_) = exact_report.lines("p", exact, 0.0, only_uniform=True)
+    assert first.startswith("p: between 0.25 and 0.2500008 under uniform choices, exact")
+
+
+def test_rounding_is_no_difference() -> None:
+    assert is_same(Bounds(0.5, 0.5), Bounds(0.5 + 1e-16, 0.5 + 1e-16))
+    assert is_same(Bounds(0.5, 0.5 + 5e-7), Bounds(0.5 + 4e-7, 0.5 + 9e-7))
+    assert not is_same(Bounds(0.5, 0.5), Bounds(0.5 + 1e-10, 0.5 + 1e-10))
+
+
+def test_an_experiment_takes_the_minimum_of_close_values() -> None:
+    exact, question = choice_of(0.9999989, 0.9999998), Question("p", "Pmin", False, None, ())
+    point = exact_point((), question, exact, states=1, can_get_stuck=False, only_uniform=False)
+    assert (point.schedulers, point.value) == (Schedulers.MINIMUM, exact.least)

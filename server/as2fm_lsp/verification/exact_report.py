@@ -10,13 +10,17 @@ from roaml.smc.goal import InitialFold, Question
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.statistics import Bounds
 from roaml.verification.number_text import exact_number
-from roaml.verification.results import EXACT_WIDTH, Computed, Exact, Proof, is_same
+from roaml.verification.results import EXACT_WIDTH, Computed, Exact, Proof, are_apart
 
 EXACT = "exact"
 """The method and the kind of interval of an exact value in JSON."""
 _PROOFS = {Proof.ALL: "all", Proof.NONE: "none", None: ""}
 """The words in JSON for what an exploration of all states has proved: that the condition of a property holds in all
 states, or in none; empty if neither is proved."""
+
+_DIGITS, _MAX_DIGITS = 7, 16
+"""The number of significant digits of a value, and the greatest number if the minimum and the maximum would otherwise
+look the same."""
 
 _OVER_INITIAL_STATES = {
     InitialFold.CHOICE: "the scheduler chooses one of {:,} initial states",
@@ -51,10 +55,13 @@ def lines(
         value = _below_one(exact) or f"= {_number(exact.minimum)}"
         shown.append(f"{name}: {value} for all schedulers, {quality}, {end}")
     elif only_uniform and exact.uniform is not None:
-        shown.append(f"{name}: = {_number(exact.uniform)} under uniform choices, {quality}, {end}")
+        value = f"between {' and '.join(_distinct(exact))}" if _is_enclosed(exact) else f"= {_number(exact.uniform)}"
+        shown.append(f"{name}: {value} under uniform choices, {quality}, {end}")
     else:
         both = _extremes(exact, question)
-        if exact.uniform is not None:
+        if _is_enclosed(exact):
+            both += ", between them under uniform choices"
+        elif exact.uniform is not None:
             both += f", {_number(exact.uniform)} under uniform choices"
         shown.append(f"{name}: {both}, {quality}, {end}")
         if exact.uniform is None and uniform_estimate:
@@ -93,17 +100,34 @@ def short(exact: Exact, question: Question) -> str:
     """
     states = "1 state" if exact.states == 1 else f"{exact.states:,} states"
     end = f"{states}{' after reductions' if exact.is_reduced else ''}"
-    if is_same(exact.minimum, exact.maximum):
+    if exact.agrees:
         return f"{_below_one(exact) or f'= {_number(exact.minimum)}'} for all schedulers, exact, {end}"
     return f"{_extremes(exact, question)}, exact, {end}"
 
 
 def _extremes(exact: Exact, question: Question | None) -> str:
     """The minimum and the maximum, with the one for which the property asks first; the minimum if that is unknown."""
-    minimum = f"minimum {_below_one(exact) or _number(exact.minimum)}"
-    maximum = f"maximum {_number(exact.maximum)}"
+    least, greatest = _distinct(exact)
+    minimum = f"minimum {_below_one(exact) or least}"
+    maximum = f"maximum {greatest}"
     is_minimum_first = question is None or question.is_minimised
     return f"{minimum}, {maximum}" if is_minimum_first else f"{maximum}, {minimum}"
+
+
+def _distinct(exact: Exact) -> tuple[str, str]:
+    """The minimum and the maximum, with as many digits as are necessary to see that they differ."""
+    for digits in range(_DIGITS, _MAX_DIGITS):
+        least, greatest = _number(exact.minimum, digits), _number(exact.maximum, digits)
+        if least != greatest or not are_apart(exact.minimum, exact.maximum):
+            return least, greatest
+    return _number(exact.minimum, _MAX_DIGITS), _number(exact.maximum, _MAX_DIGITS)
+
+
+def _is_enclosed(exact: Exact) -> bool:
+    """Whether the value under uniform choices was not computed, and is only known to be between the minimum and the
+    maximum, which differ."""
+    is_between = exact.uniform == Bounds(exact.minimum.lower, exact.maximum.upper)
+    return is_between and not exact.agrees
 
 
 def row(exact: Exact) -> dict[str, Any]:
@@ -174,14 +198,14 @@ def _upwards(value: float) -> str:
     return f"{math.ceil(value / 10**exponent - 1e-6) * 10**exponent:.1g}"
 
 
-def _number(bounds: Bounds) -> str:
+def _number(bounds: Bounds, digits: int = _DIGITS) -> str:
     """A value, or the interval of its bounds if that is wider than `EXACT_WIDTH`, relative to the value if it is
     greater than 1."""
     if math.isinf(bounds.lower) and bounds.lower == bounds.upper:
         return "∞" if bounds.lower > 0 else "-∞"
     if bounds.upper - bounds.lower > EXACT_WIDTH * max(1.0, abs(bounds.lower)):
         return f"[{bounds.lower:.7g}, {'∞' if math.isinf(bounds.upper) else f'{bounds.upper:.7g}'}]"
-    return exact_number(bounds.lower, bounds.upper)
+    return exact_number(bounds.lower, bounds.upper, digits)
 
 
 def _finite(value: float) -> float | str | None:

@@ -12,7 +12,7 @@ from roaml.record import Record
 from roaml.smc.goal import Question
 from roaml.smc.run import Answer
 from roaml.smc.statistics import Bounds
-from roaml.verification.results import is_same
+from roaml.verification.results import is_close, is_same
 from roaml.verification.schedulers import is_minimised
 
 
@@ -151,7 +151,7 @@ def exact_point(
     """
     minimum, maximum, uniform = values.minimum, values.maximum, values.uniform
     agrees = is_same(minimum, maximum)
-    if uniform is None and agrees:
+    if uniform is None and is_close(minimum, maximum):
         uniform = Bounds(minimum.lower, maximum.upper)
     if agrees:
         schedulers, asked = Schedulers.ALL, minimum if uniform is None else uniform

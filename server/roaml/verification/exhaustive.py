@@ -26,7 +26,7 @@ from roaml.verification.conditional import of_condition, parts_of, quotient
 from roaml.verification.expectations import Expectation, Verdict
 from roaml.verification.growth import GrowingVariable, growing_variables
 from roaml.verification.number_text import number
-from roaml.verification.results import Exact, Proof, ShortestTrace, is_same
+from roaml.verification.results import Exact, Proof, ShortestTrace, is_close
 from roaml.verification.schedulers import is_minimised
 
 _SLACK = 1e-6
@@ -117,7 +117,7 @@ def _conditional(
         exact = of_condition(values_from(space, limits), property_.question, space)
     else:
         raise UndecidedError(f"a probability given assumptions cannot be computed from all states; {_ESTIMATE}")
-    if exact is None or not (only_uniform or is_same(exact.minimum, exact.maximum)):
+    if exact is None or not (only_uniform or exact.agrees):
         raise UndecidedError(
             f"a value under a condition is computed from all states only if all schedulers have the same; {_ESTIMATE}"
         )
@@ -172,7 +172,7 @@ def values_from(space: Space, limits: StateLimits) -> Exact:
     except NoValueError as error:
         raise UndecidedError(f"{error}; {_ESTIMATE}") from None
     uniform = values.uniform
-    if uniform is None and is_same(values.minimum, values.maximum):
+    if uniform is None and is_close(values.minimum, values.maximum):
         uniform = Bounds(values.minimum.lower, values.maximum.upper)
     paths = [path for verdict in (FALSE, TRUE) if (path := shortest(space, verdict)) is not None]
     return Exact(

@@ -18,7 +18,7 @@ from roaml.smc.kernel import Kernel
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import FALSE, TRUE
 from roaml.verification.exhaustive import UndecidedError, alone, values_from
-from roaml.verification.results import Computed, Estimated, Exact, Outcome, ShortestTrace, UnderAssumption, is_same
+from roaml.verification.results import Computed, Estimated, Exact, Outcome, ShortestTrace, UnderAssumption
 from roaml.verification.small import Budget, setup_cost
 from roaml.verification.target import VerificationTarget
 
@@ -61,7 +61,7 @@ def _is_open(outcome: Outcome) -> bool:
     """Whether schedulers have different values, or it is not known whether they have."""
     match outcome:
         case Computed(exact=exact):
-            return not is_same(exact.minimum, exact.maximum)
+            return not exact.agrees
         case Estimated(choices=choices, is_interrupted=False):
             return choices is not None and not choices.agreement
         case _:

@@ -64,7 +64,9 @@ class ShortestTrace(Record, frozen=True):
 
 
 EXACT_WIDTH = 1e-6
-"""The maximum distance between the bounds of two values that are regarded as equal; relative for values above 1."""
+"""The maximum distance between the bounds of an exact value; relative for values above 1."""
+_ROUNDING = 1e-12
+"""The maximum difference of values that is attributed to rounding; relative for values above 1."""
 
 
 class Proof(Enum):
@@ -122,8 +124,9 @@ class Exact(PartlyCompared, frozen=True):
 
     @property
     def agrees(self) -> bool:
-        """Whether all schedulers have the same value."""
-        return is_same(self.minimum, self.maximum) and self.uniform is not None and is_same(self.minimum, self.uniform)
+        """Whether all schedulers have the same value, as far as the bounds and the traces show."""
+        is_sometimes_one = self.fails and self.minimum.upper < 1.0 <= self.maximum.lower
+        return is_same(self.minimum, self.maximum) and not is_sometimes_one
 
     def asked_value(self, question: Question, *, only_uniform: bool) -> tuple[Bounds, float]:
         """The bounds and the value of the minimum or maximum that a property asks for; with `only_uniform`, those for
@@ -152,7 +155,18 @@ class Exact(PartlyCompared, frozen=True):
 
 
 def is_same(a: Bounds, b: Bounds) -> bool:
-    """Whether two values are equal, as far as their bounds show."""
+    """Whether two values are equal, as far as their bounds show: these are close and overlap, except for rounding."""
+    return is_close(a, b) and not are_apart(a, b)
+
+
+def are_apart(a: Bounds, b: Bounds) -> bool:
+    """Whether the bounds of two values show that these differ."""
+    gap = max(a.lower, b.lower) - min(a.upper, b.upper)
+    return gap > _ROUNDING * max(1.0, abs(a.lower))
+
+
+def is_close(a: Bounds, b: Bounds) -> bool:
+    """Whether two values differ by at most `EXACT_WIDTH`."""
     if a == b:
         return True
     lower, upper = min(a.lower, b.lower), max(a.upper, b.upper)

@@ -19,7 +19,7 @@ from roaml.smc.goal import CompiledProperty, InitialFold
 from roaml.smc.model import ModelChecker
 from roaml.verification.conditional import of_condition, parts_of, quotient
 from roaml.verification.exhaustive import UndecidedError, alone, values_from
-from roaml.verification.results import Exact, is_same
+from roaml.verification.results import Exact
 
 MAX_SMALL_STATES = 20_000
 LIMITS = StateLimits(states=MAX_SMALL_STATES, bytes=4 << 30, combinations=4_096, transitions=200_000, work=100_000_000)
@@ -142,7 +142,7 @@ def _conditional(
         exact = None if whole.exact is None else of_condition(whole.exact, property_.question, whole.space)
     else:
         return Attempt(None)
-    if exact is not None and not (only_uniform or is_same(exact.minimum, exact.maximum)):
+    if exact is not None and not (only_uniform or exact.agrees):
         exact = None
     return Attempt(exact, cost)
 
