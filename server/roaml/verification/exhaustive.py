@@ -15,7 +15,6 @@ from roaml.explicit.space import (
     search_tables,
 )
 from roaml.explicit.values import GoalValues, NoValueError, values_of
-from roaml.jani.operators import BinaryOperator
 from roaml.record import replace
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import NOT, CompiledProperty, Question
@@ -23,14 +22,12 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.program import AT_END, FALSE, TRUE
 from roaml.smc.statistics import Bounds
 from roaml.verification.conditional import of_condition, parts_of, quotient
-from roaml.verification.expectations import Expectation, Verdict
+from roaml.verification.expectations import Expectation, Verdict, holds_exactly
 from roaml.verification.growth import GrowingVariable, growing_variables
-from roaml.verification.number_text import number
+from roaml.verification.number_text import distinct
 from roaml.verification.results import Exact, Proof, ShortestTrace, is_close
 from roaml.verification.schedulers import is_minimised
 
-_SLACK = 1e-6
-"""The tolerance of comparisons with `≥` and `≤`, because numbers in models are rounded, and the default for `=`."""
 MAX_STATES_AT_FIRST = 20_000
 """If there are more states, a second search leaves out choices that change neither the minimum nor the maximum."""
 MAX_STATES_FOR_UNIFORM = 1_000_000
@@ -201,47 +198,34 @@ def _proof(space: Space, values: GoalValues) -> Proof | None:
     return Proof.ALL if values.minimum.lower == 1.0 and is_negated else None
 
 
-def check_exactly(
-    expectation: Expectation,
-    exact: Exact,
-    question: Question,
-    *,
-    only_uniform: bool = False,
-    width: float = _SLACK,
-) -> Verdict:
+def check_exactly(expectation: Expectation, exact: Exact, question: Question, *, only_uniform: bool = False) -> Verdict:
     """Whether the value that a property asks for, its minimum or its maximum, satisfies an expectation.
 
     Args:
         only_uniform: whether the value under uniform choices is checked instead.
-        width: the difference that `=` allows.
     """
     threshold = expectation.threshold
     bounds, value = exact.asked_value(question, only_uniform=only_uniform)
-    extreme = "least" if is_minimised(question) else "greatest"
-    missed_by = "" if only_uniform else f"by the {extreme} value, which is {number(value)}"
-    is_strict = threshold.relation in (BinaryOperator.LESS, BinaryOperator.GREATER)
-
-    def is_met(number: float) -> bool:
-        if threshold.relation is BinaryOperator.EQUAL:
-            return abs(number - threshold.number) <= width + 1e-12
-        slack = 0.0 if is_strict else _SLACK
-        return threshold.met(number + slack) or threshold.met(number - slack)
-
-    if _is_excluded(expectation, exact, question, only_uniform=only_uniform):
-        relation = "less than 1" if threshold.is_lower else "greater than 0"
-        return Verdict(expectation, False, True, under=f"by an example trace; the value is {relation}")
-    met = is_met(value)
-    is_certain = exact.is_precise or is_met(bounds.lower) is is_met(bounds.upper)
-    return Verdict(expectation, met, is_certain, under="" if met else missed_by)
+    side = _side_of_example(expectation, exact, question, only_uniform=only_uniform)
+    if holds_exactly(threshold, bounds, value, side=side):
+        met, under = True, ""
+    elif side:
+        relation = "less than 1" if side < 0 else "greater than 0"
+        met, under = False, f"by an example trace; the value is {relation}"
+    else:
+        extreme = "least" if is_minimised(question) else "greatest"
+        text = f"by the {extreme} value, which is {distinct(value, threshold.number)}"
+        met, under = False, "" if only_uniform else text
+    ends = {holds_exactly(threshold, Bounds(end, end), end) for end in bounds}
+    return Verdict(expectation, met, exact.is_precise or side != 0 or len(ends) == 1, under=under)
 
 
-def _is_excluded(expectation: Expectation, exact: Exact, question: Question, *, only_uniform: bool) -> bool:
-    """Whether a trace shows that a probability is not 1 or not 0 as expected, however close it is."""
-    threshold = expectation.threshold
-    if question.is_reward or threshold.relation not in (BinaryOperator.GREATER_EQUAL, BinaryOperator.LESS_EQUAL):
-        return False
-    if not only_uniform and is_minimised(question) is not threshold.is_lower:
-        return False
-    if threshold.is_lower:
-        return threshold.number == 1 and exact.fails
-    return threshold.number == 0 and exact.shortest(TRUE) is not None
+def _side_of_example(expectation: Expectation, exact: Exact, question: Question, *, only_uniform: bool) -> int:
+    """-1 if a trace shows that a probability is not 1, with which it is compared, and 1 if a trace shows that it is not
+    0, however close it is; 0 otherwise."""
+    number = expectation.threshold.number
+    if question.is_reward:
+        return 0
+    if number == 1 and exact.fails and (only_uniform or is_minimised(question)):
+        return -1
+    return int(number == 0 and exact.shortest(TRUE) is not None and (only_uniform or not is_minimised(question)))

@@ -3,8 +3,9 @@
 
 - The estimate decides, not its interval: no number of traces could ever show that a probability is 1. If the interval
   contains both values that satisfy the expectation and others, this is only reported (`Verdict.is_certain`).
+- An exact value is compared with its bounds (`holds_exactly`).
 - A bound on a probability treats undecided traces as if each had the unfavourable result; `==` means at most epsilon
-  away.
+  away from an estimate.
 - A decision of a sequential test about the same number takes precedence.
 """
 
@@ -28,6 +29,10 @@ _RELATIONS = {
     "==": BinaryOperator.EQUAL,
 }
 _FORM = regex(r"\s*(.+?)\s*((?:>=|<=|==|≥|≤|>|<|=)\s*\S+)\s*")
+ROUNDING = 1e-12
+"""The maximum difference of values that is attributed to rounding; relative for values above 1."""
+_NARROW = 1e-6
+"""The maximum distance of the bounds of an exact value that equals a number between them; relative above 1."""
 NO_EXPECTATION = "no expectation set"
 """The text for a result with which no expectation is compared."""
 
@@ -164,6 +169,32 @@ def check_expectation(expectation: Expectation, answer: Answer) -> Verdict:
     if met and not answer.question.is_reward and value == threshold.number and value in (0, 1):
         unanimous = tally.traces, lower if threshold.is_lower else upper
     return Verdict(expectation, met, threshold.met(lower) is threshold.met(upper), unanimous=unanimous)
+
+
+def holds_exactly(threshold: Threshold, bounds: Bounds, value: float, *, side: int = 0) -> bool:
+    """Whether an exact value satisfies a comparison. Of `<` and `≥`, and of `>` and `≤`, one is satisfied; `==` is only
+    if the bounds contain the number, except for rounding.
+
+    Args:
+        bounds: those of the value; if they are wide, it decides itself, and `==` is not satisfied.
+        side: -1 if the value is known to be less than the number, 1 if it is known to be greater.
+    """
+    return bool(threshold.relation.function(side or _side(threshold, bounds, value), 0))
+
+
+def _side(threshold: Threshold, bounds: Bounds, value: float) -> float:
+    """A negative number if a value is less than the number of a threshold, a positive one if it is greater, and 0 if
+    both are equal as far as the bounds show; NaN if nothing is known."""
+    number, slack = threshold.number, ROUNDING * max(1.0, abs(threshold.number))
+    if bounds.upper < number - slack:
+        return -1
+    if bounds.lower > number + slack:
+        return 1
+    if bounds.lower == bounds.upper:
+        return 0
+    if math.isfinite(bounds.lower) and bounds.upper - bounds.lower <= _NARROW * max(1.0, abs(bounds.lower)):
+        return 0
+    return math.nan if value == number and threshold.relation is BinaryOperator.EQUAL else value - number
 
 
 def _is_open(threshold: Threshold, bounds: Bounds) -> bool:

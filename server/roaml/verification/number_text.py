@@ -16,6 +16,15 @@ def number(value: float, digits: int = 6) -> str:
     return f"1 {'-' if value < 1 else '+'} {abs(1 - value):.2g}" if text == "1" and value != 1 else text
 
 
+def distinct(value: float, other: float) -> str:
+    """A value with as many digits as are necessary to see on which side of another number it is."""
+    for digits in range(6, 17):
+        text = f"{value:.{digits}g}"
+        if text != f"{other:.{digits}g}":
+            return number(value, digits)
+    return number(value)
+
+
 def exact_number(lower: float, upper: float, digits: int = 7) -> str:
     """A value that is known to be between two bounds that are close to each other. 0 and 1 are preferred to other
     numbers between the bounds."""

@@ -22,7 +22,7 @@ from roaml.smc.record import SELECTED, SHORTEST, Recorder, Recording, TraceStep
 from roaml.smc.run import Answer, Options
 from roaml.smc.statistics import Bounds
 from roaml.smc.story import Story, build_story
-from roaml.verification.expectations import Verdict
+from roaml.verification.expectations import ROUNDING, Verdict
 from roaml.verification.growth import GrowingVariable
 from roaml.verification.refusal import Refusal
 from roaml.verification.schedulers import is_minimised
@@ -65,8 +65,6 @@ class ShortestTrace(Record, frozen=True):
 
 EXACT_WIDTH = 1e-6
 """The maximum distance between the bounds of an exact value; relative for values above 1."""
-_ROUNDING = 1e-12
-"""The maximum difference of values that is attributed to rounding; relative for values above 1."""
 
 
 class Proof(Enum):
@@ -162,7 +160,7 @@ def is_same(a: Bounds, b: Bounds) -> bool:
 def are_apart(a: Bounds, b: Bounds) -> bool:
     """Whether the bounds of two values show that these differ."""
     gap = max(a.lower, b.lower) - min(a.upper, b.upper)
-    return gap > _ROUNDING * max(1.0, abs(a.lower))
+    return gap > ROUNDING * max(1.0, abs(a.lower))
 
 
 def is_close(a: Bounds, b: Bounds) -> bool:

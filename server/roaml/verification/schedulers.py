@@ -14,10 +14,8 @@ from roaml.record import replace
 from roaml.smc.choices import Choices, Extreme, ExtremeMethod
 from roaml.smc.goal import Question
 from roaml.smc.run import Answer
-from roaml.verification.expectations import Verdict
+from roaml.verification.expectations import Verdict, holds_exactly
 from roaml.verification.number_text import number
-
-_SLACK = 1e-6
 
 
 def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | None) -> Verdict:
@@ -36,12 +34,7 @@ def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | No
     extreme = choices.minimum if is_minimum else choices.maximum
     missed = replace(verdict, is_met=False, is_certain=True, under=_missed_by(answer.question, extreme))
     if extreme is not None and extreme.is_exact:
-        if threshold.relation is BinaryOperator.EQUAL:
-            met = abs(extreme.value - threshold.number) <= answer.options.epsilon + 1e-12
-        else:
-            is_strict = threshold.relation in (BinaryOperator.LESS, BinaryOperator.GREATER)
-            slack = 0.0 if is_strict else _SLACK
-            met = threshold.met(extreme.value + slack) or threshold.met(extreme.value - slack)
+        met = holds_exactly(threshold, extreme.bounds, extreme.value)
         return replace(verdict, is_met=True, is_certain=True, under="") if met else missed
     if answer.question.has_opposite_extremes:
         return replace(verdict, is_uniform=verdict.is_met)

@@ -192,7 +192,6 @@ def _verdicts(
                 _compared(target, expectation, exact),
                 answer.question,
                 only_uniform=only_uniform,
-                width=answer.options.epsilon,
             )
             for expectation in expectations
         )
