@@ -5,6 +5,7 @@ import math
 
 import pytest
 
+from roaml.verification.expectations import as_written, parse
 from roaml.verification.number_text import exact_number, number
 
 
@@ -29,3 +30,9 @@ def test_a_value_that_may_be_1_is_shown_as_1() -> None:
     assert exact_number(1 - 1e-9, 1.0) == "1"
     assert exact_number(1 - 2e-8, 1 - 1e-8) == "1 - 1.5e-08"
     assert exact_number(0.0, 1e-9) == "0"
+
+
+@pytest.mark.parametrize("text", ["0.9999993", "0.8", "1", "12345678", "1e-07"])
+def test_a_written_number_keeps_its_digits(text: str) -> None:
+    assert as_written(float(text)) == text
+    assert parse(f"p <= {text}").text == f"≤ {text}"

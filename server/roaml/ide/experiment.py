@@ -17,6 +17,7 @@ from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.record import Record
 from roaml.text import Span
+from roaml.verification.expectations import as_written
 from roaml.xml_syntax import Attribute
 
 STEPS = 10
@@ -78,7 +79,7 @@ def parameters_of(analysis: Analysis, system: str) -> tuple[VariableParameter, .
 
 def properties_of(analysis: Analysis, system: str) -> tuple[AskedProperty, ...]:
     expected = expected_beside(analysis, system)
-    texts = {name: f"{comparison.relation} {comparison.number:g}" for name, comparison in expected.items()}
+    texts = {name: f"{comparison.relation} {as_written(comparison.number)}" for name, comparison in expected.items()}
     return tuple(AskedProperty(p.name, p.comment, texts.get(p.name, "")) for p in verifiable(analysis, system))
 
 

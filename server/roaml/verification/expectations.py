@@ -37,6 +37,12 @@ NO_EXPECTATION = "no expectation set"
 """The text for a result with which no expectation is compared."""
 
 
+def as_written(value: float) -> str:
+    """A number that a user has written, with all of its digits."""
+    text = f"{value:g}"
+    return text if float(text) == value else repr(value).removesuffix(".0")
+
+
 class Expectation(Record, frozen=True):
     """A comparison of the value of a property with a number. `is_own` states whether the comparison is part of the
     property itself."""
@@ -47,7 +53,7 @@ class Expectation(Record, frozen=True):
 
     @property
     def text(self) -> str:
-        return f"{self.threshold.relation.symbol} {self.threshold.number:g}"
+        return f"{self.threshold.relation.symbol} {as_written(self.threshold.number)}"
 
 
 class Verdict(Record, frozen=True):
@@ -91,7 +97,7 @@ class Verdict(Record, frozen=True):
         if self.unanimous is not None and self.is_met:
             where = "down" if self.expectation.threshold.is_lower else "up"
             return f"{self.unanimous_text}; the interval reaches {where} to {_rounded(self.unanimous[1]):g}"
-        number = f"{self.expectation.threshold.number:g}"
+        number = as_written(self.expectation.threshold.number)
         met, missed = {
             BinaryOperator.GREATER_EQUAL: (f"of at least {number}", f"below {number}"),
             BinaryOperator.GREATER: (f"above {number}", f"of at most {number}"),
@@ -130,9 +136,9 @@ def check_range(expectation: Expectation, question: Question) -> None:
         RangeError: it is compared with another number.
     """
     if not is_possible(expectation, question):
-        number = expectation.threshold.number
+        number = as_written(expectation.threshold.number)
         raise RangeError(
-            f"`{expectation.name}` is a probability and can only be compared with a number from 0 to 1, not {number:g}"
+            f"`{expectation.name}` is a probability and can only be compared with a number from 0 to 1, not {number}"
         )
 
 
