@@ -62,6 +62,7 @@ class Verdict(Record, frozen=True):
     Attributes:
         is_certain: whether the verdict is the same for the whole interval.
         is_uniform: whether the expectation is met under uniform choices and not known to be met under all schedulers.
+        uniform_only: what is known about the minimum or maximum if `is_uniform`, as a phrase for users; "" for nothing.
         under: a phrase that follows `NOT MET`, such as `under uniform choices` or `so far`; "" if there is none.
         unanimous: the number of traces and the other bound of the interval, if no trace contradicts an expected 0 or 1.
     """
@@ -72,12 +73,15 @@ class Verdict(Record, frozen=True):
     is_uniform: bool = False
     under: str = ""
     unanimous: tuple[int, float] | None = None
+    uniform_only: str = ""
 
     @property
     def text(self) -> str:
         """A phrase for users that states whether the expectation is met."""
         if self.is_met:
-            return "met under uniform choices" if self.is_uniform else "met"
+            if not self.is_uniform:
+                return "met"
+            return "; ".join(filter(None, ("met under uniform choices", self.uniform_only)))
         return f"NOT MET {self.under}".rstrip()
 
     @property

@@ -12,7 +12,7 @@ from __future__ import annotations
 from roaml.jani.operators import BinaryOperator
 from roaml.record import replace
 from roaml.smc.choices import Choices, Extreme, ExtremeMethod
-from roaml.smc.goal import Question
+from roaml.smc.goal import Question, Threshold
 from roaml.smc.run import Answer
 from roaml.verification.expectations import Verdict, holds_exactly
 from roaml.verification.number_text import number
@@ -47,10 +47,20 @@ def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | No
     if threshold.is_lower is is_minimum:
         if extreme is not None and not threshold.met(extreme.bounds.upper if is_minimum else extreme.bounds.lower):
             return missed
-        return replace(verdict, is_uniform=verdict.is_met)
+        return replace(
+            verdict, is_uniform=verdict.is_met, uniform_only=_doubtful_by(threshold, answer.question, extreme)
+        )
     if extreme is not None and threshold.met(extreme.bounds.upper if is_minimum else extreme.bounds.lower):
         return replace(verdict, is_met=True, is_certain=True, under="")
     return verdict
+
+
+def _doubtful_by(threshold: Threshold, question: Question, extreme: Extreme | None) -> str:
+    """A phrase that states that the estimate of a sampled scheduler misses an expectation although its interval does
+    not; "" if it does not."""
+    if extreme is None or extreme.method is not ExtremeMethod.SAMPLING or threshold.met(extreme.value):
+        return ""
+    return f"not shown for the {extreme_of(question)}, of which an estimate is {number(extreme.value)}"
 
 
 def _missed_by(question: Question, extreme: Extreme | None) -> str:

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: Apache-2.0
+"""An expectation that is met under uniform choices, but missed by the estimate of a sampled scheduler."""
+
+from __future__ import annotations
+
+import pytest
+
+from roaml.smc.choices import Choices, Extreme, ExtremeMethod
+from roaml.smc.goal import Question
+from roaml.smc.run import Options, summary
+from roaml.smc.statistics import Bounds
+from roaml.smc.tally import Tally
+from roaml.verification.expectations import Verdict, check_expectation, parse
+from roaml.verification.schedulers import under_all_schedulers
+
+
+def verdict(text: str, method: ExtremeMethod = ExtremeMethod.SAMPLING) -> Verdict:
+    """The verdict on an expectation of 200 traces that hold, with a scheduler for which 0.756 of the traces do."""
+    answer = summary(Question("p", "Pmin", False, None, ()), Options(), Tally(traces=200, successes=200))
+    least = Extreme(0.756, Bounds(0.64, 0.872), method, "sampled scheduler 1", 60)
+    most = Extreme(1.0, Bounds(0.98, 1.0), ExtremeMethod.UNIFORM)
+    return under_all_schedulers(check_expectation(parse(text), answer), answer, Choices("", least, most, 56))
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("p >= 0.7", "met under uniform choices"),
+        (
+            "p >= 0.8",
+            "met under uniform choices; not shown for the minimum, of which an estimate is 0.756",
+        ),
+        ("p >= 0.9", "NOT MET under sampled scheduler 1: 0.756 in [0.64, 0.872]"),
+        ("p <= 0.9", "met"),
+    ],
+)
+def test_the_line_says_what_the_sampled_scheduler_shows(text: str, words: str) -> None:
+    assert verdict(text).text == words
+
+
+def test_the_estimate_under_uniform_choices_is_no_reason() -> None:
+    assert verdict("p >= 0.8", ExtremeMethod.UNIFORM).text == "met under uniform choices"
