@@ -9,7 +9,7 @@ from typing import Any
 
 from roaml.smc.choices import Choices, Extreme, ExtremeMethod
 from roaml.smc.goal import InitialFold, Question
-from roaml.verification.headline import NO_ANSWER, claim_for_all
+from roaml.verification.headline import NOT_KNOWN, claim_for_all
 from roaml.verification.number_text import number
 from roaml.verification.schedulers import extreme_of, is_minimised
 
@@ -42,8 +42,9 @@ def _known(question: Question, choices: Choices, extreme: Extreme) -> str:
     if extreme.is_exact:
         return f"is {number(extreme.value)} (exact, from all states)"
     claim = claim_for_all(question, choices)
-    if extreme.method is ExtremeMethod.SAMPLING and claim != NO_ANSWER:
-        return f"is {claim.removeprefix(extreme_of(question)).lstrip()} (by {extreme.scheduler})"
+    if extreme.method is ExtremeMethod.SAMPLING and not claim.endswith(NOT_KNOWN):
+        bound = claim.removeprefix(f"{extreme_of(question)} {NOT_KNOWN}, ")
+        return f"is {bound} (by {extreme.scheduler})"
     return f"may be {'smaller' if is_minimised(question) else 'greater'}: other schedulers have other values"
 
 

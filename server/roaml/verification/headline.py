@@ -4,7 +4,7 @@ of tests all use these words.
 
 - A property that asks for a minimum or maximum over all schedulers is never answered by the value under uniform
   choices. The sampled traces of one scheduler bound the minimum from above and the maximum from below; if not even that
-  excludes a value, there is no answer for all schedulers.
+  excludes a value, only that it is not known is said.
 - If traces are undecided, the words name bounds, the number of undecided traces and the remedy, and no value between
   the bounds.
 """
@@ -24,7 +24,7 @@ from roaml.verification.number_text import number
 from roaml.verification.results import Computed, CutShort, Estimated, Refused, Result, Sampled, Undecided
 from roaml.verification.schedulers import extreme_of, is_minimised
 
-NO_ANSWER = "no answer for all schedulers"
+NOT_KNOWN = "not known"
 NO_TRACES = "no result yet"
 UNKNOWN = "unknown"
 
@@ -33,8 +33,8 @@ class Headline(Record, frozen=True):
     """The words for a result.
 
     Attributes:
-        claim: what is known for all schedulers, such as `minimum at most 0.17`; "" if the property asks only for
-            uniform choices, or all schedulers agree.
+        claim: what is known for all schedulers, such as `minimum not known, at most 0.17`; "" if the property asks only
+            for uniform choices, or all schedulers agree.
         estimate: the estimate from traces with uniform choices; "" if there is none.
         short: a short form of both, for editors; "" if there is no result.
     """
@@ -80,19 +80,20 @@ def of_answer(answer: Answer, choices: Choices | None = None) -> Headline:
     claim = claim_for_all(answer.question, choices) if answer.tally.traces else ""
     if not claim:
         return Headline("", estimate, short)
-    brief = claim.replace(" at most ", " ≤ ").replace(" at least ", " ≥ ")
+    brief = claim.replace(", at most ", ", ≤ ").replace(", at least ", ", ≥ ")
     return Headline(claim, estimate, f"{brief}; uniform {short}")
 
 
 def claim_for_all(question: Question, choices: Choices | None) -> str:
     """What is known about the minimum or maximum that a property asks for, if it may differ from the value under
     uniform choices; otherwise ""."""
+    not_known = f"{extreme_of(question)} {NOT_KNOWN}"
     if question.asks_for_extreme_state:
         known = None if choices is None else choices.minimum if is_minimised(question) else choices.maximum
         return (
             f"{extreme_of(question)} {number(known.value)}, exact"
             if known is not None and known.is_exact
-            else NO_ANSWER
+            else not_known
         )
     if choices is None or choices.agreement:
         return ""
@@ -100,12 +101,12 @@ def claim_for_all(question: Question, choices: Choices | None) -> str:
     if known is not None and known.is_exact:
         return f"{extreme_of(question)} {number(known.value)}, exact"
     if known is None or question.has_opposite_extremes or question.is_reward:
-        return NO_ANSWER
+        return not_known
     if is_minimised(question):
         upper = _outwards(known.bounds.upper, math.ceil)
-        return f"minimum at most {upper:g}" if upper < 1 else NO_ANSWER
+        return f"{not_known}, at most {upper:g}" if upper < 1 else not_known
     lower = _outwards(known.bounds.lower, math.floor)
-    return f"maximum at least {lower:g}" if lower > 0 else NO_ANSWER
+    return f"{not_known}, at least {lower:g}" if lower > 0 else not_known
 
 
 def estimate_text(answer: Answer) -> str:
