@@ -234,6 +234,18 @@ def test_the_note_names_each_property_once(command: Command, tmp_path: Path) -> 
     assert out.count("\n  help: use --exhaustive ") == 1
 
 
+def test_traces_that_cannot_be_explained(command: Command, tmp_path: Path) -> None:
+    """All traces under uniform choices hold; some of a sampled scheduler fail."""
+    err = command("verify", write(tmp_path, starving(steps=500)), "--max-states", 400, "--explain").err
+    none = r"^p: none of the [\d,]+ random traces failed"
+    help_ = "but cannot be shown: use --exhaustive --explain"
+    assert re.search(rf"{none}; some of those of sampled scheduler 1, which lets .*, fail, {help_}$", err, re.MULTILINE)
+    alone = coin()
+    alone["automata"][0]["edges"] = [edge("s", way("e", x=1))]
+    err = command("verify", write(tmp_path, alone), "--method", "adaptive", "--explain").err
+    assert re.search(r"^heads: none of the [\d,]+ random traces failed$", err, re.MULTILINE)
+
+
 def test_an_expectation_that_is_not_met_names_the_scheduler(command: Command, tmp_path: Path) -> None:
     name = write(tmp_path, starving(steps=500))
     done = command("verify", name, "--expect", "p >= 0.9", "--max-states", 400)

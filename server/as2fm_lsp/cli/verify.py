@@ -645,13 +645,28 @@ class _Verification:
             if self.options.explain:
                 seen = unwanted_trace(result)
                 if seen is None:
-                    verb = "fails" if unwanted_verdict(result) == FALSE else "holds"
-                    print_text(f"{result.name}: there is no trace in which it {verb}\n", stream=sys.stderr)
+                    print_text(f"{result.name}: {self._no_trace(result)}\n", stream=sys.stderr)
                 else:
                     stories.append(traces.story(seen.trace))
                     self._compare(result, stories[-1])
         for file in self.options.explain:
             self._write_stories(stories, file)
+
+    def _no_trace(self, result: Result) -> str:
+        """Why no random trace is explained, and what to do if a sampled scheduler has other traces, in one sentence."""
+        fails = unwanted_verdict(result) == FALSE
+        traces = 0 if result.answer is None else result.answer.tally.traces
+        text = f"none of the {traces:,} random traces {'failed' if fails else 'held'}"
+        choices = result.choices
+        other = None if choices is None else choices.minimum if fails else choices.maximum
+        if choices is None or not choices.differ or other is None or not other.scheduler:
+            return text
+        metadata = self.target.model.metadata
+        has_any_time = metadata is not None and metadata.clock is not None and metadata.reaction_time.is_any
+        instead = ", or state a reaction time, as with --reaction-time instant" if has_any_time else ""
+        which = "fail" if fails else "hold"
+        shown = f"some of those of {other.scheduler}, {which}, but cannot be shown"
+        return f"{text}; {shown}: use --exhaustive --explain{instead}"
 
     def _compare(self, result: Result, story: Story) -> None:
         """Keep where a trace parts from the nearest one with the opposite verdict."""
