@@ -204,14 +204,14 @@ def keep_proposal(path: str, leaves: Sequence[MockableLeaf]) -> int:
 def _keep_proposal(path: str, beside: str, leaves: Sequence[MockableLeaf], messages: MockMessages) -> None:
     reason = _why_not_written(beside)
     try:
-        count = 0 if reason else keep_proposal(path, leaves)
+        if not reason:
+            keep_proposal(path, leaves)
     except OSError as error:
         reason = error.strerror or str(error)
     if reason:
         messages.write(f"uses proposed mocks, which could not be written into {messages.shown(beside)}: {reason}")
     else:
-        leaves_ = "1 leaf" if count == 1 else f"{count} leaves"
-        messages.write(f"proposed mocks for {leaves_}: review them in {messages.shown(beside)}")
+        messages.write(f"proposed mocks for {_counted(leaves)}: review them in {messages.shown(beside)}")
 
 
 def _review(
@@ -223,7 +223,8 @@ def _review(
         return MockError(f"{messages.shown(beside)}: leaves have no mock; add lines for them, for example\n{lines}")
     reason = _why_not_written(beside)
     try:
-        count = 0 if reason else keep_proposal(path, leaves)
+        if not reason:
+            keep_proposal(path, leaves)
     except OSError as error:
         reason = error.strerror or str(error)
     if reason:
@@ -231,11 +232,21 @@ def _review(
             f"{messages.shown(path)}: its leaves need mocks, and a proposal could not be written into "
             f"{messages.shown(beside)}: {reason}; write these lines into a file and name it with --mocks\n{lines}"
         )
-    leaves_ = "its leaf needs a mock" if count == 1 else f"its {count} leaves need mocks"
+    leaves_ = "its leaf needs a mock" if (counted := _counted(leaves)) == "1 leaf" else f"its {counted} need mocks"
+    events = sum(not leaf.is_missing for leaf in leaves)
+    proposal = "a proposal" if not events else f"a proposal, with {events} more for random events,"
     return MockError(
-        f"{messages.shown(path)}: {leaves_}; a proposal is in {messages.shown(beside)}, with a reason for each: "
+        f"{messages.shown(path)}: {leaves_}; {proposal} is in {messages.shown(beside)}, with a reason for each: "
         f"review it and repeat the command, or set mocks with {messages.example}"
     )
+
+
+def _counted(leaves: Iterable[MockableLeaf]) -> str:
+    """How many leaves have no mock and, if one line describes several of them, how many kinds, each with a line."""
+    missing = [leaf for leaf in leaves if leaf.is_missing]
+    count = sum(len(leaf.nodes) for leaf in missing)
+    text = "1 leaf" if count == 1 else f"{count} leaves"
+    return text if len(missing) == count else f"{text} of {len(missing)} {'kind' if len(missing) == 1 else 'kinds'}"
 
 
 def _why_not_written(beside: str) -> str:

@@ -135,6 +135,21 @@ def test_the_command_writes_a_proposal_and_says_how_to_go_on(nav2: Path, capsys:
     assert json.loads(capsys.readouterr().out)["tree"]["success"]["value"] > 0
 
 
+def test_the_command_says_how_many_leaves_share_a_mock(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tree(tmp_path, "<Sequence><ComputePathToPose/><FollowPath/><FollowPath/></Sequence>")
+    assert run(["verify", str(path)]) == USAGE
+    assert "its 3 leaves of 2 kinds need mocks; a proposal is in" in capsys.readouterr().err
+    lines = path.with_suffix(".mocks").read_text("utf-8").splitlines()
+    assert sum(not line.startswith("#") for line in lines) == 2
+
+
+def test_the_command_says_how_many_events_have_a_proposal(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tree(tmp_path, '<DistanceController distance="1.0"><FollowPath/></DistanceController>')
+    assert run(["verify", str(path)]) == USAGE
+    message = capsys.readouterr().err
+    assert "its leaf needs a mock; a proposal, with 1 more for random events, is in" in message
+
+
 def test_the_command_changes_no_file_with_mocks(nav2: Path, capsys: pytest.CaptureFixture[str]) -> None:
     beside = nav2.with_suffix(".mocks")
     beside.write_text("FollowPath: 1\n", encoding="utf-8")
