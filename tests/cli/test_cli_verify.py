@@ -25,10 +25,11 @@ from command import Command
 from smc_models import Json, at, automaton, document, edge, op, probability, variable, way
 
 import as2fm_lsp.atomic_write
-from as2fm_lsp.cli.progress_bar import line, search_line
+from as2fm_lsp.cli.progress_bar import ProgressBar, line, search_line
+from as2fm_lsp.cli.status_line import StatusLine
 from roaml import api
 from roaml.smc.goal import Question
-from roaml.smc.lss import Search, SelectedScheduler, Side
+from roaml.smc.lss import FIRST_SELECTION_TRACE, Search, SelectedScheduler, Side
 from roaml.smc.run import EstimationMethod, Options
 from roaml.smc.tally import Tally
 from roaml.verification.expectations import parse
@@ -573,6 +574,17 @@ def test_progress_bar() -> None:
     assert text.startswith("p ━━━━━───────────────  25%  250 traces  0.4 [0.29")
     assert text.endswith("30 s left")
     assert line(question, Options(), Tally(), 1.0) == "p …"
+
+
+def test_the_progress_within_a_trace_has_no_internal_number(monkeypatch: pytest.MonkeyPatch) -> None:
+    shown: list[str] = []
+    monkeypatch.setattr(StatusLine, "is_due", True)
+    monkeypatch.setattr(StatusLine, "show", lambda _, text: shown.append(text))
+    bar = ProgressBar()
+    bar.begin(Question("p", "Pmin", False, None, ()), Options(), Tally(traces=250, successes=100))
+    bar.pulse(FIRST_SELECTION_TRACE, 10_000)
+    assert "  250 traces  " in shown[0]
+    assert shown[0].endswith(", a trace at step 10,000")
 
 
 # ------------------------------------------------------------------ other answers

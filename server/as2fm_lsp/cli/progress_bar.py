@@ -68,9 +68,10 @@ class ProgressBar:
             states, left = progress.states, progress.states - progress.expanded
             self._line.show(f"{question.name}: {states:,} states, {left:,} still to be expanded")
 
-    def pulse(self, trace: int, steps: int) -> None:
-        """Update within a trace, with its number of steps."""
-        self._show(f", trace {trace:,} at step {steps:,}" if steps else "")
+    def pulse(self, _trace: int, steps: int) -> None:
+        """Update within a trace, with its number of steps. The line states how many traces there are so far; the number
+        of the trace is not shown, because those of sampled schedulers do not begin at 0."""
+        self._show(f", a trace at step {steps:,}" if steps else "")
 
     def _show(self, more: str = "") -> None:
         if not self._line.is_due or self._question is None:
