@@ -72,7 +72,8 @@ def as_text(
         and not estimated.answer.question.asks_for_extreme_state
     ]
     unexpected = _without_expectation(results) if is_whole or any(result.verdicts for result in results) else []
-    return "".join(f"{line}\n" for line in (*blocks, *unexpected, *scheduler_report.note(open_)))
+    note = scheduler_report.note(open_, knows_reactions=any(result.conditional for result in results))
+    return "".join(f"{line}\n" for line in (*blocks, *unexpected, *note))
 
 
 def as_brief_text(results: Sequence[Result], place_of: PlaceOf, level: StuckLevel = StuckLevel.WARNING) -> str:

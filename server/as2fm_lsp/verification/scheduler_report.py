@@ -70,12 +70,13 @@ def warning(question: Question, choices: Choices | None) -> str:
     return text.removeprefix("warning: ") if text.startswith("warning: ") else ""
 
 
-def note(entries: Sequence[tuple[Question, Choices]]) -> list[str]:
+def note(entries: Sequence[tuple[Question, Choices]], *, knows_reactions: bool = False) -> list[str]:
     """A note about properties whose minimum or maximum may differ from their values, and what to do, in one line for
     each reason.
 
     Args:
         entries: these properties, with what is known about other schedulers; without entries, there are no lines.
+        knows_reactions: whether values for another reaction time are shown.
     """
     if not entries:
         return []
@@ -90,10 +91,10 @@ def note(entries: Sequence[tuple[Question, Choices]]) -> list[str]:
         extreme = "minimum" if operator.endswith("min") else "maximum"
         looked = why or f"up to {tried[operator, why]:,} sampled schedulers show no difference, which proves nothing"
         lines.append(f"note: the {extreme} of {', '.join(of)} over all schedulers is not known ({looked})")
-    return [
-        *lines,
-        "  help: use --exhaustive to compute it from all states, or --scheduler uniform if uniform choices are meant",
-    ]
+    ways = ["--exhaustive to compute it from all states", "--scheduler uniform if uniform choices are meant"]
+    if knows_reactions:
+        ways.insert(0, 'a reaction time if machines react in time (--reaction-time instant, or "20 ms")')
+    return [*lines, f"  help: use {', '.join(ways[:-1])}, or {ways[-1]}"]
 
 
 def _looked(question: Question, choices: Choices) -> str:
