@@ -234,6 +234,15 @@ def test_the_note_names_each_property_once(command: Command, tmp_path: Path) -> 
     assert out.count("\n  help: use --exhaustive ") == 1
 
 
+def test_ends_of_examples_are_shown_only_in_verbose_output(command: Command, tmp_path: Path) -> None:
+    """The traces end where no step is possible, which says nothing about an exact value."""
+    written = coin()
+    written["properties"] = [{"name": "never", "expression": probability(op("F", op("=", "x", 2)))}]
+    name = write(tmp_path, written)
+    assert "random traces" not in command("verify", name).out
+    assert "  ends of 200 random traces: no step possible 200\n" in command("verify", name, "--verbose").out
+
+
 def test_traces_that_cannot_be_explained(command: Command, tmp_path: Path) -> None:
     """All traces under uniform choices hold; some of a sampled scheduler fail."""
     err = command("verify", write(tmp_path, starving(steps=500)), "--max-states", 400, "--explain").err

@@ -13,6 +13,7 @@ from as2fm_lsp.verification.doubts import CAN_GET_STUCK, can_get_stuck, doubts
 from as2fm_lsp.verification.stuck_report import PROBABILITY
 from roaml.exhaustive import assert_never
 from roaml.smc.choices import Choices
+from roaml.smc.end import End
 from roaml.smc.lss import Side
 from roaml.smc.run import Answer, ratio_of
 from roaml.verification.expectations import NO_EXPECTATION
@@ -303,8 +304,9 @@ def _reward_remark(answer: Answer) -> str:
 
 
 def _example_remarks(answer: Answer, *, is_whole: bool) -> list[str]:
-    """Remarks on the traces that were generated as examples for an exact value."""
-    are_shown = is_whole or not ends.are_ordinary(answer.tally)
+    """Remarks on the traces that were generated as examples for an exact value. Why they ended is not part of the
+    answer; that some got stuck is a warning."""
+    are_shown = is_whole or answer.tally.ended(End.STUCK)
     lines = [f"ends of {answer.tally.traces:,} random traces: {ends.as_line(answer.tally)}"] if are_shown else []
     return [f"  {line}" for line in (*lines, *activity_report.remarks(answer))]
 
