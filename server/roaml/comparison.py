@@ -27,3 +27,9 @@ def read_comparison(text: str) -> Comparison | None:
     except ValueError:
         return None
     return None if match is None or math.isnan(number) else Comparison(_SPELLINGS[match[1]], number)
+
+
+def as_written(value: float) -> str:
+    """A number that a user has written, with all of its digits."""
+    text = f"{value:g}"
+    return text if float(text) == value else repr(value).removesuffix(".0")

@@ -5,7 +5,8 @@ import math
 
 import pytest
 
-from roaml.verification.expectations import as_written, parse
+from roaml.comparison import as_written
+from roaml.verification.expectations import parse
 from roaml.verification.number_text import exact_number, number
 
 

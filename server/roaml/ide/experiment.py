@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from fractions import Fraction
 
+from roaml.comparison import as_written
 from roaml.exact_number import exact_fraction
 from roaml.expansion.declarations import Declared
 from roaml.expansion.values import ParameterValue, number_text
@@ -17,7 +18,6 @@ from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.record import Record
 from roaml.text import Span
-from roaml.verification.expectations import as_written
 from roaml.xml_syntax import Attribute
 
 STEPS = 10

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 
-from roaml.comparison import Comparison, read_comparison
+from roaml.comparison import Comparison, as_written, read_comparison
 from roaml.jani.operators import BinaryOperator
 from roaml.record import Record
 from roaml.regex import regex
@@ -35,12 +35,6 @@ _NARROW = 1e-6
 """The maximum distance of the bounds of an exact value that equals a number between them; relative above 1."""
 NO_EXPECTATION = "no expectation set"
 """The text for a result with which no expectation is compared."""
-
-
-def as_written(value: float) -> str:
-    """A number that a user has written, with all of its digits."""
-    text = f"{value:g}"
-    return text if float(text) == value else repr(value).removesuffix(".0")
 
 
 class Expectation(Record, frozen=True):
