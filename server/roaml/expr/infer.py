@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from fractions import Fraction
 from typing import TypeAlias
 
 from roaml.exhaustive import assert_never
@@ -202,6 +203,12 @@ def infer(expr: Expr, scope: Scope, *, reprinted: bool = False) -> tuple[Type, t
     if len(problems) > 1:
         problems.sort(key=lambda p: p.span)
     return type_, tuple(problems)
+
+
+def constant_fraction(expr: Expr) -> Fraction | None:
+    """The same as `constant`, as the decimal number that is written."""
+    value = constant(expr)
+    return None if value is None else Fraction(str(value))
 
 
 def constant(expr: Expr) -> int | float | None:

@@ -55,6 +55,25 @@ class UnaryOperator(enum.Enum):
         return self.value
 
 
+MIRRORED = {
+    Operator.LESS: Operator.GREATER,
+    Operator.LESS_EQUAL: Operator.GREATER_EQUAL,
+    Operator.GREATER: Operator.LESS,
+    Operator.GREATER_EQUAL: Operator.LESS_EQUAL,
+    Operator.EQUAL: Operator.EQUAL,
+    Operator.NOT_EQUAL: Operator.NOT_EQUAL,
+}
+"""Each comparison operator with the one that has the same meaning after an exchange of the operands."""
+OPPOSITE = {
+    Operator.LESS: Operator.GREATER_EQUAL,
+    Operator.LESS_EQUAL: Operator.GREATER,
+    Operator.GREATER: Operator.LESS_EQUAL,
+    Operator.GREATER_EQUAL: Operator.LESS,
+    Operator.EQUAL: Operator.NOT_EQUAL,
+    Operator.NOT_EQUAL: Operator.EQUAL,
+}
+"""Each comparison operator with the one that holds if it does not."""
+
 BINARY = {operator.symbol: operator for operator in Operator} | {"===": Operator.EQUAL, "!==": Operator.NOT_EQUAL}
 UNARY = {operator.symbol: operator for operator in UnaryOperator}
 

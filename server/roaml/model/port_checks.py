@@ -7,8 +7,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
 
-from roaml.expr.infer import constant
-from roaml.expr.operators import Operator
+from roaml.expr.infer import constant_fraction
+from roaml.expr.operators import MIRRORED, Operator
 from roaml.expr.tree import Binary, Expr, Name, walk
 from roaml.model.machine import Chart, Machine, State
 from roaml.model.syntax import Expression, PortRead
@@ -68,9 +68,9 @@ def port_choices(machine: Machine, expressions: Iterable[Expression]) -> Iterato
     for node in (node for expression in expressions if ports for node in walk(expression.tree)):
         if isinstance(node, Binary) and node.operator in (Operator.EQUAL, Operator.NOT_EQUAL):
             for side, other in ((node.left, node.right), (node.right, node.left)):
-                number = constant(other)
-                if isinstance(side, Name) and number is not None and not isinstance(number, bool):
-                    numbers.setdefault(side.name, set()).add(Fraction(str(number)))
+                number = constant_fraction(other)
+                if isinstance(side, Name) and number is not None:
+                    numbers.setdefault(side.name, set()).add(number)
                     compared.add(side)
         elif isinstance(node, Name) and node not in compared:
             others.add(node.name)
@@ -97,24 +97,13 @@ def _alternatives(tree: Expr) -> Iterator[Expr]:
         yield tree
 
 
-_COMPARISONS = {
-    Operator.LESS: Operator.GREATER,
-    Operator.LESS_EQUAL: Operator.GREATER_EQUAL,
-    Operator.GREATER: Operator.LESS,
-    Operator.GREATER_EQUAL: Operator.LESS_EQUAL,
-    Operator.EQUAL: Operator.EQUAL,
-    Operator.NOT_EQUAL: Operator.NOT_EQUAL,
-}
-"""The comparisons, with those that hold if the sides are exchanged."""
-
-
 def _refusal(ports: dict[str, str], tree: Expr, state: str) -> Iterator[PortRefusal]:
-    if not isinstance(tree, Binary) or tree.operator not in _COMPARISONS:
+    if not isinstance(tree, Binary) or tree.operator not in MIRRORED:
         return
     for side, other, operator in (
         (tree.left, tree.right, tree.operator),
-        (tree.right, tree.left, _COMPARISONS[tree.operator]),
+        (tree.right, tree.left, MIRRORED[tree.operator]),
     ):
-        number = constant(other)
-        if isinstance(side, Name) and side.name in ports and number is not None and not isinstance(number, bool):
-            yield PortRefusal(ports[side.name], operator, Fraction(str(number)), state)
+        number = constant_fraction(other)
+        if isinstance(side, Name) and side.name in ports and number is not None:
+            yield PortRefusal(ports[side.name], operator, number, state)

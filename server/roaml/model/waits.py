@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 
-from roaml.expr.infer import constant
+from roaml.expr.infer import constant, constant_fraction
 from roaml.expr.operators import Operator
 from roaml.expr.tree import Binary, Expr, Name, walk
 from roaml.model.machine import Assign, Chart, If, Machine, ReturnStatus, Statement, statements
@@ -94,12 +94,9 @@ def _wait(
     name, factor = _scaled(growing)
     if name not in counts or factor <= 0:
         return
-    number = constant(limit)
-    known: PortRead | Fraction | None = None
+    known: PortRead | Fraction | None = constant_fraction(limit)
     scale = Fraction(1)
-    if number is not None and not isinstance(number, bool):
-        known = Fraction(str(number))
-    else:
+    if known is None:
         other, scale = _scaled(limit)
         known = limits.get(other)
     if known is None or scale <= 0:
@@ -117,9 +114,8 @@ def _scaled(tree: Expr) -> tuple[str, Fraction]:
         return tree.name, Fraction(1)
     if isinstance(tree, Binary) and tree.operator in (Operator.MULTIPLY, Operator.DIVIDE):
         for side, other in ((tree.left, tree.right), (tree.right, tree.left)):
-            number = constant(other)
-            if isinstance(side, Name) and number is not None and number > 0:
-                factor = Fraction(str(number))
+            factor = constant_fraction(other)
+            if isinstance(side, Name) and factor is not None and factor > 0:
                 if tree.operator is Operator.MULTIPLY:
                     return side.name, factor
                 if side is tree.left:
@@ -160,9 +156,9 @@ def _step(statement: Statement) -> Fraction | None:
     if not isinstance(location, Name) or not isinstance(tree, Binary) or tree.operator is not Operator.ADD:
         return None
     for side, other in ((tree.left, tree.right), (tree.right, tree.left)):
-        number = constant(other)
-        if isinstance(side, Name) and side.name == location.name and number is not None and number > 0:
-            return Fraction(str(number))
+        step: Fraction | None = constant_fraction(other)
+        if isinstance(side, Name) and side.name == location.name and step is not None and step > 0:
+            return step
     return None
 
 
@@ -183,11 +179,11 @@ def fixed_variables(chart: Chart) -> dict[str, PortRead | Fraction]:
             continue
         assigned = values.get(data.id.value, [data.value])
         ports = {value.key.value: value for value in assigned if isinstance(value, PortRead) and value.key}
-        number = constant(data.value.tree) if isinstance(data.value, Expression) else None
+        number = constant_fraction(data.value.tree) if isinstance(data.value, Expression) else None
         if len(ports) == 1 and all(isinstance(value, PortRead) for value in assigned):
             (result[data.id.value],) = ports.values()
-        elif data.id.value not in values and number is not None and not isinstance(number, bool):
-            result[data.id.value] = Fraction(str(number))
+        elif data.id.value not in values and number is not None:
+            result[data.id.value] = number
     return result
 
 

@@ -13,7 +13,7 @@ import math
 from collections.abc import Callable, Iterator
 from typing import TypeAlias
 
-from roaml.expr.operators import Operator, OperatorKind, UnaryOperator
+from roaml.expr.operators import MIRRORED, OPPOSITE, Operator, OperatorKind, UnaryOperator
 from roaml.expr.tree import (
     ArrayLiteral,
     Binary,
@@ -58,22 +58,6 @@ from roaml.text import Span
 Valuation: TypeAlias = "dict[str, ValueSet]"
 
 _LENGTH = ValueSet(None, 0, math.inf, Origin.REACHED, Origin.ASSUMED)
-_MIRROR = {
-    Operator.LESS: Operator.GREATER,
-    Operator.LESS_EQUAL: Operator.GREATER_EQUAL,
-    Operator.GREATER: Operator.LESS,
-    Operator.GREATER_EQUAL: Operator.LESS_EQUAL,
-    Operator.EQUAL: Operator.EQUAL,
-    Operator.NOT_EQUAL: Operator.NOT_EQUAL,
-}
-_OPPOSITE = {
-    Operator.LESS: Operator.GREATER_EQUAL,
-    Operator.LESS_EQUAL: Operator.GREATER,
-    Operator.GREATER: Operator.LESS_EQUAL,
-    Operator.GREATER_EQUAL: Operator.LESS,
-    Operator.EQUAL: Operator.NOT_EQUAL,
-    Operator.NOT_EQUAL: Operator.EQUAL,
-}
 
 
 def place_of(expr: Expr) -> str | None:
@@ -239,8 +223,8 @@ class Evaluator(Record, eq=False):
                 first, rest = (self.assume(known, condition.left, value) for value in (holds, not holds))
                 second = None if rest is None else self.assume(rest, condition.right, holds)
                 return second if first is None else first if second is None else joined_valuations(first, second)
-            case Binary() if condition.operator in _OPPOSITE:
-                operator = condition.operator if holds else _OPPOSITE[condition.operator]
+            case Binary() if condition.operator in OPPOSITE:
+                operator = condition.operator if holds else OPPOSITE[condition.operator]
                 return self._compare(known, operator, condition.left, condition.right)
         if self._quietly(known, condition).only == frozenset((not holds,)):
             return None
@@ -257,7 +241,7 @@ class Evaluator(Record, eq=False):
         narrowed = self._with(known, left, self._related(left, operator, first, second))
         if narrowed is None:
             return None
-        return self._with(narrowed, right, self._related(right, _MIRROR[operator], second, first))
+        return self._with(narrowed, right, self._related(right, MIRRORED[operator], second, first))
 
     def _quietly(self, known: Valuation, expr: Expr) -> ValueSet:
         """The values of an expression that is recorded elsewhere."""
@@ -315,7 +299,7 @@ def compared(operator: Operator, left: ValueSet, right: ValueSet) -> ValueSet:
     if not (is_numeric(left) and is_numeric(right)):
         return BOTH
     if operator in (Operator.GREATER, Operator.GREATER_EQUAL):
-        left, right, operator = right, left, _MIRROR[operator]
+        left, right, operator = right, left, MIRRORED[operator]
     left, right = interval(left), interval(right)
     strict = operator is Operator.LESS
     can_hold = left.low < right.high or (not strict and left.low == right.high)

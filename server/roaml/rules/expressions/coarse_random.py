@@ -9,7 +9,7 @@ from fractions import Fraction
 
 from roaml.diagnostics import Finding, Severity
 from roaml.expr.infer import constant
-from roaml.expr.operators import Operator, UnaryOperator
+from roaml.expr.operators import MIRRORED, Operator, OperatorKind, UnaryOperator
 from roaml.expr.tree import Binary, Call, Expr, Member, Name, Unary, children, is_draw, walk
 from roaml.model.machine import Assign, Chart
 from roaml.model.parameters import DEFAULT_RANDOM_VALUES, MAX_RANDOM_VALUES
@@ -17,14 +17,6 @@ from roaml.model.syntax import Expression
 from roaml.rules.rule import MachineContext, Rule
 
 ROUNDING = ("floor", "ceil")
-
-_MIRRORED = {
-    Operator.LESS: Operator.GREATER,
-    Operator.LESS_EQUAL: Operator.GREATER_EQUAL,
-    Operator.GREATER: Operator.LESS,
-    Operator.GREATER_EQUAL: Operator.LESS_EQUAL,
-}
-"""Each comparison operator with the operator that has the same meaning after an exchange of the operands."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -60,11 +52,11 @@ def _stretched(expr: Expr, values: int) -> Iterator[Finding]:
 def _compared(expr: Expr, drawn: frozenset[str], values: int) -> Iterator[Finding]:
     """Report comparisons of a random number whose probability differs from the one that the constant suggests."""
     for node in walk(expr):
-        if not isinstance(node, Binary) or node.operator not in _MIRRORED:
+        if not isinstance(node, Binary) or node.operator.kind is not OperatorKind.ORDER:
             continue
         operator, left, right = node.operator, node.left, node.right
         if not isinstance(left, Name):
-            operator, left, right = _MIRRORED[operator], right, left
+            operator, left, right = MIRRORED[operator], right, left
         bound = constant(right)
         if not isinstance(left, Name) or left.name not in drawn or bound is None or not 0 < bound < 1:
             continue

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import IndexOutOfBounds, constant, infer
-from roaml.expr.operators import Operator, UnaryOperator
+from roaml.expr.operators import MIRRORED, OPPOSITE, Operator, UnaryOperator
 from roaml.expr.tree import Binary, Expr, Index, Member, Name, Unary, walk
 from roaml.expr.types import Array, Type
 from roaml.model.machine import Handler
@@ -225,31 +225,15 @@ def _limits(context: MachineContext, expr: Expr, array: Expr, bound: int, holds:
         case Binary(operator=Operator.AND | Operator.OR):
             sides = (_limits(context, side, array, bound, holds) for side in (expr.left, expr.right))
             return any(sides) if (expr.operator is Operator.AND) is holds else all(sides)
-        case Binary(operator=operator) if operator in _OPPOSITE:
+        case Binary(operator=operator) if operator in OPPOSITE:
             if _is_length_of(context, expr.left, array):
                 number = constant(expr.right)
             elif _is_length_of(context, expr.right, array):
-                number, operator = constant(expr.left), _MIRRORED.get(operator, operator)
+                number, operator = constant(expr.left), MIRRORED.get(operator, operator)
             else:
                 return False
-            return _below(operator if holds else _OPPOSITE[operator], number, bound)
+            return _below(operator if holds else OPPOSITE[operator], number, bound)
     return False
-
-
-_OPPOSITE = {
-    Operator.LESS: Operator.GREATER_EQUAL,
-    Operator.GREATER_EQUAL: Operator.LESS,
-    Operator.GREATER: Operator.LESS_EQUAL,
-    Operator.LESS_EQUAL: Operator.GREATER,
-    Operator.EQUAL: Operator.NOT_EQUAL,
-    Operator.NOT_EQUAL: Operator.EQUAL,
-}
-_MIRRORED = {
-    Operator.LESS: Operator.GREATER,
-    Operator.GREATER: Operator.LESS,
-    Operator.LESS_EQUAL: Operator.GREATER_EQUAL,
-    Operator.GREATER_EQUAL: Operator.LESS_EQUAL,
-}
 
 
 def _below(operator: Operator, number: float | None, bound: int) -> bool:
