@@ -68,6 +68,7 @@ class InterfaceUse(Record, frozen=True):
         fields: for each part that is sent, its fields with the types of their values, including fields that are not
             set.
         awaited: for a subscriber, whether the machine can reach a state in which it waits only for this topic.
+        reads: for a subscriber, whether callbacks read its messages.
     """
 
     kind: SymbolKind
@@ -79,6 +80,7 @@ class InterfaceUse(Record, frozen=True):
     receives: frozenset[ProtocolPart]
     fields: tuple[tuple[ProtocolPart, tuple[SentField, ...]], ...]
     awaited: bool = False
+    reads: bool = False
 
 
 class EventSent(Record, frozen=True):
@@ -285,6 +287,7 @@ def _interfaces(machine: Machine, typed: TypedMachine, types: dict[Element, Type
     for handler in _handlers(machine):
         if handler.trigger and (declaration := find_handle(machine, handler)):
             receives[declaration.element].add(handler.trigger)
+    read = {declaration.element for declaration in _read_messages(machine, typed)}
     charts = [_Waiting(machine, chart) for chart in machine.charts]
     return tuple(
         InterfaceUse(
@@ -300,10 +303,23 @@ def _interfaces(machine: Machine, typed: TypedMachine, types: dict[Element, Type
                 for part, known in fields[declaration.element].items()
             ),
             declaration.kind is SymbolKind.SUBSCRIBER and any(chart.awaits(declaration) for chart in charts),
+            declaration.element in read,
         )
         for declaration in machine.declarations
         if declaration.kind is not SymbolKind.TIMER
     )
+
+
+def _read_messages(machine: Machine, typed: TypedMachine) -> Iterator[Declaration]:
+    """The subscribers whose callbacks read the message."""
+    for value in typed.values:
+        handler = value.place.handler
+        if handler is None or handler.trigger is not ProtocolPart.MESSAGE or not isinstance(value.value, Expression):
+            continue
+        if any(isinstance(node, NameExpr) and node.name == "_msg" for node in walk(value.value.tree)):
+            declaration = find_handle(machine, handler)
+            if declaration is not None:
+                yield declaration
 
 
 class _Waiting:

@@ -14,17 +14,21 @@ from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.fields import sent_part
+from roaml.rules.support.interfaces import channels_of
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report all places where a machine publishes the same Boolean constant on a topic, if there are several."""
+    """Report all places where a machine publishes the same Boolean constant on a topic, if there are several and a
+    subscriber reads the value."""
     if not context.automata:
         return
-    for statements in _published(context).values():
+    for declaration, statements in _published(context).items():
         constants = [_constant(context, statement) for statement in statements]
         values = [constant for constant in constants if constant is not None]
         if len(statements) < 2 or len(values) < len(statements) or len({value.value for value in values}) > 1:
             continue
+        if not any(end.use.reads for _, channel in channels_of(context, declaration) for end in channel.users):
+            continue  # a signal, such as a heartbeat
         for value in values:
             text = "true" if value.value else "false"
             message = f"all messages that this machine publishes on the topic are `{text}`, so receivers learn nothing"
