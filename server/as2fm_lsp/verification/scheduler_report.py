@@ -9,7 +9,7 @@ from typing import Any
 
 from roaml.smc.choices import Choices, Extreme, ExtremeMethod
 from roaml.smc.goal import InitialFold, Question
-from roaml.verification.headline import NOT_KNOWN, claim_for_all
+from roaml.verification.headline import bound_text
 from roaml.verification.number_text import number
 from roaml.verification.schedulers import extreme_of, is_minimised
 
@@ -31,19 +31,17 @@ def remark(question: Question, choices: Choices | None) -> str:
     asked = f"the property asks for the {extreme_of(question)} over all schedulers"
     known = choices.minimum if is_minimised(question) else choices.maximum
     if known is not None and choices.differ:
-        return f"warning: {asked}, which {_known(question, choices, known)}"
+        return f"warning: {asked}, which {_known(question, known)}"
     head = "warning: this is the value under uniform choices"
     return f"{head}, and {asked}, which may differ; {_looked(question, choices)}"
 
 
-def _known(question: Question, choices: Choices, extreme: Extreme) -> str:
+def _known(question: Question, extreme: Extreme) -> str:
     """What is known about the extreme that a property asks for, as a phrase with a verb. The value under uniform
     choices is in the line before it."""
     if extreme.is_exact:
         return f"is {number(extreme.value)} (exact, from all states)"
-    claim = claim_for_all(question, choices)
-    if extreme.method is ExtremeMethod.SAMPLING and not claim.endswith(NOT_KNOWN):
-        bound = claim.removeprefix(f"{extreme_of(question)} {NOT_KNOWN}, ")
+    if extreme.method is ExtremeMethod.SAMPLING and (bound := bound_text(question, extreme)):
         return f"is {bound} (by {extreme.scheduler})"
     return f"may be {'smaller' if is_minimised(question) else 'greater'}: other schedulers have other values"
 
@@ -93,7 +91,7 @@ def note(entries: Sequence[tuple[Question, Choices]], *, knows_reactions: bool =
         lines.append(f"note: the {extreme} of {', '.join(of)} over all schedulers is not known ({looked})")
     ways = ["--exhaustive to compute it from all states", "--scheduler uniform if uniform choices are meant"]
     if knows_reactions:
-        ways.insert(0, 'a reaction time if machines react in time (--reaction-time instant, or "20 ms")')
+        ways.insert(0, 'a reaction time if machines always react within it (--reaction-time instant, or "20 ms")')
     return [*lines, f"  help: use {', '.join(ways[:-1])}, or {ways[-1]}"]
 
 

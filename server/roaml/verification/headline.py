@@ -4,7 +4,7 @@ of tests all use these words.
 
 - A property that asks for a minimum or maximum over all schedulers is never answered by the value under uniform
   choices. The sampled traces of one scheduler bound the minimum from above and the maximum from below; if not even that
-  excludes a value, only that it is not known is said.
+  excludes a value, the words only state that it is not known.
 - If traces are undecided, the words name bounds, the number of undecided traces and the remedy, and no value between
   the bounds.
 """
@@ -16,7 +16,7 @@ from collections.abc import Callable
 
 from roaml.exhaustive import assert_never
 from roaml.record import Record
-from roaml.smc.choices import Choices
+from roaml.smc.choices import Choices, Extreme
 from roaml.smc.end import End
 from roaml.smc.goal import Question
 from roaml.smc.run import Answer
@@ -100,13 +100,20 @@ def claim_for_all(question: Question, choices: Choices | None) -> str:
     known = choices.minimum if is_minimised(question) else choices.maximum
     if known is not None and known.is_exact:
         return f"{extreme_of(question)} {number(known.value)}, exact"
+    bound = bound_text(question, known)
+    return f"{not_known}, {bound}" if bound else not_known
+
+
+def bound_text(question: Question, known: Extreme | None) -> str:
+    """What the bounds of the value under one scheduler show about the minimum or maximum that a property asks for, such
+    as `at most 0.17`; "" for nothing."""
     if known is None or question.has_opposite_extremes or question.is_reward:
-        return not_known
+        return ""
     if is_minimised(question):
         upper = _outwards(known.bounds.upper, math.ceil)
-        return f"{not_known}, at most {upper:g}" if upper < 1 else not_known
+        return f"at most {upper:g}" if upper < 1 else ""
     lower = _outwards(known.bounds.lower, math.floor)
-    return f"{not_known}, at least {lower:g}" if lower > 0 else not_known
+    return f"at least {lower:g}" if lower > 0 else ""
 
 
 def estimate_text(answer: Answer) -> str:
