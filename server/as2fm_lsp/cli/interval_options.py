@@ -38,7 +38,6 @@ def target_over_intervals(options: argparse.Namespace, settings: Settings) -> Ve
         raise UsageError(
             "bounds over intervals are computed from all states; leave out the options for random traces and schedulers"
         )
-    options.exhaustive = True
     pairs = (*options.set, *((name.strip(), value) for name, _, value in (t.partition("=") for t in options.constant)))
     settings = with_parameter_files(settings, options.params_file)
     overrides = Overrides(options.max_time, None, options.reaction_time, semantics=semantics_of(options))

@@ -131,6 +131,7 @@ def _run(options: argparse.Namespace, interrupts: Interrupts) -> int:
             over_intervals = has_intervals(options)
             target = target_over_intervals(options, settings) if over_intervals else read_target(options, settings)
             only_uniform = only_uniform and not over_intervals
+            options.exhaustive = options.exhaustive or over_intervals
             status.stage("compiling")
             verifier = api.verifier(
                 target,
