@@ -158,5 +158,5 @@ def test_a_skipped_node(command: Command, tmp_path: Path) -> None:
     assert command(*run, "--csv", str(table)).status == 0
     assert command(*run, "--csv", "-").out == table.read_text(encoding="utf-8")
     rows = list(csv.DictReader(table.open(encoding="utf-8")))
-    assert {row["bt_1003"] for row in rows} == {"IDLE", "TICKED", "SKIPPED"}
-    assert {row["bt_1004"] for row in rows} == {"IDLE", "TICKED", "RUNNING", "SUCCESS"}
+    assert {row["Skipped: status"] for row in rows} == {"IDLE", "TICKED", "SKIPPED"}
+    assert {row["Last: status"] for row in rows} == {"IDLE", "TICKED", "RUNNING", "SUCCESS"}

@@ -3,8 +3,8 @@
 
 It has a row for each state, including the first one, and columns for its number (`step`), the time in s if the model
 has a clock (`time`), the action of the step before it (`action`), the state and variables of each machine (`Arm.state`,
-`Arm.way`), the status of each node of the tree (`bt_1003`), the blackboard, and the other variables of the model. An
-array has a column for each of its elements; true is 1, false 0.
+`Arm.way`), the status of each node of the tree (`PickUp: status`), the blackboard, and the other variables of the
+model. An array has a column for each of its elements; true is 1, false 0.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def _state_cells(session: Session, state: SystemState, shown: Mapping[str, str])
         for name, value in machine.variables.items():
             yield from _cells(f"{machine.identifier}.{phrases.get(name, name)}", value)
     for node in state.nodes:
-        yield f"bt_{node.number}", node.status.value
+        yield f"{node.name}: status", node.status.value
     for name, value in state.blackboard.items():
         yield from _cells(name, value)
     for name, value in state.shared.items():
