@@ -20,7 +20,7 @@ _NAMES = (
     "poisson",
     "uniform",
 )
-"""The begins of the names of distributions."""
+"""The beginnings of the names of distributions."""
 _CALL = regex(rf"\b(?:{'|'.join(_NAMES)}|uniform_int)\s*\(")
 
 

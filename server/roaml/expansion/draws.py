@@ -75,7 +75,8 @@ class _Piece(NamedTuple):
 def expand_draws(
     text: ExpandedText, problems: Problems, read: Callable[[str], str | None]
 ) -> tuple[ExpandedText, tuple[DrawnNumber, ...]]:
-    """A machine in which targets with probabilities replace the draws, and these draws. Invalid draws stay.
+    """A machine in which targets with probabilities replace the draws, and these draws. A number
+    replaces an invalid draw, which is a problem.
 
     Args:
         text: the machine without parameters.

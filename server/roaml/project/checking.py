@@ -51,6 +51,8 @@ from roaml.suggest import close_names
 from roaml.text import Location, SourceFile, Span
 from roaml.xml_syntax import Document
 
+_INVALID_DRAWS = (ExpansionProblem.DISTRIBUTION.value, ExpansionProblem.MISPLACED.value)
+"""The codes of findings about numbers that cannot be drawn."""
 MAX_FINDINGS = 1000
 """The maximum number of findings of one rule in one file. It limits the time that is spent on similar names and
 fixes."""
@@ -228,9 +230,6 @@ class RuleRunner:
             location = locate(self.analysis, related.place)
             return None if location is None else RelatedPlace(location, related.message)
         return RelatedPlace(Location(path, related.place), related.message)
-
-
-_INVALID_DRAWS = (ExpansionProblem.DISTRIBUTION.value, ExpansionProblem.MISPLACED.value)
 
 
 def _in_all_copies(text: ExpandedText, findings: tuple[Finding, ...]) -> tuple[Finding, ...]:

@@ -74,7 +74,7 @@ class FileInSystem(Record, Generic[E], frozen=True, eq=False):
         kind: the kind of the file in the system.
         key: all values on which the findings depend.
         expanded: the analysis of the expanded texts, which is checked instead; `None` if nothing is expanded.
-        failure: an internal error, because of which the file cannot be checked.
+        failure: the internal error that prevents a check; `None` if there was none.
     """
 
     path: str
@@ -104,7 +104,8 @@ class Contexts(Record, frozen=True, eq=False):
     """The contexts in which the rules check a file.
 
     Attributes:
-        failure: an internal error, because of which there is no context of the rules about files of this kind.
+        own: the context of the rules about files of this kind.
+        failure: the internal error that prevented `own` from being made; `None` if there was none.
     """
 
     file: FileContext
