@@ -282,8 +282,9 @@ def test_kinds_of_nodes_in_a_tree_alone(tmp_path: Path) -> None:
     }
 
 
-def test_ros(tmp_path: Path) -> None:
-    files = split_files(ROBOT)
+def robot_with(machine: str) -> dict[str, str]:
+    """The robot with a second machine."""
+    files = split_files(ROBOT) | {"b.ascxml": machine}
     files["main.xml"] = system_file(
         "behavior_tree bt.cpp-xml tree.xml",
         "behavior_tree bt-plugin-ascxml plugin.ascxml",
@@ -291,13 +292,17 @@ def test_ros(tmp_path: Path) -> None:
         "node_models node-ascxml b.ascxml",
         "data_declarations xml types.xml",
     )
-    files["b.ascxml"] = """\
+    return files
+
+
+def test_ros(tmp_path: Path) -> None:
+    files = robot_with("""\
 <ascxml name="B" version="1.0" initial="s">
   <ros_service_client name="ask" service_name="/ask" type="std_srvs/Trigger"/>
   <ros_action_server name="act" action_name="/act" type="example_interfaces/Fibonacci"/>
   <state id="s"><transition event="go" target="s"/></state>
 </ascxml>
-"""
+""")
     analysis = load(tmp_path, files)
     picture = ros_picture(analysis, str(tmp_path / "main.xml"))
     assert shown(picture) == [
@@ -321,20 +326,13 @@ def test_ros(tmp_path: Path) -> None:
 
 
 def test_a_part_of_a_ros_graph(tmp_path: Path) -> None:
-    files = split_files(ROBOT)
-    files["main.xml"] = system_file(
-        "behavior_tree bt.cpp-xml tree.xml",
-        "behavior_tree bt-plugin-ascxml plugin.ascxml",
-        "node_models node-ascxml a.ascxml",
-        "node_models node-ascxml b.ascxml",
-    )
-    files["b.ascxml"] = """\
+    files = robot_with("""\
 <ascxml name="B" version="1.0" initial="s">
   <ros_service_client name="ask" service_name="/ask" type="std_srvs/Trigger"/>
   <ros_topic_subscriber name="c" topic="/c" type="std_msgs/Int32"/>
   <state id="s"/>
 </ascxml>
-"""
+""")
     picture = ros_picture(load(tmp_path, files), str(tmp_path / "main.xml"))
     assert picture is not None
     ids = {node.label: node.id for node in picture.nodes}
