@@ -12,6 +12,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from roaml.disk import UnreadableReason, read, required
+from roaml.exact_number import exact_fraction
 from roaml.mocks.mock import Mock, MockError, read_mock, read_mocks, unused
 from roaml.model.kinds import FileKind, kind_of
 from roaml.project.settings import Settings, ament_prefixes
@@ -88,11 +89,8 @@ class MockMessages(Record, frozen=True):
 
 def read_rate(text: str) -> Fraction | None:
     """The tick rate in Hz that a text contains; `None` if it is not greater than 0 and at most `MAX_RATE`."""
-    try:
-        rate = Fraction(text)
-    except (ValueError, ZeroDivisionError):
-        return None
-    return rate if 0 < rate <= MAX_RATE else None
+    rate = exact_fraction(text)
+    return rate if rate is not None and 0 < rate <= MAX_RATE else None
 
 
 def names_tree(path: str, texts: Mapping[str, bytes] = NO_TEXTS) -> bool:

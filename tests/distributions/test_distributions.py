@@ -14,6 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
+from roaml.distributions.data import read_histogram
 from roaml.distributions.laws import LAWS, Continuous, LawError
 from roaml.distributions.outcomes import MAX_CUT, Outcomes, Rounding, outcomes
 
@@ -144,3 +145,10 @@ def test_probabilities_below_and_above_a_number_are_precise_in_the_tails() -> No
         for x in (-40.0, -2.0, 0.0, 0.5, 2.0, 3.5, 30.0):
             assert made.below(x) == pytest.approx(law.cdf(x), rel=1e-12, abs=1e-300)
             assert made.above(x) == pytest.approx(law.sf(x), rel=1e-12, abs=1e-300)
+
+
+@pytest.mark.parametrize("number", ["1e9999999", "1e-9999999", "1/1e9999999"])
+def test_numbers_in_data_have_limited_sizes(number: str) -> None:
+    """Their fractions would have ten million digits."""
+    with pytest.raises(LawError, match="line 2"):
+        read_histogram(f"2\n{number}\n")

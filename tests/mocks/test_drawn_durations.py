@@ -141,6 +141,7 @@ def test_mocks_of_a_system_take_the_same_times(tmp_path: Path, capsys: pytest.Ca
         ("normal(3 s)", "`mean`, `deviation`"),
         ("categorical(1 s, 2 s)", "`2 s` in .* is not a probability"),
         ("categorical(1 s, 0.5)", "add up to 0.5"),
+        ("categorical(1 s, 1e-9999999, 2 s, 1)", "`1e-9999999` in .* is not a probability"),
     ],
 )
 def test_durations_that_are_not_valid(duration: str, reason: str) -> None:

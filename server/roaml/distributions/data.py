@@ -7,6 +7,7 @@ import csv
 from fractions import Fraction
 
 from roaml.distributions.laws import LawError, ListedLaw
+from roaml.exact_number import exact_fraction
 
 
 def read_histogram(text: str) -> ListedLaw:
@@ -18,10 +19,10 @@ def read_histogram(text: str) -> ListedLaw:
     counts: dict[Fraction, Fraction] = {}
     rows = ((number, row) for number, row in enumerate(csv.reader(text.splitlines()), 1) if _has_data(row))
     for place, (number, row) in enumerate(rows):
-        value = _number(row[0])
+        value = exact_fraction(row[0])
         if value is None and place == 0:
             continue  # the names of the columns
-        count = _number(row[1]) if len(row) > 1 and row[1].strip() else Fraction(1)
+        count = exact_fraction(row[1]) if len(row) > 1 and row[1].strip() else Fraction(1)
         if value is None or count is None or count < 0:
             raise LawError(f"line {number} is `{','.join(row)}` instead of a number, or of a value and its number")
         counts[value] = counts.get(value, Fraction(0)) + count
@@ -34,10 +35,3 @@ def read_histogram(text: str) -> ListedLaw:
 
 def _has_data(row: list[str]) -> bool:
     return any(cell.strip() for cell in row) and not row[0].lstrip().startswith("#")
-
-
-def _number(text: str) -> Fraction | None:
-    try:
-        return Fraction(text.strip())
-    except (ValueError, ZeroDivisionError):
-        return None

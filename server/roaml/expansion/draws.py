@@ -17,6 +17,7 @@ from typing import NamedTuple
 from roaml.distributions.data import read_histogram
 from roaml.distributions.laws import HISTOGRAM, LAWS, MAX_VALUES, LawError
 from roaml.distributions.outcomes import Outcomes, decimal_text, outcomes
+from roaml.exact_number import exact_number
 from roaml.expansion.instances import removed_attribute
 from roaml.expansion.problems import ExpansionProblem, Problems
 from roaml.expansion.text import CopiedText, ExpandedText
@@ -361,7 +362,4 @@ def _is_draw(node: Expr) -> bool:
 def _share(target: Element) -> Fraction | None:
     """The probability of a target; `None` if it has none, or if it is not a number."""
     prob = target.get("prob")
-    try:
-        return None if prob is None else Fraction(prob.value.strip())
-    except (ValueError, ZeroDivisionError):
-        return None
+    return None if prob is None else exact_number(prob.value)

@@ -8,6 +8,7 @@ from fnmatch import fnmatchcase
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from roaml.exact_number import exact_fraction
 from roaml.record import Record
 from roaml.regex import regex
 from roaml.suggest import close_names, did_you_mean
@@ -148,7 +149,7 @@ def _drawn_duration(written: str, mock: str) -> DrawnDuration:
     values = []
     for position, argument in enumerate(arguments.split(",")):
         is_share = function.parameters[position % len(function.parameters)] == "p"
-        value = _number(argument.strip()) if is_share else _milliseconds(argument.strip())
+        value = exact_fraction(argument.strip()) if is_share else _milliseconds(argument.strip())
         if value is None:
             what = "a probability such as 0.2" if is_share else "a duration such as `2 s` or `250 ms`"
             raise MockError(f"`{argument.strip()}` in `{mock}` is not {what}")
@@ -158,13 +159,6 @@ def _drawn_duration(written: str, mock: str) -> DrawnDuration:
     except LawError as error:
         raise MockError(f"`{written}` in `{mock}` is not a distribution: {error}") from None
     return DrawnDuration(written, name, tuple(values))
-
-
-def _number(text: str) -> Fraction | None:
-    try:
-        return Fraction(text)
-    except (ValueError, ZeroDivisionError):
-        return None
 
 
 def _milliseconds(text: str) -> Fraction | None:
