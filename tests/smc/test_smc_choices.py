@@ -16,9 +16,8 @@ from roaml.smc.lss import FAVOUR, MEMORY, STARVE, candidates, described
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Pool
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
-from roaml.smc.run import Options
-from roaml.verification import small
-from roaml.verification.small import LIMITS, values_if_small
+from roaml.smc.run import EstimationMethod, Options
+from roaml.verification.small import LIMITS, attempt
 from roaml.verification.target import target_of
 from roaml.verification.verifier import verifier_of
 
@@ -190,13 +189,12 @@ def test_a_scheduler_with_memory_can_do_what_none_without_can() -> None:
 
 
 @pytest.mark.parametrize("limit", [{"states": 50}, {"transitions": 50}])
-def test_limits_of_looking_at_all_states(limit: dict[str, int], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_limits_of_looking_at_all_states(limit: dict[str, int]) -> None:
     checker = ModelChecker(model(starving(100, chance=True)))
-    exact = values_if_small(checker, checker.compiled_properties[0])
+    exact = attempt(checker, checker.compiled_properties[0], LIMITS).exact
     assert exact is not None
     assert (exact.states, exact.least, exact.average) == (200, 0, 1)
-    monkeypatch.setattr(small, "LIMITS", replace(LIMITS, **limit))
-    assert values_if_small(checker, checker.compiled_properties[0]) is None
+    assert attempt(checker, checker.compiled_properties[0], replace(LIMITS, **limit)).exact is None
 
 
 def test_steps_are_part_of_the_work() -> None:
@@ -204,10 +202,10 @@ def test_steps_are_part_of_the_work() -> None:
     written = starving(20, chance=True)
     written["properties"] = [{"name": "p", "expression": probability({**GOAL, "step-bounds": {"upper": 10**7}})}]
     checker = ModelChecker(model(written))
-    assert values_if_small(checker, checker.compiled_properties[0]) is None
+    assert attempt(checker, checker.compiled_properties[0], LIMITS).exact is None
     written["properties"] = [{"name": "p", "expression": probability({**GOAL, "step-bounds": {"upper": 3}})}]
     checker = ModelChecker(model(written))
-    exact = values_if_small(checker, checker.compiled_properties[0])
+    exact = attempt(checker, checker.compiled_properties[0], LIMITS).exact
     assert exact is not None
     assert (exact.least, exact.greatest, exact.average) == (0, 1, pytest.approx(0.875))
 
@@ -239,3 +237,14 @@ def test_traces_without_chance_are_repeated(scheduler: int, chance: bool) -> Non
         assert [value for column in columns for value in column] == list(getattr(rows(7, 20), name))
     if chance and scheduler in (1, 2):
         assert len({row.steps[0] for row in single}) > 1
+
+
+def test_a_search_beside_traces_is_limited_by_their_steps() -> None:
+    """Schedulers of a model that is small compared with its traces are compared by all its states, others by
+    sampling."""
+    written = starving(400, chance=True, steps=20)
+    few, many = (looked_at(written, Options(method=EstimationMethod.FIXED, max_traces=n)) for n in (100, 60_000))
+    assert few.minimum is not None
+    assert few.minimum.method is not ExtremeMethod.EXPLORATION
+    assert many.minimum is not None
+    assert (many.minimum.method, many.minimum.value) == (ExtremeMethod.EXPLORATION, 0)

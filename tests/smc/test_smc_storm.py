@@ -27,7 +27,7 @@ from roaml.smc.pool import Pool
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.run import EstimationMethod, Options
 from roaml.verification.exhaustive import UndecidedError, exact_values
-from roaml.verification.small import values_if_small
+from roaml.verification.small import LIMITS, attempt
 
 ROOT = Path(__file__).resolve().parents[2]
 TRACES = 3000
@@ -228,7 +228,7 @@ def test_extremes_from_all_states_are_those_of_storm() -> None:
             written["properties"] = [{"name": "p", "expression": probability(path)}]
             actual_model = model(written)
             checker = ModelChecker(actual_model)
-            solution = values_if_small(checker, checker.compiled_properties[0])
+            solution = attempt(checker, checker.compiled_properties[0], LIMITS).exact
             if solution is None or solution.states > 300:
                 continue
             expected = storm_exact(actual_model, "p")

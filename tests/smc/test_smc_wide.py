@@ -18,7 +18,7 @@ from fuzz.networks import wide as wide_network
 from roaml.smc import kernel
 from roaml.smc.model import ModelChecker
 from roaml.smc.statistics import clopper_pearson
-from roaml.verification.small import values_if_small
+from roaml.verification.small import LIMITS, attempt
 
 SURE = 1 - 1e-9
 """The probability that a test which compares a frequency with an interval fails by chance."""
@@ -181,4 +181,4 @@ def test_equal_choices_are_one_choice_with_their_weight() -> None:
 def test_agreement_is_not_looked_for_among_too_many_combinations() -> None:
     for written in (wide(64, 2), wide(1100, 2)):
         checker = ModelChecker(model(written))
-        assert values_if_small(checker, checker.compiled_properties[0]) is None
+        assert attempt(checker, checker.compiled_properties[0], LIMITS).exact is None

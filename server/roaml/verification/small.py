@@ -23,7 +23,7 @@ from roaml.verification.results import Exact
 
 MAX_SMALL_STATES = 20_000
 LIMITS = StateLimits(states=MAX_SMALL_STATES, bytes=4 << 30, combinations=4_096, transitions=200_000, work=100_000_000)
-"""The limits if random traces are requested, and the least that each of several properties gets."""
+"""The limits of a first search, and the least that each of several properties gets."""
 SHARED_LIMITS = StateLimits(
     states=2_000_000, bytes=1 << 30, combinations=4_096, transitions=6_000_000, work=100_000_000
 )
@@ -35,6 +35,10 @@ _COST_OF_ALL, _COST_OF_REDUCED, _COST_OF_BOTH = 3, 10, 8
 """The duration of a transition in both kinds of search. If both reach their limits, their cost is the limit."""
 SETUP_COST = 10
 """The transitions that take as long as the preparation of one instruction of the model for a search."""
+_STEPS_PER_TRANSITION = 50
+"""The number of steps of traces that take five times as long as one transition of a search."""
+_LEAST_BESIDE = 20_000
+"""The transitions of the shortest search beside traces, with its preparation."""
 EXAMPLE_TRACES = 200
 """The number of traces that are generated as examples if the value is exact."""
 MAX_EXAMPLE_STEPS = 50_000
@@ -152,9 +156,16 @@ def setup_cost(checker: ModelChecker) -> int:
     return SETUP_COST * len(checker.program.code)
 
 
-def values_if_small(checker: ModelChecker, property_: CompiledProperty, *, leaves_out: bool = True) -> Exact | None:
-    """The exact values of a property within `LIMITS`; `None` if there are none."""
-    return attempt(checker, property_, LIMITS, leaves_out=leaves_out).exact
+def limits_beside(steps: int, setup: int) -> StateLimits | None:
+    """The limits of a search that compares schedulers beside traces that were requested. It takes at most a fifth of
+    the time of these traces, or about 10 ms; `None` if its preparation alone takes longer.
+
+    Args:
+        steps: the number of steps of the traces.
+        setup: the duration of the preparation, in transitions (`setup_cost`).
+    """
+    left = max(_LEAST_BESIDE, steps // _STEPS_PER_TRANSITION) - setup
+    return replace(LIMITS, transitions=min(left, LIMITS.transitions or left)) if left > 0 else None
 
 
 class Budget:

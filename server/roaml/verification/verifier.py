@@ -41,14 +41,13 @@ from roaml.verification.results import (
 from roaml.verification.schedulers import is_minimised, under_all_schedulers
 from roaml.verification.searches import Searches
 from roaml.verification.small import (
-    LIMITS,
     MAX_EXAMPLE_STEPS,
     SHARED_LIMITS,
     Budget,
     attempt,
     choices_of,
+    limits_beside,
     setup_cost,
-    values_if_small,
 )
 from roaml.verification.stuck import StuckLevel, StuckResult
 from roaml.verification.target import VerificationTarget
@@ -372,17 +371,23 @@ class Verifier(Record, frozen=True):
         return results
 
     def _small(self, property_: CompiledProperty, pulse: Pulse | None) -> Exact | None:
-        """The exact values of a property, for its result or to compare schedulers; `None` if neither needs them, or if
-        the model is too large."""
-        if self.exact_if_small:
-            return self.explorations.exact(
-                self.checker, property_, "shared limits", lambda: self._within_budget(property_, pulse)
-            )
-        if self._considers_choices(property_) and not self.checker.is_deterministic:
-            return self.explorations.exact(
-                self.checker, property_, LIMITS, lambda: values_if_small(self.checker, property_, leaves_out=False)
-            )
-        return None
+        """The exact values of a property, for its result; `None` if they are not requested, or if the model is too
+        large."""
+        if not self.exact_if_small:
+            return None
+        return self.explorations.exact(
+            self.checker, property_, "shared limits", lambda: self._within_budget(property_, pulse)
+        )
+
+    def _beside(self, property_: CompiledProperty, answer: Answer) -> Exact | None:
+        """The exact values of a property, to compare schedulers beside traces that were requested; `None` if the model
+        is so large that the search would take longer than the traces."""
+        limits = limits_beside(answer.tally.steps, setup_cost(self.checker))
+        if self.checker.is_deterministic or limits is None:
+            return None
+        return self.explorations.exact(
+            self.checker, property_, limits, lambda: attempt(self.checker, property_, limits, leaves_out=False).exact
+        )
 
     def _within_budget(self, property_: CompiledProperty, pulse: Pulse | None) -> Exact | None:
         """The exact values of a property; `None` if the budget does not suffice."""
@@ -427,15 +432,16 @@ class Verifier(Record, frozen=True):
         """The result that contains an answer.
 
         Args:
-            small: the exact values, if the model is small.
+            small: the exact values, if they were requested and the model is small.
             began: the time at which the work began.
         """
         choices = None
         if self._considers_choices(property_):
-            if small is None:
+            compared = small if self.exact_if_small else self._beside(property_, answer)
+            if compared is None:
                 choices = self.checker.choices(property_, answer, pool, pulse)
             else:
-                choices = choices_of(small, NO_NONDETERMINISM if self.checker.is_deterministic else "")
+                choices = choices_of(compared, NO_NONDETERMINISM if self.checker.is_deterministic else "")
         result = self._with_verdicts(property_, answer, choices, time.monotonic() - began, self._shown(small))
         # Traces that are requested are not extended by a search, which may take longer than they do.
         return self._with_reactions(property_, result, began) if self.exact_if_small else result
