@@ -693,6 +693,8 @@ class _Verification:
             text = f"there is no trace in which it {verb}"
             if is_possible and not is_reward:
                 text = f"every trace in which it {verb} repeats some states for ever, so none can be shown to its end"
+                if isinstance(result.outcome, Computed) and result.outcome.reason:
+                    text += f"; {result.outcome.reason}"
             print_text(f"{result.name}: {text}\n", stream=sys.stderr)
 
     def _story_texts(self, stories: Sequence[Story]) -> str:

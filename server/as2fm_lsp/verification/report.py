@@ -177,6 +177,8 @@ def _computed_lines(result: Result, computed: Computed, *, is_whole: bool) -> li
         uniform_estimate=estimate,
         is_whole=is_whole,
     )
+    if computed.reason:
+        lines.append(f"  {computed.reason}")
     if sample is not None:
         remarks = _remarks if has_estimate else _example_remarks
         lines += remarks(sample.answer, is_whole=is_whole)

@@ -59,6 +59,7 @@ if TYPE_CHECKING:
     from roaml.experiments.points import ExperimentPoint, PointKind, Schedulers
     from roaml.experiments.results import ExperimentResult
     from roaml.experiments.sweeps import Sweep, SweepError
+    from roaml.explicit.path import EndlessTrace
     from roaml.explicit.space import ExplorationProgress, ExplorationWatch, StateLimits
     from roaml.figures.layout import LayoutDirection
     from roaml.ide.diagrams import DiagramKind
@@ -196,6 +197,7 @@ else:
         "roaml.smc.pool": ("Pool", "Pulse", "WorkersLostError"),
         "roaml.smc.record": ("Recorder", "Recording", "TraceStep", "TraceVerdict"),
         "roaml.verification.growth": ("GrowingVariable",),
+        "roaml.explicit.path": ("EndlessTrace",),
         "roaml.explicit.space": ("ExplorationProgress", "ExplorationWatch", "StateLimits"),
         "roaml.smc.run": ("Answer", "EstimationMethod", "Options", "Tally", "Watch"),
         "roaml.smc.statistics": ("Bounds",),
@@ -266,6 +268,7 @@ __all__ = [
     "DrawnNumber",
     "DrawnPicture",
     "End",
+    "EndlessTrace",
     "Enough",
     "Estimated",
     "EstimationMethod",

@@ -47,6 +47,18 @@ class Path(Record, frozen=True):
     root: int = 0
 
 
+class EndlessTrace(Record, frozen=True):
+    """An endless trace.
+
+    Attributes:
+        path: the steps to the cycle, with the verdict on the goal for the endless trace.
+        cycle: the steps that are repeated.
+    """
+
+    path: Path
+    cycle: tuple[PathStep, ...]
+
+
 def shortest(space: Space, verdict: int) -> Path | None:
     """The shortest trace with the given verdict on the goal; `None` if no trace has this verdict after finitely many
     steps. If the space is reduced, a shorter trace may exist that contains choices which were left out."""

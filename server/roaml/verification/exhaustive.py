@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from roaml.explicit.independence import can_be_reduced
-from roaml.explicit.path import shortest
+from roaml.explicit.path import EndlessTrace, shortest
 from roaml.explicit.space import (
     ExplorationWatch,
     LimitError,
@@ -184,7 +184,14 @@ def values_from(space: Space, limits: StateLimits) -> Exact:
         space.compiled_property.question.fold,
         tuple(ShortestTrace(space.checker, space.compiled_property, path, space.is_reduced) for path in paths),
         space.is_reduced,
+        None if len(paths) == 2 or is_close(values.minimum, values.maximum) else _endless(space),
     )
+
+
+def _endless(space: Space) -> EndlessTrace | None:
+    from roaml.explicit.endless import endless  # noqa: PLC0415 - few verifications need it
+
+    return endless(space)
 
 
 def _proof(space: Space, values: GoalValues) -> Proof | None:

@@ -10,15 +10,14 @@ from roaml.durations import AT_ONCE
 from roaml.explicit.independence import can_be_reduced
 from roaml.explicit.space import LimitError, StateLimits, explore
 from roaml.jani.model import Clock
-from roaml.jani.reaction import owner_of, reacting
-from roaml.record import Record, replace
+from roaml.jani.reaction import reacting
+from roaml.record import replace
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
-from roaml.smc.kernel import Kernel
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import FALSE, TRUE
 from roaml.verification.exhaustive import UndecidedError, alone, values_from
-from roaml.verification.results import Computed, Estimated, Exact, Outcome, ShortestTrace, UnderAssumption
+from roaml.verification.results import Computed, Estimated, Exact, Outcome, UnderAssumption
 from roaml.verification.small import Budget, setup_cost
 from roaml.verification.target import VerificationTarget
 
@@ -90,73 +89,14 @@ def _remark(outcome: Outcome, exact: Exact, clock: Clock) -> str:
         return ""
     verdict = FALSE if outcome.exact.least < exact.least else TRUE
     trace = outcome.exact.shortest(verdict)
-    delay = None if trace is None else longest_delay(trace, clock)
+    if trace is None:
+        return ""
+    from roaml.verification.delays import longest_delay  # noqa: PLC0415 - few verifications need it
+
+    delay = longest_delay(trace, clock)
     if delay is None:
         return ""
     seconds = clock.step / 1e9
     end = "the end" if delay.until is None else f"{delay.until * seconds:g} s"
     what = "fails" if verdict == FALSE else "holds"
     return f"it {what}, for example, if {delay.actor} is delayed from {delay.since * seconds:g} s until {end}"
-
-
-class DelayedActor(Record, frozen=True):
-    """An automaton that did not take a step of its own although one was possible.
-
-    Attributes:
-        actor: a noun phrase for the automaton.
-        since, until: the numbers of steps of the clock before and after the delay; `until` is `None` if it lasts until
-            the end of the trace.
-    """
-
-    actor: str
-    since: int
-    until: int | None
-
-
-def longest_delay(trace: ShortestTrace, clock: Clock) -> DelayedActor | None:
-    """The longest delay in a trace; of equally long ones, the first. `None` if nothing is delayed."""
-    checker = trace.checker
-    owners, begins = _owners(checker, clock)
-    compiled = checker.compiled(trace.compiled_property)
-    kernel = Kernel(compiled.program, compiled.goal)
-    kernel.root(trace.path.root)
-    now, since = 0, dict[int, int]()
-    delays: list[tuple[int, int, int, bool]] = []
-
-    def end(owner: int, *, is_last: bool = False) -> None:
-        start = since.pop(owner)
-        if now > start:
-            delays.append((now - start, start, owner, is_last))
-
-    for step in trace.path.steps:
-        able = {owners[vector] for vector, _, _ in kernel.choices() if vector in owners}
-        for owner in [owner for owner in since if owner not in able]:
-            end(owner)
-        for owner in able:
-            since.setdefault(owner, now)
-        now += step.vector in begins
-        if owners.get(step.vector) in since:
-            end(owners[step.vector])
-        kernel.go(step.vector, list(step.edges), list(step.ways))
-    for owner in list(since):
-        end(owner, is_last=True)
-    if not delays:
-        return None
-    length, start, owner, is_last = max(delays, key=lambda delay: (delay[0], -delay[1]))
-    return DelayedActor(checker.actors[owner], start, None if is_last else start + length)
-
-
-def _owners(checker: ModelChecker, clock: Clock) -> tuple[dict[int, int], set[int]]:
-    """The element that decides to take each vector, without those of the clock; and the vectors with which the clock
-    begins a step."""
-    names = [element.automaton for element in checker.model.system.elements]
-    owners: dict[int, int] = {}
-    begins: set[int] = set()
-    for vector, (slots, result) in enumerate(checker.legend.vectors):
-        actions = {checker.legend.slots[slot].instance: checker.legend.slots[slot].action for slot in slots}
-        owner = owner_of(result or "", {i: names[i] for i in sorted(actions)}, clock.automaton)
-        if owner is not None:
-            owners[vector] = owner
-        if any(names[i] == clock.automaton and action in clock.actions for i, action in actions.items()):
-            begins.add(vector)
-    return owners, begins

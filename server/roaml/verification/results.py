@@ -9,7 +9,7 @@ from enum import Enum
 from typing import TypeAlias
 
 from roaml.exhaustive import assert_never
-from roaml.explicit.path import Path, PathRecorder
+from roaml.explicit.path import EndlessTrace, Path, PathRecorder
 from roaml.jani.operators import BinaryOperator
 from roaml.record import PartlyCompared, Record, replace
 from roaml.smc.choices import Choices
@@ -91,9 +91,11 @@ class Exact(PartlyCompared, frozen=True):
         traces: the shortest traces in which the property fails or holds, if there are any.
         is_reduced: whether choices that change neither the minimum nor the maximum were left out. Then there are more
             than `states` states, and `traces` are not necessarily the shortest ones.
+        endless: an endless trace with the verdict that no trace has after finitely many steps, if the values differ and
+            such a trace was found.
     """
 
-    UNCOMPARED = frozenset({"traces"})
+    UNCOMPARED = frozenset({"traces", "endless"})
 
     minimum: Bounds
     maximum: Bounds
@@ -106,6 +108,7 @@ class Exact(PartlyCompared, frozen=True):
     fold: InitialFold = InitialFold.CHOICE
     traces: tuple[ShortestTrace, ...] = ()
     is_reduced: bool = False
+    endless: EndlessTrace | None = None
 
     @property
     def least(self) -> float:
@@ -291,11 +294,14 @@ class Computed(Record, frozen=True):
         exact: the values.
         sample: traces with uniform choices. They are examples or, if the value under uniform choices was not computed,
             its estimate. `None` if no traces were generated.
+        reason: why the values differ although no trace shows that after finitely many steps, as a clause for users; ""
+            if that is unknown.
     """
 
     question: Question
     exact: Exact
     sample: Estimated | None = None
+    reason: str = ""
 
     @property
     def is_uniform(self) -> bool:

@@ -21,7 +21,7 @@ from roaml.smc.run import Answer, EstimationMethod, Options, Watch, summary
 from roaml.smc.tally import Tally
 from roaml.suggest import alternatives, close_names
 from roaml.verification import stuck
-from roaml.verification.exhaustive import UndecidedError, check_exactly, exact_values
+from roaml.verification.exhaustive import UndecidedError, alone, check_exactly, exact_values
 from roaml.verification.expectations import Expectation, Verdict, check_expectation, check_range, is_possible
 from roaml.verification.explorations import Explorations, subject_of
 from roaml.verification.reactions import LIMITS as REACTION_LIMITS
@@ -31,6 +31,7 @@ from roaml.verification.results import (
     Computed,
     Estimated,
     Exact,
+    Outcome,
     Refused,
     Result,
     Sampled,
@@ -446,6 +447,16 @@ class Verifier(Record, frozen=True):
         # Traces that are requested are not extended by a search, which may take longer than they do.
         return self._with_reactions(property_, result, began) if self.exact_if_small else result
 
+    def _reason(self, property_: CompiledProperty, exact: Exact) -> str:
+        """Why the exact values of a property differ; see `Computed.reason`."""
+        if exact.endless is None:
+            return ""
+        metadata = self.target.model.metadata
+        clock = None if metadata is None else metadata.clock
+        from roaml.verification.delays import endless_delay  # noqa: PLC0415 - few verifications need it
+
+        return endless_delay(*alone(self.checker, property_), exact.endless, clock)
+
     def _considers_choices(self, property_: CompiledProperty) -> bool:
         """Whether the question is about all schedulers, not only about uniform choices."""
         return not (self.only_uniform or property_.question.is_stuck or property_.question.is_conditional)
@@ -557,7 +568,7 @@ class Verifier(Record, frozen=True):
             check_exactly(expectation, _compared(self.target, expectation, exact), property_.question)
             for expectation in expectations
         )
-        outcome = Computed(property_.question, exact)
+        outcome = Computed(property_.question, exact, reason=self._reason(property_, exact))
         result = Result(property_.question.name, outcome, verdicts, seconds(), _comment(property_))
         return self._with_reactions(property_, result, time.monotonic() - seconds())
 
@@ -594,5 +605,8 @@ class Verifier(Record, frozen=True):
         traces = Traces(self.target, self.checker, property_, self.options)
         estimated = Estimated(answer, choices, got_stuck, traces, is_interrupted)
         verdicts = _verdicts(self.target, self.expected(property_), estimated, exact)
-        outcome = estimated if exact is None else Computed(property_.question, exact, estimated)
+        outcome: Outcome = estimated
+        if exact is not None:
+            reason = "" if choices is None else self._reason(property_, exact)
+            outcome = Computed(property_.question, exact, estimated, reason)
         return Result(property_.question.name, outcome, verdicts, seconds, _comment(property_))
