@@ -218,7 +218,7 @@ class _Side:
         for shown, file in self._shown_files():
             document = self.analysis.document(file)
             for element in _declaring(document.root) if document is not None and document.root is not None else ():
-                declared[f"`{_name_of(element)}` in `{shown}`"] = _written(element)
+                declared[f"`{_name_of(element)}` in {shown}"] = _written(element)
         return declared
 
     def contents(self) -> dict[str, str]:
@@ -227,17 +227,18 @@ class _Side:
         for shown, file in self._shown_files():
             document, source = self.analysis.document(file), self.analysis.source(file)
             if document is not None and document.root is not None:
-                contents[f"`{shown}`"] = _written(document.root)
+                contents[shown] = _written(document.root)
             elif source is not None:
-                contents[f"`{shown}`"] = " ".join(source.text.split())
+                contents[shown] = " ".join(source.text.split())
         return contents
 
     def _shown_files(self) -> Iterator[tuple[str, str]]:
-        """The files with their paths for people: relative to the folder of the model."""
+        """The files, each with a noun phrase: its path relative to the folder of the model. The model itself may have
+        different names in both versions."""
         folder = os.path.dirname(self.path)
         for file in dict.fromkeys((self.path, *self.files)):
-            name = os.path.basename(file) if file == self.path else os.path.relpath(file, folder)
-            yield ("the named file" if file == self.path else name.replace("\\", "/")), file
+            relative = os.path.relpath(file, folder).replace("\\", "/")
+            yield ("the main file" if file == self.path else f"`{relative}`"), file
 
 
 _DECLARING = frozenset({"data", "parameter", "instance", "input", "bt", "bt_declare_port_in", "bt_declare_port_out"})
