@@ -31,7 +31,7 @@ async def test_properties_are_listed_run_and_explained(tmp_path: Path) -> None:
         assert row["property"] == "counts"
         assert row["comment"].startswith("Each time from when `Main/Other/right_pick` is ticked until")
         ((text, _),) = await hints(client, file)
-        assert text.startswith("=")
+        assert "uniform 0 [" in text
         story = await why(client, main, "counts")
         assert story["heading"].startswith("Each time from when Main/Other/right_pick is ticked until")
         assert "counts failed in trace" in story["heading"]

@@ -14,6 +14,7 @@ from as2fm_lsp.verification.stuck_report import PROBABILITY
 from roaml.exhaustive import assert_never
 from roaml.smc.choices import Choices
 from roaml.smc.end import End
+from roaml.smc.goal import Question
 from roaml.smc.lss import Side
 from roaml.smc.run import Answer, ratio_of
 from roaml.verification.expectations import NO_EXPECTATION
@@ -163,9 +164,15 @@ def _conditional_lines(result: Result) -> list[str]:
     return lines
 
 
+def _heading(name: str, question: Question) -> str:
+    """The name of a property, with what its value is if that is not the probability that it holds."""
+    what = PROBABILITY if question.is_stuck else "expected value" if question.is_reward else ""
+    return f"{name} ({what})" if what else name
+
+
 def _computed_lines(result: Result, computed: Computed, *, is_whole: bool) -> list[str]:
     sample = computed.sample
-    name = f"{result.name} ({PROBABILITY})" if result.includes_stuck else result.name
+    name = _heading(result.name, computed.question)
     has_estimate = sample is not None and computed.has_uniform_estimate
     estimate = _estimate(sample.answer) if sample is not None and has_estimate else ""
     lines = exact_report.lines(
@@ -199,7 +206,7 @@ def _estimated_lines(
 ) -> list[str]:
     answer, choices = estimated.answer, estimated.choices
     is_stuck = answer.question.is_stuck
-    name = f"{result.name} ({PROBABILITY})" if is_stuck else result.name
+    name = _heading(result.name, answer.question)
     words = headline(result).text if answer.tally.traces else _estimate(answer)
     lines = [f"{name}: {words}, {result.seconds:.1f} s"]
     if estimated.stuck is not None and not is_stuck:

@@ -37,8 +37,8 @@ SETUP_COST = 10
 """The transitions that take as long as the preparation of one instruction of the model for a search."""
 _STEPS_PER_TRANSITION = 50
 """The number of steps of traces that take five times as long as one transition of a search."""
-_LEAST_BESIDE = 20_000
-"""The transitions of the shortest search beside traces, with its preparation."""
+_LEAST_BESIDE = 5_000
+"""The transitions of the shortest search beside traces, without its preparation."""
 EXAMPLE_TRACES = 200
 """The number of traces that are generated as examples if the value is exact."""
 MAX_EXAMPLE_STEPS = 50_000
@@ -157,15 +157,17 @@ def setup_cost(checker: ModelChecker) -> int:
 
 
 def limits_beside(steps: int, setup: int) -> StateLimits | None:
-    """The limits of a search that compares schedulers beside traces that were requested. It takes at most a fifth of
-    the time of these traces, or about 10 ms; `None` if its preparation alone takes longer.
+    """The limits of a search that compares schedulers beside traces that were requested: it may take a fifth of the
+    time of these traces, and explores few states in any case. `None` if it should not be started, because its
+    preparation takes too long.
 
     Args:
         steps: the number of steps of the traces.
         setup: the duration of the preparation, in transitions (`setup_cost`).
     """
-    left = max(_LEAST_BESIDE, steps // _STEPS_PER_TRANSITION) - setup
-    return replace(LIMITS, transitions=min(left, LIMITS.transitions or left)) if left > 0 else None
+    most = LIMITS.transitions or 0
+    left = min(steps // _STEPS_PER_TRANSITION - setup, most)
+    return replace(LIMITS, transitions=max(left, _LEAST_BESIDE)) if left > 0 or setup <= most else None
 
 
 class Budget:
