@@ -160,6 +160,21 @@ def test_what_users_read(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert re.search(r"raising IsReady \(.*tree\.xml:\d+\) from 0\.5 to 0\.51 adds 0\.0075\n", text)
 
 
+def test_means_of_equal_values(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Traces that agree say nothing about other traces, but a time and a number of attempts are never negative."""
+    twice = "<RetryUntilSuccessful num_attempts='2'><Drive/></RetryUntilSuccessful>"
+    path = tree(tmp_path, f"<Sequence><ForceSuccess>{twice}</ForceSuccess><IsReady/></Sequence>")
+    mocks = ("--mock", "IsReady: 0.5", "--mock", "Drive: 0 in 1 s", "--method", "fixed", "--max-traces", "20")
+    run(["verify", path, *mocks])
+    text = capsys.readouterr().out
+    assert "time until success: 2.1 s in all traces that succeed; " in text
+    assert re.search(r"failed attempts of RetryUntilSuccessful \(.*\): 2 in all traces$", text, re.MULTILINE)
+    assert "inf" not in text.replace("influence", "")
+    measured = verified(capsys, path, *mocks)["tree"]
+    assert isinstance(measured, dict)
+    assert measured["time"]["lower"] == measured["failed_attempts"][0]["lower"] == 0
+
+
 def test_why_a_tree_fails_in_all_traces(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """No mock fails: the leaf that fails is a node of the library. A table shows what each node returns."""
     path = tree(tmp_path, "<Sequence><Drive/><Fallback><AlwaysFailure/></Fallback><Never/></Sequence>")

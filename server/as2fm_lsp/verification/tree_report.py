@@ -77,10 +77,9 @@ def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf, is_whole
     if outcome.exceptions.value:
         yield f"  ended by an exception of the library: {_interval(outcome.exceptions)}"
     if outcome.time is not None:
-        yield f"  time until success: mean {_interval(outcome.time)} s; {', '.join(_quantiles(outcome))}"
+        yield f"  time until success: {_time(outcome.time)}; {', '.join(_quantiles(outcome))}"
     for node, counter, value in outcome.counts:
-        is_constant = value.bounds.lower == value.bounds.upper and not outcome.is_exact
-        mean = f"{value.value:g} in all traces" if is_constant else f"{_interval(value)} in a run, on average"
+        mean = f"{value.value:g} in all traces" if _is_constant(value) else f"{_interval(value)} in a run, on average"
         yield f"  {counter.replace('_', ' ')} of {node.name} ({place_of(node.origin)}): {mean}"
     if not outcome.influences and not outcome.is_exact and any(0 < leaf.probability < 1 for leaf in mocked.leaves):
         yield (
@@ -125,6 +124,17 @@ def _influence(influence: Influence, place_of: PlaceOf) -> str:
         return f"{raised} makes no difference that these traces show ({low:.2g} to {high:.2g})"
     least, most = sorted((abs(low), abs(high)))
     return f"{raised} {'adds' if value > 0 else 'takes away'} about {abs(value):.2g} ({least:.2g} to {most:.2g})"
+
+
+def _time(mean: Measured) -> str:
+    if _is_constant(mean):
+        return f"{mean.value:.4g} s in all traces that succeed"
+    return f"mean {_interval(mean)} s"
+
+
+def _is_constant(mean: Measured) -> bool:
+    """Whether a mean is that of equal values, from which no interval follows."""
+    return math.isinf(mean.bounds.upper)
 
 
 def _interval(measured: Measured) -> str:

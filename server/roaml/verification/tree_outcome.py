@@ -253,7 +253,9 @@ class _Measuring:
         return Measured(count / traces, clopper_pearson(count, traces, self.options.confidence, undecided))
 
     def mean(self, mean: Mean) -> Measured:
-        return Measured(mean.mean, mean.bounds(self.options.confidence))
+        """The mean of a quantity that is never negative."""
+        bounds = mean.bounds(self.options.confidence)
+        return Measured(mean.mean, Bounds(max(bounds.lower, 0.0), bounds.upper))
 
     def score(self, leaf: MockedLeaf, own: dict[str, Storage]) -> float:
         """The derivative of the logarithm of the probability of the trace with respect to the probability of a mock."""
