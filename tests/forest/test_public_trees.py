@@ -121,6 +121,33 @@ def test_a_file_is_executed_in_the_version_of_its_tree(
 
 
 @pytest.mark.parametrize(
+    ("type_", "entry", "value", "is_equal"),
+    [
+        ("String", "own", "own", True),
+        ("String", "own", "other", False),
+        ("String", "own", "5", False),
+        ("String", "5", "5", True),
+        ("Double", "0.25", "0.25", True),
+        ("Double", "0.25", "1", False),
+        ("Bool", "true", "true", True),
+        ("Bool", "true", "1", True),
+        ("Bool", "true", "false", False),
+    ],
+)
+def test_values_of_each_type_are_compared_in_version_3(
+    type_: str, entry: str, value: str, is_equal: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Either port can be bound, and the child is ticked only if the values are equal."""
+    ports = f'value_A="{{entry}}" value_B="{value}"', f'value_A="{value}" value_B="{{entry}}"'
+    for number, given in enumerate(ports):
+        node = f'<BlackboardCheck{type_} {given} return_on_mismatch="FAILURE"><A/></BlackboardCheck{type_}>'
+        tree = f'<Sequence><SetBlackboard output_key="entry" value="{entry}"/>{node}</Sequence>'
+        path = tmp_path / f"tree{number}.xml"
+        path.write_text(f'<root BTCPP_format="3"><BehaviorTree ID="Main">{tree}</BehaviorTree></root>')
+        assert success(capsys, path, "--mock", "A: 1") == is_equal
+
+
+@pytest.mark.parametrize(
     ("node", "is_refused"),
     [
         ("<RoundRobin><A/><B/></RoundRobin>", False),

@@ -46,7 +46,7 @@ a.ascxml  _msg.|data  definition  Int32.msg:4:data
 plugin.ascxml  key="go|al"/>  definition  plugin.ascxml:2:goal
 plugin.ascxml  key="|out" type  references  plugin.ascxml:4:out  plugin.ascxml:10:out  tree.xml:5:out  tree.xml:10:out
 tree.xml  <Wa|lk goal  implementation  plugin.ascxml:1:Walk
-tree.xml  <Sequ|ence>  definition  behaviortree_cpp.txt:23:Sequence
+tree.xml  <Sequ|ence>  definition  behaviortree_cpp.txt:24:Sequence
 tree.xml  goal="{|g}" out  definition  tree.xml:5:g
 tree.xml  execute="Ma|in"  definition  tree.xml:2:Main
 tree.xml  ID="|Sub" t  definition  tree.xml:9:Sub

@@ -25,7 +25,10 @@ from roaml.xml_syntax import parse
 
 MACHINES = Path(__file__).parents[2] / "server" / "roaml" / "lower" / "nodes"
 ENDED = frozenset((SUCCESS, FAILURE))
-RUNNING_FOR_OTHER_REASONS = {"Parallel", "BlackboardCheckInt"}
+RUNNING_FOR_OTHER_REASONS = {
+    "Parallel",
+    *(f"BlackboardCheck{type_}" for type_ in ("Int", "Bool", "Double", "String")),
+}
 """Whether `Parallel` returns RUNNING depends on counts that are not known, and a mismatch may be RUNNING."""
 
 
@@ -124,5 +127,5 @@ def test_declarations_do_not_change_unnoticed() -> None:
         ("RetryUntilSuccessful", "num_attempts"): 1,
     }
     assert [(name, port.name) for name, port in ports if port.system_constant] == [
-        ("BlackboardCheckInt", "return_on_mismatch")
+        (f"BlackboardCheck{type_}", "return_on_mismatch") for type_ in ("Int", "Bool", "Double", "String")
     ]

@@ -43,7 +43,10 @@ def program_of(node: ExecutedNode, version: Version = NEWEST_VERSION) -> NodePro
         _check_children(node)
         return known_programs[node.type]
     if node.children:
-        reason = f"`{node.type}` has children, but its behaviour is not known"
+        reason = (
+            f"`{node.type}` has children, but its behaviour is not known; replace it by nodes of BehaviorTree.CPP, or "
+            "write it as a plugin of a system"
+        )
         raise TreeRefusal(node.origin, reason)
     if node.known is not None and node.known.kind in (NodeKind.CONTROL, NodeKind.DECORATOR):
         raise TreeRefusal(node.origin, f"`{node.type}` needs children", is_reported=True)
@@ -202,8 +205,8 @@ class _Reader(Record, eq=False):
             if text is None:
                 continue
             type_ = port_type(port)
-            if program.name.startswith("Switch"):
-                known[port.name] = case_value(text, kinds, is_whole=bool(program.fixed["is_whole"]))
+            if _compares_texts(program) and type_ != "NodeStatus":
+                known[port.name] = case_value(text, kinds, is_whole=bool(program.fixed.get("is_whole", True)))
             else:
                 known[port.name] = _literal(port.name, type_, text, Location(node.origin.path, span))
                 self.check_divisor(node, port.name, known[port.name], Location(node.origin.path, span))
@@ -213,14 +216,14 @@ class _Reader(Record, eq=False):
         missing = [port for port in needed if port not in known and port not in bound]
         if missing:
             raise _missing(node, missing[0])
-        if any(isinstance(value, BoardEntry) and value.kind is EntryKind.TEXT for value in bound.values()) and not (
-            program.name.startswith("Switch")
-        ):
+        if any(value.kind is EntryKind.TEXT for value in bound.values()) and not _compares_texts(program):
             raise TreeRefusal(
                 node.origin, f"a port of `{node.type}` is bound to an entry with a text; only numbers can be translated"
             )
         for port in declared:
-            if port.name in bound and port.type in ("bool", "NodeStatus") and not port.direction.writes:
+            if port.name not in bound or port.direction.writes:
+                continue
+            if port.type == "NodeStatus" or (port.type == "bool" and program.name != "BlackboardCheckBool"):
                 raise TreeRefusal(
                     node.origin, f"the port `{port.name}` must be a constant; entries cannot be translated here"
                 )
@@ -243,7 +246,7 @@ class _Reader(Record, eq=False):
     def switch_entries(
         self, program: NodeProgram, given: Mapping[str, tuple[str | None, str, object]], board: Board
     ) -> list[BoardEntry]:
-        if not program.name.startswith("Switch"):
+        if not _compares_texts(program):
             return []
         return [board.entries[entry] for entry, _, _ in given.values() if entry is not None and entry in board.entries]
 
@@ -294,6 +297,11 @@ class _Reader(Record, eq=False):
                 read = tuple(read_literal(item)[1] for item in items)
                 return tuple(float(v) for v in read) if node.type == "LoopDouble" else read
         return ()
+
+
+def _compares_texts(program: NodeProgram) -> bool:
+    """Whether a node compares the values of its ports as texts, or as numbers if they are numbers."""
+    return program.name.startswith("Switch") or program.name == "BlackboardCheckString"
 
 
 def _declared_ports(node: ExecutedNode) -> tuple[Port, ...]:

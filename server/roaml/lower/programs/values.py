@@ -106,6 +106,8 @@ class ProgramValues(Record, frozen=True, eq=False):
                 return math_call("max", expr(first), expr(second))
             case "matches", [int() as case, bool() as is_whole]:
                 return self.matches(case, is_whole)
+            case "same", [str() as first, str() as second]:
+                return self.same(first, second)
             case "ends", [int() as elapsed]:
                 return self.code.known[f"ends_{elapsed}"]
             case "element", [position]:
@@ -124,6 +126,12 @@ class ProgramValues(Record, frozen=True, eq=False):
         if not is_whole and not isinstance(variable, float) and not isinstance(constant, float):
             variable, constant = self.truncated("variable", variable), self.truncated(port, constant)
         return compared(variable, ast.Eq, constant)
+
+    def same(self, first: str, second: str) -> Value:
+        """The condition that two ports have the same value. A text is not a number."""
+        if self.is_number(first) is not self.is_number(second):
+            return False
+        return compared(self.name(first, {}), ast.Eq, self.name(second, {}))
 
     def is_number(self, port: str) -> bool:
         """Whether the value of a port is a number, not a text."""
