@@ -41,6 +41,17 @@ _STATUSES = ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED")
 _INTEGER = regex(r"[+-]?[0-9]+")
 _REAL = regex(r"[+-]?(?:[0-9]+\.?[0-9]*(?:[eE][+-]?[0-9]+)?|\.[0-9]+(?:[eE][+-]?[0-9]+)?|inf(?:inity)?|nan)", re.I)
 _LIST = regex(r"(?:vector|queue|SharedQueue|deque)<(.*)>\Z")
+_ALIASES = (
+    (regex(r"\b__cxx11::"), ""),
+    (regex(r"\bbasic_string<char(?:,char_traits<char>,allocator<char>)?>"), "string"),
+    (regex(r"\bchrono::duration<(?:long)+,ratio<1l?,1000l?>>"), "chrono::milliseconds"),
+    (regex(r"\bchrono::duration<(?:long)+(?:,ratio<1l?,1l?>)?>"), "chrono::seconds"),
+    (regex(r"_<allocator<void>>"), ""),
+    (regex(r"([\w:]+)::(?:Const)?(?:SharedPtr|Ptr)\b"), r"shared_ptr<\1>"),
+    (regex(r"([A-Za-z]\w*)/(?:msg/)?([A-Za-z]\w*)"), r"\1::msg::\2"),
+)
+"""Types as compilers and ROS spell them, without `std::` and spaces -> the names that programs use. Editors write what
+the compiler says, such as `PoseStamped_<std::allocator<void> >`; people write names."""
 
 
 def normal(written: str) -> str:
@@ -48,6 +59,8 @@ def normal(written: str) -> str:
     accept any value."""
     name = re.sub(r"\b(?:std|BT)::|\bconst\b|[\s&]", "", written)
     name = re.sub(r"_t\b", "", name)
+    for pattern, replacement in () if name.isalnum() else _ALIASES:
+        name = pattern.sub(replacement, name)
     match = _LIST.match(name)
     if match:
         return f"vector<{normal(match[1].partition(',')[0])}>"
