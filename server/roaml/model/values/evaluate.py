@@ -222,7 +222,12 @@ class Evaluator(Record, eq=False):
                     return None if first is None else self.assume(first, condition.right, holds)
                 first, rest = (self.assume(known, condition.left, value) for value in (holds, not holds))
                 second = None if rest is None else self.assume(rest, condition.right, holds)
-                return second if first is None else first if second is None else joined_valuations(first, second)
+                return _either(first, second)
+            case Conditional():
+                yes, no = (self.assume(known, condition.test, value) for value in (True, False))
+                first = None if yes is None else self.assume(yes, condition.then, holds)
+                second = None if no is None else self.assume(no, condition.otherwise, holds)
+                return _either(first, second)
             case Binary() if condition.operator in OPPOSITE:
                 operator = condition.operator if holds else OPPOSITE[condition.operator]
                 return self._compare(known, operator, condition.left, condition.right)
@@ -378,6 +383,11 @@ def _corners(first: ValueSet, second: ValueSet, operation: Callable[[float, floa
         for a, b in itertools.product((first.low, first.high), (second.low, second.high))
     ]
     return between(min(results), max(results), origin, origin)
+
+
+def _either(first: Valuation | None, second: Valuation | None) -> Valuation | None:
+    """What is known if one of two cases holds; `None` is a case that cannot hold."""
+    return second if first is None else first if second is None else joined_valuations(first, second)
 
 
 def _absolute(values: ValueSet) -> ValueSet:
