@@ -27,7 +27,7 @@ MODELS = sorted(path for pattern in ("*.xml", "*.ascxml") for path in (ROOT / "e
 MODELS = [path for path in MODELS if path.name != "package.xml"]
 
 
-SYSTEMS = {name: ROOT / "examples" / name / "main.xml" for name in ("warehouse", "battery")}
+SYSTEMS = {name: ROOT / "examples" / name / "main.xml" for name in ("warehouse", "battery", "fleet")}
 SYSTEMS["case_study"] = ROOT / "examples" / "case_study" / "main_with_bug.xml"
 """The examples with parameters, by the names of their folders."""
 
@@ -56,7 +56,8 @@ def test_every_example_is_valid_against_its_schema(path: Path) -> None:
     text = path.read_bytes()
     name, *inside = path.relative_to(ROOT / "examples").parts
     if name in SYSTEMS:  # a schema does not know that numbers may use parameters
-        files, paths = plain_files(name), ("/".join(inside), "/".join((name, *inside)))
+        files = plain_files(name)
+        paths = ["/".join(inside), "/".join((name, *inside)), *(key for key in files if key.endswith(f"_{path.name}"))]
         text = next((files[key] for key in paths if key in files), path.read_text("utf-8")).encode()
     assert is_valid(schema_of(text), text)
     broken = text.replace(b"</", b"<nonsense x='1'><a></a></nonsense></", 1)

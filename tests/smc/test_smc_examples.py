@@ -28,6 +28,12 @@ EXPECTED = {
     "case_study/main.xml": {"recovers_or_succeeds": 1.0},
     "case_study/main_with_bug.xml": {"recovers_or_succeeds": 0.7},
     "grid_world/main.xml": {"arrives": 0.914925},
+    "fleet/main.xml": {
+        "anna_delivers": 0.891,
+        "bert_delivers": 0.891,
+        "carl_delivers": 0.675,
+        "all_deliver": 0.891 * 0.891 * 0.675,
+    },
 }
 
 
@@ -61,7 +67,7 @@ def test_the_page_shows_what_is_printed(monkeypatch: pytest.MonkeyPatch, capsys:
     monkeypatch.chdir(ROOT)
     page = (ROOT / "docs/verification.md").read_text(encoding="utf-8")
     commands = re.findall(r"^\$ (.*)\n((?:(?!\$ |```).*\n)*)", page, re.MULTILINE)
-    assert len(commands) == 9
+    assert len(commands) == 11
     for command, shown in commands:
         program, *arguments = shlex.split(command)
         if program == "cd":

@@ -14,7 +14,7 @@ from as2fm_lsp.cli.model_arguments import fault_text, line_of
 from as2fm_lsp.cli.output import flush, print_text
 from as2fm_lsp.outputs import OutputFiles
 from roaml.durations import duration
-from roaml.scxml.names import BLACKBOARD
+from roaml.scxml.names import is_blackboard
 from roaml.simulation import Choice, Session
 from roaml.smc.fault import FaultError
 from roaml.smc.record import Plain, RecordedVariable
@@ -231,7 +231,8 @@ class Terminal:
             values = shown_parameters(event.parameters)
             waiting = ", not received yet" if event.is_waiting else ""
             yield f"{event.text}{f' ({values})' if values else ''}, step {event.step}{waiting}"
-        common = {**shown.get(BLACKBOARD, {}), **shown.get("", {})}
+        boards = (own for name, own in shown.items() if is_blackboard(name))
+        common = {**{name: value for own in boards for name, value in own.items()}, **shown.get("", {})}
         for name in {**state.blackboard, **state.shared}:
             yield f"{observer_phrase(name, session.automata) or name}: {shown_value(common[name])}"
 

@@ -14,7 +14,7 @@ from roaml.debugging.breakpoints import Breakpoint, ExceptionFilter, WatchedVari
 from roaml.debugging.debugger import Debugger
 from roaml.debugging.evaluate import WatchError
 from roaml.debugging.values import SEPARATOR
-from roaml.scxml.names import BLACKBOARD
+from roaml.scxml.names import is_blackboard
 from roaml.suggest import alternatives
 
 
@@ -214,7 +214,7 @@ def _shown(debugger: Debugger, variable: WatchedVariable) -> str:
     if variable.instance < 0:
         return name
     automaton = debugger.session.automata[variable.instance]
-    return f"{name} on the blackboard" if automaton == BLACKBOARD else f"{debugger.session.names[automaton]}.{name}"
+    return f"{name} on the blackboard" if is_blackboard(automaton) else f"{debugger.session.names[automaton]}.{name}"
 
 
 def _not_checked(requested: Iterable[tuple[int, Arguments]]) -> list[dict[str, Any]]:

@@ -50,7 +50,7 @@ def mock_system(
         settings, ros_paths, texts: as for `check`.
 
     Raises:
-        PathError: the path cannot be read, or is not a system file.
+        PathError: the path cannot be read, is not a system file, or the system has several trees.
     """
     from roaml.mocks.mock import unused  # noqa: PLC0415 - a check starts faster without these
     from roaml.mocks.system_mocks import defaults, event_edits, listing, plan  # noqa: PLC0415
@@ -62,6 +62,8 @@ def mock_system(
     system, document = analysis.system(main), analysis.document(main)
     if analysis.kind(main) is not FileKind.SYSTEM or system is None or document is None or document.root is None:
         raise PathError(f"{path}: not a system file")
+    if len(system.roots) > 1:
+        raise PathError(f"{path}: the leaves of a system with several trees cannot be mocked; write plugins for them")
     leaves = missing_leaves(analysis, system)
     paths = plugin_paths(analysis, main, [leaf.type for leaf in leaves])
     planned, missing = plan(leaves, mocks, Fraction(str(system.parameters.tick_rate)), paths)

@@ -15,11 +15,9 @@ from roaml.debugging.values import SEPARATOR, Value, bytes_of, nested, shown, ty
 from roaml.expr.types import INTEGER_RANGES, Array, Scalar, ScalarKind, Struct, Type, leaves
 from roaml.record import Record
 from roaml.scxml.names import (
-    BLACKBOARD_ANSWER,
-    BLACKBOARD_REQUEST,
-    BLACKBOARD_WRITE_PREFIX,
     FIELD_PREFIX,
     flag_of,
+    is_blackboard_event,
     is_timer,
     read_tree_event,
     sent_by,
@@ -72,8 +70,7 @@ def sendable(session: Session, sources: Sources) -> Iterator[Sendable]:
 
 
 def _is_internal(event: str) -> bool:
-    is_blackboard = event in (BLACKBOARD_REQUEST, BLACKBOARD_ANSWER) or event.startswith(BLACKBOARD_WRITE_PREFIX)
-    return is_blackboard or is_timer(event) or read_tree_event(event) is not None
+    return is_blackboard_event(event) or is_timer(event) or read_tree_event(event) is not None
 
 
 def sending(session: Session, sources: Sources, name: str, fields: Value) -> Intervention:

@@ -15,7 +15,7 @@ from functools import cached_property
 
 from roaml.debugging.breakpoints import Breakpoint, BreakpointPlaces, Breakpoints, ExceptionFilter, Matcher, logged
 from roaml.debugging.evaluate import Scope
-from roaml.debugging.frames import TREE_THREAD, DebugThread, Frame, FrameRole, Stacks, node_of, threads
+from roaml.debugging.frames import TREE_THREAD, DebugThread, Frame, FrameRole, Stacks, node_of, root_of, threads
 from roaml.debugging.scopes import Values
 from roaml.debugging.sources import Sources
 from roaml.debugging.values import shown
@@ -546,8 +546,17 @@ class Debugger:
                 return self._threads_of[actor]
             name = self.session.automata[actor] if actor >= 0 else ""
             if self.sources.nodes and (node_of(name) or name.startswith(TREE_ROOT_PREFIX)):
-                return TREE_THREAD
+                return self._tree_thread(name)
         return self._thread
+
+    def _tree_thread(self, automaton: str) -> int:
+        """The thread of the tree of which an automaton is a node or the root."""
+        trees = [thread for thread in self.threads if thread.root]
+        if (number := node_of(automaton)) in self.sources.nodes:
+            root = root_of(number, self.sources)
+            return next(thread.number for thread in trees if thread.root == root)
+        own = automaton.removeprefix(TREE_ROOT_PREFIX)
+        return next((t.number for t in trees if self.sources.nodes[t.root].tree == own), TREE_THREAD)
 
 
 def _nothing(_: str) -> None:

@@ -22,15 +22,20 @@ from roaml.smc.record import AutomatonStep, TraceStep
 from roaml.views.event_words import event_phrase
 
 TREE_THREAD = 1
-FIRST_MACHINE_THREAD = 2
 
 
 class DebugThread(Record, frozen=True):
-    """A machine, or the tree; `instance` is -1 for the tree."""
+    """A machine, or a tree.
+
+    Attributes:
+        instance: the number of the automaton; -1 for a tree.
+        root: the number of the topmost node of the tree; 0 for a machine.
+    """
 
     number: int
     name: str
     instance: int
+    root: int = 0
 
 
 class FrameRole(Enum):
@@ -60,9 +65,13 @@ class Frame(Record, frozen=True):
 
 
 def threads(session: Session, sources: Sources) -> tuple[DebugThread, ...]:
-    """The threads of a system: the tree, then the machines in their order."""
-    threads_ = [DebugThread(TREE_THREAD, "tree", -1)] if sources.nodes else []
-    number = FIRST_MACHINE_THREAD
+    """The threads of a system: the trees, then the machines in their order."""
+    roots = [node for node in sources.nodes.values() if node.parent is None]
+    threads_ = [
+        DebugThread(number, f"tree {root.tree}" if len(roots) > 1 else "tree", -1, root.number)
+        for number, root in enumerate(roots, TREE_THREAD)
+    ]
+    number = TREE_THREAD + max(1, len(roots))
     for instance, automaton in enumerate(session.automata_of_model):
         if session.is_machine(instance) and not _is_node(automaton.name, sources):
             threads_.append(DebugThread(number, session.names[automaton.name], instance))
@@ -78,6 +87,13 @@ def node_of(automaton: str) -> int:
     """The number of the node of the tree that an automaton executes; 0 for other automata."""
     match = NODE_AUTOMATON.fullmatch(automaton)
     return int(match[1]) if match else 0
+
+
+def root_of(node: int, sources: Sources) -> int:
+    """The number of the topmost node of the tree that contains the node with the number `node`."""
+    while (parent := sources.nodes[node].parent) is not None:
+        node = parent
+    return node
 
 
 class Stacks:
@@ -103,7 +119,7 @@ class Stacks:
         if thread.instance >= 0:
             automaton = self._session.automata_of_model[thread.instance].name
             return list(self._machine_frames(thread.number, self._machines[automaton], thread.instance, 0))
-        return list(self._tree_frames(thread.number))
+        return list(self._tree_frames(thread))
 
     def _machine_frames(self, thread: int, machine: MachineState, instance: int, node: int) -> Iterator[Frame]:
         automaton = self._session.automata_of_model[instance]
@@ -136,9 +152,10 @@ class Stacks:
         origin = states.get(machine.state, machine.origin)
         yield Frame(thread, f"{machine.name}: {machine.state}", origin, instance, node, FrameRole.STATE)
 
-    def _tree_frames(self, thread: int) -> Iterator[Frame]:
+    def _tree_frames(self, tree: DebugThread) -> Iterator[Frame]:
+        thread = tree.number
         statuses = {node.number: node for node in self._state.nodes}
-        active = self._active_node(statuses)
+        active = self._active_node(statuses, tree.root)
         instance = self._instances.get(self._sources.nodes[active].automaton, -1) if active else -1
         automaton = self._session.automata_of_model[instance] if instance >= 0 else None
         if automaton is not None and self._executes_machine(instance, automaton):
@@ -159,14 +176,16 @@ class Stacks:
         """Whether a node of the tree executes a machine that the user has written."""
         return self._session.is_machine(instance) and not self._sources.is_library_node(automaton)
 
-    def _active_node(self, statuses: Mapping[int, NodeState]) -> int:
-        """The node that executes the next step; if none does, the innermost node that is being ticked, or the root."""
+    def _active_node(self, statuses: Mapping[int, NodeState], root: int) -> int:
+        """The node of a tree that executes the next step; if none does, the innermost node that is being ticked, or the
+        root."""
         for part in self._parts.values():
             number = node_of(part.automaton)
-            if number in self._sources.nodes:
+            if number in self._sources.nodes and root_of(number, self._sources) == root:
                 return number
         ticked = [n for n, node in statuses.items() if node.status is NodeStatus.TICKED and n in self._sources.nodes]
-        return max(ticked, key=self._depth, default=min(self._sources.nodes, default=0))
+        own = [number for number in ticked if root_of(number, self._sources) == root]
+        return max(own, key=self._depth, default=root)
 
     def _depth(self, number: int) -> int:
         depth = 0

@@ -14,11 +14,11 @@ from roaml.debugging.values import SEPARATOR, Value, nested, type_of, typed_valu
 from roaml.exhaustive import Vocabulary
 from roaml.record import Record, replace
 from roaml.scxml.names import (
-    BLACKBOARD,
     FIELD_PREFIX,
     FLAG,
     STATUS_NAMES,
     InterfaceEventKind,
+    is_blackboard,
     is_length,
     is_timer,
     read_interface_event,
@@ -142,13 +142,19 @@ class Values:
                 yield ScopeEntry(port.name, port.text if value is None else value, f"blackboard entry {port.entry}")
 
     def _blackboard_values(self) -> dict[str, Value]:
-        stored = self._stored.get(self._instances.get(BLACKBOARD, -2), {})
-        return untyped_values(stored)
+        return {name: value for board in self._boards() for name, value in self._board_values(board).items()}
+
+    def _boards(self) -> list[int]:
+        """The numbers of the automata that store blackboards."""
+        return [instance for name, instance in self._instances.items() if is_blackboard(name)]
+
+    def _board_values(self, instance: int) -> dict[str, Value]:
+        return untyped_values(self._stored.get(instance, {}))
 
     def _blackboard(self) -> Iterator[ScopeEntry]:
-        instance = self._instances.get(BLACKBOARD, -2)
-        for name, value in self._blackboard_values().items():
-            yield ScopeEntry(name, value, type_of(value), name, WatchedVariable(instance, name))
+        for instance in self._boards():
+            for name, value in self._board_values(instance).items():
+                yield ScopeEntry(name, value, type_of(value), name, WatchedVariable(instance, name))
 
     def _nodes(self) -> Iterator[ScopeEntry]:
         for node in self._state.nodes:

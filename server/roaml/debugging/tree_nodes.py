@@ -29,13 +29,14 @@ class SourceNode(Record, frozen=True):
     """A node of the tree.
 
     Attributes:
-        number: 1000 for the root, then increasing in pre-order.
+        number: 1000 for the root of the first tree, then increasing in pre-order.
         type: the name of its type; `SubTree` for a subtree of a tree without a system.
         name: its name; if it has none, the name of its type or of the subtree.
         automaton: the name of its automaton.
         parent: the number of its parent; `None` for the root.
         origin: its element; `None` if it is unknown.
         picture: its id in the picture of the tree.
+        tree: the name of its tree in the system; "" if it has none.
     """
 
     number: int
@@ -46,6 +47,7 @@ class SourceNode(Record, frozen=True):
     ports: tuple[NodePort, ...]
     origin: Origin | None
     picture: str
+    tree: str = ""
 
 
 def nodes_of_system(analysis: Analysis, path: str) -> Iterator[SourceNode]:
@@ -73,6 +75,7 @@ def _of_instance(analysis: Analysis, instance: Instance) -> SourceNode:
         tuple(ports),
         None if node is None else Location(instance.source.path, node.element.span),
         str(instance.number),
+        instance.tree,
     )
 
 

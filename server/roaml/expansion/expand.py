@@ -23,10 +23,13 @@ from roaml.expansion.declarations import (
 from roaml.expansion.instances import (
     REMAP,
     ListedInstance,
+    Remap,
+    in_tree,
     instance_edits,
     instances,
     removed,
     removed_attribute,
+    report_unused,
 )
 from roaml.expansion.problems import ExpansionProblem, Problems
 from roaml.expansion.text import ExpandedText, expanded_text
@@ -36,6 +39,8 @@ from roaml.expr.types import ScalarKind
 from roaml.jani.properties import Property, identifiers
 from roaml.language import SYSTEM
 from roaml.model.kinds import GRAMMARS, FileKind
+from roaml.model.syntax import Name
+from roaml.model.system_file import TREE_ATTRIBUTE
 from roaml.record import Record, field
 from roaml.roles import SymbolKind
 from roaml.suggest import close_names, did_you_mean, listing
@@ -189,6 +194,8 @@ class _Expander:
         self.renamed: dict[str, set[str]] = {}
         self.of_instances: dict[str, str] = {}
         self.drawn: dict[DrawnNumber, None] = {}
+        self.remapped: set[Remap] = set()
+        self.set_by_trees: set[Name] = set()
         self.data: dict[str, str | None] = {}
 
     def problems_of(self, path: str) -> Problems:
@@ -228,10 +235,21 @@ class _Expander:
         for instance in listed:
             target = self.resolve(self.path, instance.src.value)
             count[target] = count.get(target, 0) + 1
+        trees = [instance for instance in listed if instance.is_tree]
         seen: set[str] = set()
         for instance in listed:
             target = self.resolve(self.path, instance.src.value)
+            if instance.is_tree:
+                edits += self._plain_input(document, instance)
+                self._note_tree(instance.name, instance, defines=True)
+                continue
+            for tree in trees:
+                if instance.tree is not None and _named(tree) == instance.tree.value:
+                    self._note_tree(instance.tree, tree, defines=False)
             seen.add(target)
+            if instance.is_plugin and any(tree.changes_files for tree in trees):
+                edits += self._plugin(document, instance, target, trees, scope)
+                continue
             if instance.name is not None:
                 symbol = Symbol(target, SymbolKind.MACHINE, instance.name.value)
                 self.names.setdefault(self.path, {})[NamedPlace(symbol, instance.name.span, True)] = None
@@ -242,6 +260,7 @@ class _Expander:
             if new != target:
                 edits.append(TextEdit(instance.src.value_span, _relative(new, instance.src.value)))
             edits += self._plain_input(document, instance)
+        self._report_trees(trees, problems)
         for other in self.others:
             if other not in seen:
                 self._expand_listed(other, other, None, scope)
@@ -249,6 +268,48 @@ class _Expander:
         if edits:
             self.texts[self.path] = expanded_text(self.path, self.path, document.text, edits)
         return self._result(scope, declared)
+
+    def _plugin(
+        self, document: Document, plugin: ListedInstance, target: str, trees: list[ListedInstance], scope: Scope
+    ) -> Iterator[TextEdit]:
+        """Expand a plugin for each tree to which it belongs. The input is replaced by one for each of them."""
+        owners = [tree for tree in trees if plugin.tree is None or _named(tree) == plugin.tree.value]
+        source = self.sources.document(target) if self.sources.kind(target) is FileKind.MACHINE else None
+        own = {p.name.value for p in declarations(source, Problems())} if source is not None else set()
+        inputs = []
+        for tree in owners or [plugin]:
+            instance = in_tree(plugin, tree, own) if tree is not plugin else plugin
+            new = self._fresh(target, instance) if len(owners) > 1 and tree.changes_files else target
+            self._expand_listed(target, new, instance, scope)
+            inputs.append((_relative(new, plugin.src.value), _named(tree)))
+            self.set_by_trees |= {name for name, _ in tree.params if name.value in own}
+        if len(owners) < 2:
+            yield from self._plain_input(document, plugin)
+            return
+        type_ = plugin.element.get("type")
+        kind = f'type="{type_.value}" ' if type_ is not None else ""
+        texts = (f'<input {kind}src="{src}" {TREE_ATTRIBUTE}="{tree}" />' for src, tree in inputs)
+        yield TextEdit(plugin.element.span, "\n        ".join(texts))
+
+    def _note_tree(self, name: Name | None, tree: ListedInstance, *, defines: bool) -> None:
+        """Record a place with the name of a tree."""
+        if name is not None:
+            symbol = Symbol(self.resolve(self.path, tree.src.value), SymbolKind.MACHINE, name.value)
+            self.names.setdefault(self.path, {})[NamedPlace(symbol, name.span, defines)] = None
+
+    def _report_trees(self, trees: list[ListedInstance], problems: Problems) -> None:
+        """Report the values and the remaps of trees that have no effect on their plugins, and that AS2FM executes only
+        one tree."""
+        for tree in trees:
+            for name, _ in tree.params:
+                if name not in self.set_by_trees:
+                    message = f"no plugin of this tree has a parameter `{name.value}`"
+                    problems.add(ExpansionProblem.UNKNOWN, name.span, message)
+            report_unused(tree.remaps, self.remapped, problems)
+        if len(trees) > 1:
+            message = "AS2FM executes only one tree, so it cannot read this system"
+            place = trees[1].element.name_span
+            problems.add(ExpansionProblem.REFERENCE, place, message, severity=Severity.INFORMATION)
 
     def _result(self, scope: Scope, declared: tuple[Declared, ...]) -> SystemExpansion:
         variants: dict[str, list[str]] = {}
@@ -277,6 +338,8 @@ class _Expander:
         folder, file = target[:begin], target[begin:]
         stem, dot, extension = file.rpartition(".")
         name = instance.name.value if instance.name else f"{stem}_2"
+        if instance.is_plugin and instance.tree is not None:
+            name = f"{instance.tree.value}_{stem}"
         number = 2
         new = f"{folder}{name}{dot}{extension}"
         while new in self.taken or self.sources.text(new) is not None:
@@ -326,7 +389,7 @@ class _Expander:
             return
         first = next(iter(element.elements), None)
         place = first.name_span if first is not None else element.name_span
-        for name in ("name", "namespace"):
+        for name in ("namespace",) if instance.is_tree else ("name", "namespace"):
             if (attribute := element.get(name)) is not None:
                 place = attribute.name_span
                 yield removed_attribute(document, attribute)
@@ -383,7 +446,9 @@ class _Expander:
             )
             problems.add(ExpansionProblem.REFERENCE, own[0].element.name_span, message, severity=Severity.INFORMATION)
         if instance is not None and kind is FileKind.MACHINE:
-            renamed = list(instance_edits(document, instance, system_problems))
+            renamed = list(instance_edits(document, instance, self.remapped))
+            own_remaps = (remap for remap in instance.remaps if remap.element in instance.element.elements)
+            report_unused(own_remaps, self.remapped, system_problems)
             own_name = document.root.get("name")
             spans = [edit.span for edit in renamed if own_name is None or edit.span != own_name.value_span]
             self.renamed.setdefault(source, set()).update(document.decoded(span).text.strip() for span in spans)
@@ -459,11 +524,12 @@ class _Expander:
         machine = root.get("name") if root is not None else None
         name = instance.name.value if instance and instance.name else (machine.value.strip() if machine else "")
         for parameter in known:
-            self.settable.add(f"{name}.{parameter}")
-            for key in (f"*.{parameter}", f"{name}.{parameter}"):
+            names = (name, instance.tree.value) if instance and instance.tree else (name,)
+            self.settable |= {f"{name}.{parameter}" for name in names}
+            for key in (f"*.{parameter}", *(f"{name}.{parameter}" for name in names)):
                 if key in self.given:
                     given[parameter] = Given(self.given[key], None, SETTING)
-                    self.of_instances[f"{name}.{parameter}"] = self.given[key]
+                    self.of_instances[f"{names[-1]}.{parameter}"] = self.given[key]
         return given
 
     def _expand_jani(self, source: str, scope: Scope) -> None:
@@ -505,6 +571,10 @@ def _unused(document: Document, parameter: Declared, problems: Problems) -> None
     message = f"nothing uses the parameter `{parameter.name.value}`; remove it"
     fix = Fix(f"Remove the parameter `{parameter.name.value}`", (removed(document, parameter.element),))
     problems.add(ExpansionProblem.UNUSED, parameter.name.span, message, fixes=(fix,), tags=(Tag.UNNECESSARY,))
+
+
+def _named(tree: ListedInstance) -> str:
+    return tree.name.value if tree.name is not None else ""
 
 
 def _relative(path: str, written: str) -> str:

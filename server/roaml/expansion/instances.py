@@ -6,15 +6,16 @@ from __future__ import annotations
 
 import posixpath
 import re
-from collections.abc import Iterator
+from collections.abc import Container, Iterable, Iterator, Set
 
 from roaml.expansion.declarations import PARAM
 from roaml.expansion.problems import ExpansionProblem, Problems
 from roaml.language import HL_SCXML
 from roaml.model.build_machine import INTERFACE_ATTRIBUTES
+from roaml.model.kinds import FileKind
 from roaml.model.syntax import Name, name_of
-from roaml.model.system_file import SystemSection
-from roaml.record import Record
+from roaml.model.system_file import TREE_ATTRIBUTE, SystemInput, SystemSection, required_kind
+from roaml.record import Record, replace
 from roaml.regex import regex
 from roaml.roles import SymbolKind
 from roaml.text import Span, TextEdit
@@ -39,8 +40,10 @@ class ListedInstance(Record, frozen=True, eq=False):
     Attributes:
         name: the name of the instance; `None` if the file keeps its own.
         namespace: the namespace of relative names; "" if there is none.
-        params: name of a parameter of the file -> its value in the system file.
+        params: name of a parameter of the file -> its value in the system file; those of a tree are parameters of its
+            plugins.
         src: the attribute with the path of the file.
+        tree: for a plugin, the name of the tree to which it belongs; `None` if it belongs to all trees.
     """
 
     element: Element
@@ -50,12 +53,48 @@ class ListedInstance(Record, frozen=True, eq=False):
     namespace: str
     params: tuple[tuple[Name, Attribute], ...]
     remaps: tuple[Remap, ...]
+    tree: Name | None = None
+
+    @property
+    def is_tree(self) -> bool:
+        return is_tree(self.element, self.section)
+
+    @property
+    def is_plugin(self) -> bool:
+        return self.section is SystemSection.BEHAVIOR_TREE and not self.is_tree
+
+    @property
+    def changes_files(self) -> bool:
+        """Whether the input has a namespace, values of parameters or remaps."""
+        return bool(self.namespace or self.params or self.remaps)
 
     @property
     def is_plain(self) -> bool:
-        """Whether the input uses nothing that plain system files do not have."""
+        """Whether the input uses nothing that is expanded."""
         extra = any(child.name in (PARAM, REMAP) for child in self.element.elements)
-        return not extra and self.element.get("name") is None and self.element.get("namespace") is None
+        return not extra and all(self.element.get(name) is None for name in ("name", "namespace", TREE_ATTRIBUTE))
+
+
+def is_tree(element: Element, section: SystemSection) -> bool:
+    """Whether an input lists a tree."""
+    return required_kind(SystemInput(element, section, name_of(element.get("type")), None)) is FileKind.TREE
+
+
+def in_tree(plugin: ListedInstance, tree: ListedInstance, declared: Container[str]) -> ListedInstance:
+    """The copy of a plugin for a tree, with the namespace, the remaps and the values of parameters of the tree.
+
+    Args:
+        declared: the parameters that the plugin declares.
+    """
+    own = {name.value for name, _ in plugin.params}
+    params = (p for p in tree.params if p[0].value in declared and p[0].value not in own)
+    return replace(
+        plugin,
+        namespace=tree.namespace,
+        params=(*plugin.params, *params),
+        remaps=(*plugin.remaps, *tree.remaps),
+        tree=tree.name,
+    )
 
 
 def instances(document: Document, problems: Problems) -> Iterator[ListedInstance]:
@@ -87,18 +126,18 @@ def _instance(element: Element, section: SystemSection, src: Attribute, problems
         message = f"`{given.value}` is not a namespace of ROS; write names separated by `/`, such as `/robots/first`"
         problems.add(ExpansionProblem.INSTANCE, given.span, message)
         namespace = ""
-    if section is not SystemSection.NODE_MODELS:
+    if section is not SystemSection.NODE_MODELS and not is_tree(element, section):
         for attribute in (element.get("name"), element.get("namespace")):
             if attribute is not None:
                 message = (
-                    f"`{attribute.name}` has an effect only on inputs of `<node_models>`; remove the attribute, or set "
-                    "a parameter of the file with `<param>`"
+                    f"`{attribute.name}` has an effect only on inputs of `<node_models>` and on trees; remove the "
+                    "attribute, or set a parameter of the file with `<param>`"
                 )
                 problems.add(ExpansionProblem.INSTANCE, attribute.name_span, message)
         name, namespace = None, ""
-    return ListedInstance(
-        element, section, src, name, namespace, tuple(_params(element, problems)), tuple(_remaps(element, problems))
-    )
+    params, remaps = tuple(_params(element, problems)), tuple(_remaps(element, problems))
+    tree = name_of(element.get(TREE_ATTRIBUTE))
+    return ListedInstance(element, section, src, name, namespace, params, remaps, tree)
 
 
 def _params(element: Element, problems: Problems) -> Iterator[tuple[Name, Attribute]]:
@@ -162,11 +201,11 @@ class InstanceNames:
         return remap.new.value
 
 
-def instance_edits(document: Document, instance: ListedInstance, problems: Problems) -> Iterator[TextEdit]:
+def instance_edits(document: Document, instance: ListedInstance, used: set[Remap]) -> Iterator[TextEdit]:
     """The edits that give a machine the name, the namespace and the remaps of an instance.
 
     Args:
-        problems: receives the remaps that have no effect, as problems of the system file.
+        used: receives the remaps that have an effect.
     """
     root = document.root
     if root is None:
@@ -197,8 +236,13 @@ def instance_edits(document: Document, instance: ListedInstance, problems: Probl
                 continue
             if new != attribute.value:
                 yield TextEdit(attribute.value_span, new)
-    for remap in instance.remaps:
-        if remap not in names.used:
+    used |= names.used
+
+
+def report_unused(remaps: Iterable[Remap], used: Set[Remap], problems: Problems) -> None:
+    """Report the remaps that have no effect, as problems of the system file."""
+    for remap in remaps:
+        if remap not in used:
             message = f"the file has no topic, service, action or event `{remap.old.value}`, so the remap has no effect"
             problems.add(ExpansionProblem.REMAP, remap.old.span, message)
 

@@ -8,23 +8,23 @@ from roaml.expr.zero import zero
 from roaml.lower.blackboard_automaton import blackboard_automaton
 from roaml.lower.program import TranslatableSystem
 from roaml.lower.programs.blackboard import board_automaton
-from roaml.model.expand import ROOT_NUMBER
+from roaml.model.expand import Instance, board_prefix
 from roaml.scxml.model import Automaton, Data
 from roaml.text import Location
 
 
-def blackboard(program: TranslatableSystem) -> Automaton | None:
-    """The automaton that stores the blackboard of a system; `None` if the tree uses no variables."""
-    system = program.system
+def blackboard(program: TranslatableSystem, root: Instance) -> Automaton | None:
+    """The automaton that stores the blackboard of a tree; `None` if the tree uses no variables."""
+    system, tree = program.system, root.tree
+    is_read = system.reads_blackboard(tree)
     if program.library is not None:
-        return board_automaton(
-            program.library.board, program.node(ROOT_NUMBER), is_read=program.system.reads_blackboard
-        )
-    variables = {variable: BASE_TYPES[system.variable_type(variable)] for variable in system.blackboard}
+        return board_automaton(program.library.board, program.node(root.number), is_read=is_read, tree=tree)
+    names = (variable for variable in system.blackboard if variable.startswith(board_prefix(tree)))
+    variables = {variable: BASE_TYPES[system.variable_type(variable)] for variable in names}
     if not variables:
         return None
     data = [Data(v, type_, zero(type_), _place(program, v)) for v, type_ in variables.items()]
-    return blackboard_automaton(data, {}, data[0].origin, is_read=system.reads_blackboard)
+    return blackboard_automaton(data, {}, data[0].origin, is_read=is_read, tree=tree)
 
 
 def _place(program: TranslatableSystem, variable: str) -> Location:

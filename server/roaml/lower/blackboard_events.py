@@ -4,10 +4,17 @@
 from __future__ import annotations
 
 from roaml.scxml.events import EventRole, ScxmlEvent
-from roaml.scxml.names import BLACKBOARD_ANSWER, BLACKBOARD_REQUEST, BLACKBOARD_WRITE_PREFIX
+from roaml.scxml.names import BLACKBOARD_WRITE_PREFIX, blackboard_answer, blackboard_request
 
-REQUEST = ScxmlEvent(BLACKBOARD_REQUEST, EventRole.BLACKBOARD_READ)
-ANSWER = ScxmlEvent(BLACKBOARD_ANSWER)
+
+def request_of(tree: str) -> ScxmlEvent:
+    """The event that asks for the values of the blackboard of the tree with the name `tree`."""
+    return ScxmlEvent(blackboard_request(tree), EventRole.BLACKBOARD_READ)
+
+
+def answer_of(tree: str) -> ScxmlEvent:
+    """The event with the values of the blackboard of the tree with the name `tree`."""
+    return ScxmlEvent(blackboard_answer(tree))
 
 
 def blackboard_write(variable: str) -> ScxmlEvent:

@@ -51,6 +51,11 @@ class LoweringContext(Record, frozen=True, eq=False):
             return Location(self.automaton.path, span)
         return self.program.place_of(self.automaton)
 
+    @property
+    def tree(self) -> str:
+        """The name of the tree that contains the automaton; "" if it has none."""
+        return self.automaton.instance.tree if self.automaton.instance is not None else ""
+
     def scope(self, handler: Handler | None = None, part: ValuePart = ValuePart.BODY) -> LoweringScope:
         """The names that can be used in `part` of a handler, its condition or its body; without a handler, those in
         `<onentry>` and `<onexit>`."""

@@ -107,7 +107,6 @@ class LibraryTreeBuilder:
             list(node.ports())  # adds the constants of subtrees to `initial`
         self.board = build_board(self.tree_of_parts, {}, used, self.machine_types())
         self.index = {id(part): index for index, part in enumerate(nodes)}
-        self.tick_rate = Fraction(str(system.parameters.tick_rate))
         self.known_children = known_children
 
     # ------------------------------------------------------------------- parts
@@ -208,7 +207,7 @@ class LibraryTreeBuilder:
                         continue
                     below = [child] if part.address != self.parts[instance.number][-1].address else None
                     below = below or [children[number] for number in instance.children]
-                    code = self.code(part, part.program, tuple(below))
+                    code = self.code(part, part.program, tuple(below), instance.tree)
                     child = self.child(code)
                     translated.append(code)
                 except NodeTooLargeError:
@@ -272,7 +271,7 @@ class LibraryTreeBuilder:
                 reason = f"`{name}` can be skipped, but its parent `{instance.plugin}` cannot handle SKIPPED"
                 raise TreeRefusal(part.node.origin, reason)
 
-    def code(self, part: _Part, program: NodeProgram, children: tuple[Child, ...]) -> NodeCode:
+    def code(self, part: _Part, program: NodeProgram, children: tuple[Child, ...], tree: str) -> NodeCode:
         node = part.node
         number = self.index[id(part)]
         is_condition = node.type in (*MACHINES, "SubTree")
@@ -292,11 +291,12 @@ class LibraryTreeBuilder:
             (),
             values.elements,
             flags_at(node, self.board),
-            self.tick_rate,
+            Fraction(str(self.system.tick_rate(tree))),
             counts=False,
             origin=node.origin,
             is_halted_always=True,
             whole=values.whole,
+            tree=tree,
         )
 
 

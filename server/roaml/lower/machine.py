@@ -10,7 +10,7 @@ from decimal import Decimal, InvalidOperation
 from roaml.exhaustive import assert_never
 from roaml.expr.tree import Boolean, Expr
 from roaml.expr.types import Type
-from roaml.lower.blackboard_events import ANSWER, REQUEST
+from roaml.lower.blackboard_events import answer_of, request_of
 from roaml.lower.build import both, equal, event_data, integer, name
 from roaml.lower.context import LoweringContext, type_of, variables_of
 from roaml.lower.data import lower_data
@@ -190,14 +190,15 @@ class _ChartLowering:
         self.state_ids.add(identifier)
         assert target.state is not None
         body = self.statements.body(target.body, scope)
-        answered = Transition(ANSWER, None, (Target(target.state.value, 1.0, body, origin),), origin)
+        event = answer_of(self.context.tree)
+        answered = Transition(event, None, (Target(target.state.value, 1.0, body, origin),), origin)
         return State(identifier, (), (), (answered,), origin)
 
     def asking(self, handler: Handler, waiting: str) -> Iterator[Transition]:
         """The transitions for the first half of a handler that reads the blackboard. They have its trigger and
         condition, and send the request to the blackboard."""
         origin = self.context.origin(handler.element.span)
-        ask = (Send(REQUEST, (), origin),)
+        ask = (Send(request_of(self.context.tree), (), origin),)
         body = (*self.started(handler), *ask)
         for event, cond in self.triggers(handler):
             yield Transition(event, cond, (Target(waiting, 1.0, body, origin),), origin)

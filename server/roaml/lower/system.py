@@ -58,16 +58,17 @@ def _automata(
     for automaton, machine in members:
         if automaton.instance is None:
             yield from lower_machine(automaton, machine, program, timers)
-    if system.instances:
-        yield tree_root(program, timers[tick_timer(program)])
     machines = {automaton.instance.number: (automaton, machine) for automaton, machine in members if automaton.instance}
     for instance in system.instances:
+        if instance.parent is None:
+            yield tree_root(program, instance, timers[tick_timer(program, instance)])
         if program.library is not None:
             yield from program.library.automata(instance.number)
         if instance.number in machines:
             yield from lower_machine(*machines[instance.number], program, timers)
-    if (board := blackboard(program)) is not None:
-        yield board
+    for root in system.roots:
+        if (board := blackboard(program, root)) is not None:
+            yield board
     for service in system.services.values():
         yield service_handler(service, program)
     for action in system.actions.values():

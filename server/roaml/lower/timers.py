@@ -20,7 +20,6 @@ from roaml.lower.interfaces import topic_event
 from roaml.lower.machine import copies
 from roaml.lower.program import TranslatableSystem
 from roaml.lower.tree import tick_timer
-from roaml.model.expand import ROOT_NUMBER
 from roaml.model.machine import Chart, Declaration, Machine
 from roaml.model.syntax import Name, PortRead
 from roaml.model.system import CLOCK_TOPIC, SystemAutomaton
@@ -51,15 +50,15 @@ class Timer(Record, frozen=True):
 
 
 def timers_of(program: TranslatableSystem, members: Iterable[tuple[SystemAutomaton, Machine]]) -> list[Timer]:
-    """All timers in the order of their declarations: those of the ROS nodes, that of the tree, and those of the nodes
+    """All timers in the order of their declarations: those of the ROS nodes, those of the trees, and those of the nodes
     of the tree."""
     declared: list[tuple[str, str, Fraction, bool, Location]] = []
     in_tree: list[tuple[str, str, Fraction, bool, Location]] = []
     for automaton, machine in members:
         (declared if automaton.instance is None else in_tree).extend(_declared(automaton, machine, program))
-    if program.system.instances:
-        rate = Fraction(str(program.parameters.tick_rate))
-        declared.append((*tick_timer(program), rate, True, program.node(ROOT_NUMBER)))
+    for root in program.system.roots:
+        rate = Fraction(str(program.system.tick_rate(root.tree)))
+        declared.append((*tick_timer(program, root), rate, True, program.node(root.number)))
     declared += in_tree
     handles = [handle for _, handle, _, used, _ in declared if used]
     return [

@@ -12,13 +12,13 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from graphlib import CycleError, TopologicalSorter
 from typing import TypeAlias
 
 from roaml.libraries.scripts import AFTERWARDS, CONDITIONS, script_ports
 from roaml.model.tree import Tree, TreeFile, TreeNode, blackboard_variable, port_key
-from roaml.record import PartlyCompared, Record, field
+from roaml.record import PartlyCompared, Record, field, replace
 from roaml.regex import regex
 from roaml.script.names import names_in
 from roaml.scxml.names import NODE_PREFIX
@@ -124,13 +124,16 @@ class Instance(Record, frozen=True):
     """One node of the executed tree.
 
     Attributes:
-        number: 1000 for the root, then increasing in pre-order; the number is a part of event names.
-        automaton: the name of its automaton, `BT_plugin_<number>_<name>`.
+        number: 1000 for the root, then increasing in pre-order; that of the root of each further tree is the next
+            multiple of 1000. The number is a part of event names.
+        automaton: the name of its automaton, `BT_plugin_<number>_<name>`; `BT_plugin_<number>_<tree>.<name>` in a tree
+            with a name.
         ports: the values that the tree sets, including defaults of `<TreeNodesModel>`.
         children: the numbers of its children.
         condition: whether it is written as `<Condition>`, or declared so in `<TreeNodesModel>`.
         use: the index of the `TreeUse` that the node is in.
         scripts: its conditions and scripts (docs/spec/trees.md#scripts), by attribute.
+        tree: the name of the executed tree, if the system gives it one (docs/spec/trees.md#several-trees).
     """
 
     number: int
@@ -143,10 +146,12 @@ class Instance(Record, frozen=True):
     condition: bool = False
     use: int = 0
     scripts: tuple[tuple[str, str], ...] = ()
+    tree: str = ""
 
     @property
     def automaton(self) -> str:
-        return f"{NODE_PREFIX}{self.number}_{self.name}"
+        name = f"{self.tree}.{self.name}" if self.tree else self.name
+        return f"{NODE_PREFIX}{self.number}_{name}"
 
     def port(self, key: str) -> PortValue | None:
         return next((value for name, value in self.ports if name == key), None)
@@ -214,6 +219,18 @@ def node_at(file: TreeFile, source: NodeSource) -> TreeNode | None:
     """The node of a file that `source` refers to; `None` if it does not exist."""
     tree_nodes = nodes_of(file, source.tree)
     return tree_nodes[source.position] if source.position < len(tree_nodes) else None
+
+
+class ListedTree(Record, frozen=True):
+    """A tree that a system executes.
+
+    Attributes:
+        name: the name that the system gives it; "" if it has none.
+        files: the file that the system lists, and the files that it includes.
+    """
+
+    name: str
+    files: tuple[TreeFileOutline, ...]
 
 
 def main_tree(files: tuple[TreeFileOutline, ...]) -> TreeOutline | tuple[str, ...]:
@@ -376,6 +393,7 @@ class Frame(Record, frozen=True, eq=False):
         names: the variables that the nodes of the tree refer to; `None` if a program may set other entries, too, so
             that every name counts.
         inside: the IDs of the tree and of all enclosing trees.
+        board: the beginning of the full names of the variables of the executed tree.
         scripts: the conditions and scripts of the `<SubTree>`.
         looked_up: a cache of resolved names.
     """
@@ -391,6 +409,7 @@ class Frame(Record, frozen=True, eq=False):
     outer: Frame | None
     names: frozenset[str] | None
     inside: frozenset[str]
+    board: str = ""
     scripts: tuple[tuple[str, str], ...] = ()
     looked_up: dict[str, PortValue | None] = field(default_factory=dict)
 
@@ -400,7 +419,7 @@ class Frame(Record, frozen=True, eq=False):
         Automatic remapping leads to the outermost enclosing tree that uses the name.
         """
         if name.startswith("@"):
-            return Reference(name[1:])
+            return Reference(f"{self.board}{name[1:]}")
         return self._outer_value(name) or Reference(f"{self.prefix}{name}")
 
     def _outer_value(self, name: str) -> PortValue | None:
@@ -472,6 +491,35 @@ def expand(
     return _Expander(files, takes_all=takes_all).run(chosen)
 
 
+def expand_listed(trees: Iterable[ListedTree]) -> Expansion:
+    """All trees that a system executes, in their order (docs/spec/trees.md#several-trees)."""
+    instances: list[Instance] = []
+    frames: list[Frame] = []
+    frame_of: dict[int, Frame] = {}
+    left_out: list[NodeSource] = []
+    for tree in trees:
+        chosen = main_tree(tree.files)
+        if isinstance(chosen, tuple) or chosen.root is None or not extent(tree.files, chosen).is_expanded:
+            continue
+        first = ROOT_NUMBER if not instances else next_root(instances[-1].number)
+        expansion = _Expander(tree.files, takes_all=False, first=first, name=tree.name).run(chosen)
+        instances += (replace(node, use=node.use + len(frames)) for node in expansion.instances)
+        frames += expansion.frames
+        frame_of |= expansion.frame_of
+        left_out += expansion.left_out
+    return Expansion(tuple(instances), tuple(frames), frame_of, tuple(left_out))
+
+
+def next_root(number: int) -> int:
+    """The number of the root of the tree after one whose last node has the number `number`."""
+    return (number // ROOT_NUMBER + 1) * ROOT_NUMBER
+
+
+def board_prefix(tree: str) -> str:
+    """The beginning of the full names of the blackboard variables of the tree with the name `tree`."""
+    return f"{tree}__" if tree else ""
+
+
 def entered_uses(uses: tuple[TreeUse, ...], inner: int, around: int | None = None) -> tuple[int, ...]:
     """The uses of trees between two nodes: the use `inner` and its enclosing ones up to `around`, without `around`, the
     outermost first. The executed tree itself is left out."""
@@ -501,8 +549,12 @@ class _Expander:
     """Expands a tree with an explicit stack, because subtrees may be nested more deeply than Python's call stack
     allows."""
 
-    def __init__(self, files: tuple[TreeFileOutline, ...], *, takes_all: bool) -> None:
+    def __init__(
+        self, files: tuple[TreeFileOutline, ...], *, takes_all: bool, first: int = ROOT_NUMBER, name: str = ""
+    ) -> None:
         self.trees = _by_id(files)
+        self.first = first
+        self.name = name
         self.takes_all = takes_all
         self.left_out: list[NodeSource] = []
         self.defaults: dict[str, dict[str, str]] = {}
@@ -519,7 +571,8 @@ class _Expander:
 
     def run(self, main: TreeOutline) -> Expansion:
         assert main.root is not None
-        frame = Frame(main, None, main.id, "", "", "", {}, False, None, self.names_in(main), frozenset((main.id,)))
+        name, prefix, inside = self.name or main.id, board_prefix(self.name), frozenset((main.id,))
+        frame = Frame(main, None, name, self.name, "", prefix, {}, False, None, self.names_in(main), inside, prefix)
         self.frames.append(frame)
         pending: list[tuple[NodeOutline, Frame, int | None]] = [(main.root, frame, None)]
         while pending:
@@ -546,14 +599,15 @@ class _Expander:
                 placed.condition,
                 indices[id(self.frame_of[number])],
                 placed.scripts,
+                self.name,
             )
-            for number, placed in enumerate(self.placed, ROOT_NUMBER)
+            for number, placed in enumerate(self.placed, self.first)
         )
         return Expansion(tuple(instances), tuple(self.frames), self.frame_of, tuple(self.left_out))
 
     def place(self, node: NodeOutline, frame: Frame, parent: int | None) -> int:
         """Create an instance of `node` and return its number."""
-        number = ROOT_NUMBER + len(self.placed)
+        number = self.first + len(self.placed)
         settings = {**self.defaults.get(node.plugin, {}), **dict(node.attributes)}
         ports = tuple((key, frame.value(key, text)) for key, text in settings.items())
         source = NodeSource(frame.tree.path, frame.tree.id, node.position)
@@ -562,7 +616,7 @@ class _Expander:
         self.placed.append(_Placed(node.plugin, name, ports, parent, source, condition, [], _scripts(node)))
         self.frame_of[number] = frame
         if parent is not None:
-            self.placed[parent - ROOT_NUMBER].children.append(number)
+            self.placed[parent - self.first].children.append(number)
         return number
 
     def enter(self, node: NodeOutline, inner: TreeOutline, frame: Frame) -> Frame:
@@ -595,6 +649,7 @@ class _Expander:
             frame,
             self.names_in(inner),
             inside,
+            frame.board,
             _scripts(node),
         )
         self.frames.append(entered)

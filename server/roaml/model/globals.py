@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from roaml.diagnostics import Symbol
 from roaml.expr.types import BASE_TYPES, BOOL, INT, EmptyArray, ScalarKind, Struct, Type, is_kind, leaves, unwrap, wrap
 from roaml.interruption import checkpoint
+from roaml.model.expand import board_prefix
 from roaml.model.outline import InterfaceUse, SentField
 from roaml.model.ros import InterfaceType
 from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton
@@ -19,13 +20,13 @@ from roaml.model.value_types import INTERFACE_KINDS
 from roaml.record import Record
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.scxml.names import (
-    BLACKBOARD_ANSWER,
-    BLACKBOARD_REQUEST,
     BLACKBOARD_WRITE_PREFIX,
     FIELD_PREFIX,
     FLAG,
     TreeEventKind,
     action_stem,
+    blackboard_answer,
+    blackboard_request,
     cancel_request,
     flag_of,
     safe_name,
@@ -237,6 +238,8 @@ def _blackboard(system: System) -> Iterator[_Event]:
     for name in variables:
         if system.writes_variable(name):
             yield f"{BLACKBOARD_WRITE_PREFIX}{name}", None, [("value", variables[name])]
-    if system.reads_blackboard:
-        yield BLACKBOARD_REQUEST, None, []
-        yield BLACKBOARD_ANSWER, None, variables.items()
+    for root in system.roots:
+        if system.reads_blackboard(root.tree):
+            own = [item for item in variables.items() if item[0].startswith(board_prefix(root.tree))]
+            yield blackboard_request(root.tree), None, []
+            yield blackboard_answer(root.tree), None, own

@@ -95,7 +95,7 @@ class LinkedFile(Record, frozen=True, eq=False):
 
 def clock_step(system: System) -> int | None:
     """The step of the clock in ns; `None` if the system has no timer."""
-    periods_ns = [period.nanoseconds for period in periods(system, system.parameters)]
+    periods_ns = [period.nanoseconds for period in periods(system)]
     return math.gcd(*periods_ns) if periods_ns else None
 
 

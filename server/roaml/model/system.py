@@ -19,7 +19,7 @@ from roaml.exhaustive import assert_never
 from roaml.expr.types import BASE_TYPES, Struct, StructKind, Type
 from roaml.language import BEHAVIOR_TREE, ElementType
 from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Node, Port, library, library_node
-from roaml.model.expand import Instance, NodeSource, PortConstant, PortValue, Reference, TreeUse
+from roaml.model.expand import Instance, NodeSource, PortConstant, PortValue, Reference, TreeUse, board_prefix
 from roaml.model.gaps import Act, Gap, GapAct, InterfaceAct, answers, is_interface_name
 from roaml.model.outline import (
     EventReceived,
@@ -153,6 +153,20 @@ class EntryOutline(Record, frozen=True):
     written: bool
 
 
+class SystemTree(Record, frozen=True):
+    """A tree that a system executes (docs/spec/trees.md#several-trees).
+
+    Attributes:
+        name: the name that the system gives it; "" if it has none.
+        path: the file that the system lists.
+        tick_rate: its own rate in Hz; `None` if it is that of the system.
+    """
+
+    name: str
+    path: str
+    tick_rate: float | None = None
+
+
 _BESIDE_EVENTS = (GapAct.PORT, GapAct.VARIABLE, GapAct.REMAP, GapAct.NAME, GapAct.PARAMETER)
 """The acts that do not affect which events a machine handles and sends."""
 
@@ -165,14 +179,16 @@ class System(Record, frozen=True, eq=False, dict=True, weakref=True):
         older: whether the system is written in the older dialect (docs/spec/files.md#older-dialect).
         nodes: the path and outline of each ROS node, in the order of the system file.
         plugins: the path and outline of each plugin, in the order of the system file.
-        instances: the nodes of the executed tree, in pre-order.
+        instances: the nodes of the executed trees, tree by tree, in pre-order.
         tree_uses: the uses of trees that contain the instances; `Instance.use` is an index into it.
-        tree_paths: the tree file and the files that it includes; empty if the system has no tree.
+        tree_paths: the tree files and the files that they include; empty if the system has no tree.
         structs: the structs by name.
         gaps: the facts that unreadable parts of the system file and the trees, and unreadable files, may contain. The
             outline of a machine contains the facts of its own unreadable parts.
         plugins_known: whether every plugin that the system lists could be read and has a name.
         observed: the names of the global variables of the translation that the properties use.
+        trees: the listed trees, in the order of the system file.
+        owners: for each plugin, the name of the tree that it belongs to; "" if it belongs to all trees.
         entries: name -> entry of the blackboard, for a tree with `is_library_tree`; empty for other trees.
     """
 
@@ -188,6 +204,8 @@ class System(Record, frozen=True, eq=False, dict=True, weakref=True):
     gaps: frozenset[Gap]
     plugins_known: bool
     observed: frozenset[str] = frozenset()
+    trees: tuple[SystemTree, ...] = ()
+    owners: tuple[str, ...] = ()
     entries: Mapping[str, EntryOutline] = field(default_factory=dict)
 
     @property
@@ -230,7 +248,7 @@ class System(Record, frozen=True, eq=False, dict=True, weakref=True):
             SystemAutomaton(outline.name, path, outline, None, i) for i, (path, outline) in enumerate(self.nodes)
         ]
         for instance in self.instances:
-            path, outline = self.plugin(instance.plugin)
+            path, outline = self.plugin(instance.plugin, instance.tree)
             if outline is not None:
                 all_automata.append(SystemAutomaton(instance.automaton, path, outline, instance))
         return tuple(all_automata)
@@ -251,7 +269,7 @@ class System(Record, frozen=True, eq=False, dict=True, weakref=True):
         for automaton in self.automata:
             facts |= self.facts_of(automaton)
         for instance in self.instances:
-            if self.plugin(instance.plugin)[1] is None:
+            if self.plugin(instance.plugin, instance.tree)[1] is None:
                 facts |= self.facts_of_unknown(instance)
         return frozenset(facts)
 
@@ -372,15 +390,47 @@ class System(Record, frozen=True, eq=False, dict=True, weakref=True):
     def _plugins(self) -> Mapping[str, tuple[str, MachineOutline]]:
         return {outline.name: (path, outline) for path, outline in reversed(self.plugins)}
 
-    def plugin(self, name: str) -> tuple[str, MachineOutline | None]:
+    @cached_property
+    def _plugins_by_tree(self) -> Mapping[str, Mapping[str, tuple[str, MachineOutline]]]:
+        """Name of a tree -> its plugins by name."""
+        if not any(self.owners):
+            return {tree.name: self._plugins for tree in self.trees}
+        return {
+            tree.name: {
+                outline.name: (path, outline)
+                for (path, outline), owner in reversed(tuple(zip(self.plugins, self.owners, strict=True)))
+                if owner in ("", tree.name)
+            }
+            for tree in self.trees
+        }
+
+    def plugin(self, name: str, tree: str | None = None) -> tuple[str, MachineOutline | None]:
         """The path and outline of the plugin named `name`; "" and `None` if there is none. The nodes of the libraries
         have the path "". Those that the schema of trees defines take precedence over plugins with the same name
-        (docs/spec/trees.md#nodes); over the others, plugins take precedence."""
+        (docs/spec/trees.md#nodes); over the others, plugins take precedence.
+
+        Args:
+            tree: the name of the tree whose plugins are searched; `None` for those of all trees.
+        """
+        plugins = self._plugins if tree is None else self._plugins_by_tree.get(tree, self._plugins)
         is_program = self.is_library_tree and not self._deviates(name)
         builtin = (library_plugins() if is_program else builtin_plugins()).get(name)
-        if builtin is not None and (name in BEHAVIOR_TREE.elements or name not in self._plugins):
+        if builtin is not None and (name in BEHAVIOR_TREE.elements or name not in plugins):
             return "", builtin
-        return self._plugins.get(name, ("", None))
+        return plugins.get(name, ("", None))
+
+    def tick_rate(self, tree: str) -> float:
+        """The rate at which the tree with the name `tree` is ticked, in Hz."""
+        own = next((listed.tick_rate for listed in self.trees if listed.name == tree), None)
+        return self.parameters.tick_rate if own is None else own
+
+    def has_own_rate(self, tree: str) -> bool:
+        return any(listed.name == tree and listed.tick_rate is not None for listed in self.trees)
+
+    @cached_property
+    def roots(self) -> tuple[Instance, ...]:
+        """The topmost nodes of the executed trees."""
+        return tuple(instance for instance in self.instances if instance.parent is None)
 
     def automata_of(self, path: str) -> tuple[SystemAutomaton, ...]:
         """The automata of the machine in the file `path`."""
@@ -493,12 +543,13 @@ class System(Record, frozen=True, eq=False, dict=True, weakref=True):
             return name in self.entries and self.entries[name].written
         return any(bound.port.written for bound in self.blackboard.get(name, ()))
 
-    @property
-    def reads_blackboard(self) -> bool:
-        """Whether a node or script reads a variable of the blackboard."""
-        if any(entry.read for entry in self.entries.values()):
+    def reads_blackboard(self, tree: str) -> bool:
+        """Whether a node or script reads a variable of the blackboard of the tree with the name `tree`."""
+        prefix = board_prefix(tree)
+        if any(entry.read for name, entry in self.entries.items() if name.startswith(prefix)):
             return True
-        return any(bound.port.read for ports in self.blackboard.values() for bound in ports)
+        boards = (ports for name, ports in self.blackboard.items() if name.startswith(prefix))
+        return any(bound.port.read for ports in boards for bound in ports)
 
     def variable_type(self, variable: str) -> str:
         """The name of the type of a blackboard variable: the type of the first bound port that has a base type;

@@ -35,6 +35,11 @@ class SystemSection(Vocabulary):
     PROPERTIES = "properties"
 
 
+TREE_ATTRIBUTE = "tree"
+"""The attribute of the input of a plugin that names its tree."""
+TICK_RATE = "tick_rate"
+"""The attribute of the input of a tree with its own rate."""
+
 SECTION_NAMES = tuple(section.value for section in SystemSection)
 
 
@@ -44,12 +49,32 @@ NODE_TYPES = ("node-ascxml", "ros-scxml")
 
 
 class SystemInput(Record, frozen=True, eq=False):
-    """An `<input>`: a file of the system. `section` is the section that contains it."""
+    """An `<input>`: a file of the system.
+
+    Attributes:
+        section: the section that contains it.
+        tree: the name that a tree has in the system, or the name of the tree to which a plugin belongs; "" if it has
+            none, or if the plugin belongs to all trees (docs/spec/trees.md#several-trees).
+    """
 
     element: Element
     section: SystemSection
     type: Name | None
     src: Name | None
+
+    @property
+    def tree(self) -> str:
+        if self.section is not SystemSection.BEHAVIOR_TREE:
+            return ""
+        is_plugin = required_kind(self) is FileKind.MACHINE
+        name = name_of(self.element.get(TREE_ATTRIBUTE if is_plugin else "name"))
+        return name.value if name is not None else ""
+
+    @property
+    def tick_rate(self) -> float | None:
+        """The rate at which a tree is ticked, in Hz; `None` if it is that of the system."""
+        rate = name_of(self.element.get(TICK_RATE)) if required_kind(self) is FileKind.TREE else None
+        return _positive(rate.value) if rate is not None else None
 
 
 class ListedFile(Record, frozen=True, eq=False):

@@ -10,7 +10,6 @@ from fractions import Fraction
 from roaml.durations import NANOSECONDS
 from roaml.exact_number import exact_number
 from roaml.model.expand import PortConstant
-from roaml.model.parameters import Parameters
 from roaml.model.system import System, SystemAutomaton
 from roaml.record import Record
 
@@ -64,10 +63,10 @@ class TimerRate(Record, frozen=True):
         return period(self.hertz)
 
 
-def rates(system: System, parameters: Parameters) -> Iterator[TimerRate]:
+def rates(system: System) -> Iterator[TimerRate]:
     """All timers of a system, including the timer that ticks the tree; timers with an invalid rate are left out."""
-    if system.instances:
-        yield TimerRate(None, "", Fraction(str(parameters.tick_rate)))
+    for root in system.roots:
+        yield TimerRate(None, root.tree, Fraction(str(system.tick_rate(root.tree))))
     for automaton in system.automata:
         for timer in automaton.outline.timers:
             hertz = rate(automaton, timer.rate, timer.port)
@@ -75,9 +74,9 @@ def rates(system: System, parameters: Parameters) -> Iterator[TimerRate]:
                 yield TimerRate(automaton, timer.name, hertz, not timer.port)
 
 
-def periods(system: System, parameters: Parameters) -> Iterator[Period]:
+def periods(system: System) -> Iterator[Period]:
     """The periods of all timers that `rates` returns."""
-    return (timer.period for timer in rates(system, parameters))
+    return (timer.period for timer in rates(system))
 
 
 def rate(automaton: SystemAutomaton, text: str, port: str) -> Fraction | None:

@@ -102,11 +102,25 @@ machine."""
 _GENERATED = (CONDITIONS_PREFIX, SERVICE_HANDLER_PREFIX, ACTION_HANDLER_PREFIX, TREE_ROOT_PREFIX, BLACKBOARD, CLOCK)
 
 
+def _of_tree(name: str, tree: str) -> str:
+    return f"{name}_{tree}" if tree else name
+
+
+def blackboard_of(tree: str) -> str:
+    """The name of the automaton of the blackboard of a tree; `tree` is its name in the system, "" if it has none."""
+    return _of_tree(BLACKBOARD, tree)
+
+
+def is_blackboard(automaton: str) -> bool:
+    """Whether an automaton stores the blackboard of a tree."""
+    return automaton == BLACKBOARD or automaton.startswith(f"{BLACKBOARD}_")
+
+
 def automaton_role(automaton: str) -> Role:
     """The role of an automaton, derived from its name."""
     if automaton == CLOCK:
         return Role.CLOCK
-    if automaton == BLACKBOARD:
+    if is_blackboard(automaton):
         return Role.BLACKBOARD
     if automaton.startswith(TREE_ROOT_PREFIX):
         return Role.TREE_ROOT
@@ -124,8 +138,8 @@ TREE_PREFIX = "bt_"
 """The beginning of the names of the events of the tree and of the blackboard."""
 CLOCK_STEP = "global_timer_tick_event"
 TIMER_PREFIX = "ros_time_rate."
-BLACKBOARD_REQUEST = "bt_blackboard_req"
-BLACKBOARD_ANSWER = "bt_blackboard_get"
+_BLACKBOARD_REQUEST = "bt_blackboard_req"
+_BLACKBOARD_ANSWER = "bt_blackboard_get"
 BLACKBOARD_WRITE_PREFIX = "bt_blackboard_set_"
 ENTRY_PREFIX = "entry__"
 """The beginning of the name of the variable in which a node of a library stores the value of a blackboard entry that it
@@ -285,11 +299,35 @@ _INTERFACE_EVENTS = tuple(
 )
 
 
+def blackboard_request(tree: str) -> str:
+    """The name of the event that asks for the values of the blackboard of a tree; `tree` is its name in the system, ""
+    if it has none."""
+    return _of_tree(_BLACKBOARD_REQUEST, tree)
+
+
+def blackboard_answer(tree: str) -> str:
+    """The name of the event with the values of the blackboard of a tree; `tree` is as for `blackboard_request`."""
+    return _of_tree(_BLACKBOARD_ANSWER, tree)
+
+
+def is_blackboard_request(event: str) -> bool:
+    return event == _BLACKBOARD_REQUEST or event.startswith(f"{_BLACKBOARD_REQUEST}_")
+
+
+def is_blackboard_answer(event: str) -> bool:
+    return event == _BLACKBOARD_ANSWER or event.startswith(f"{_BLACKBOARD_ANSWER}_")
+
+
+def is_blackboard_event(event: str) -> bool:
+    """Whether an event reads or writes a blackboard, or contains its values."""
+    return event.startswith(BLACKBOARD_WRITE_PREFIX) or is_blackboard_request(event) or is_blackboard_answer(event)
+
+
 def role_of(event: str) -> EventRole:
     """The role of an event, derived from its name."""
     if event == CLOCK_STEP:
         return EventRole.CLOCK_STEP
-    if event == BLACKBOARD_REQUEST:
+    if is_blackboard_request(event):
         return EventRole.BLACKBOARD_READ
     if event.startswith(TIMER_PREFIX):
         return EventRole.TIMER_TICK

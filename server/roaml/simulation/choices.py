@@ -33,6 +33,7 @@ from roaml.simulation.words import resting, returned_status, tree_text
 from roaml.smc.compile import Legend
 from roaml.smc.fault import FaultError
 from roaml.smc.record import Plain, RecordedVariable
+from roaml.views.actors import tree_phrase
 from roaml.views.arrays import DeclaredValue, declared
 from roaml.views.event_words import event_phrase
 from roaml.views.events import EventReader
@@ -344,7 +345,8 @@ def _text(
         if not takers:
             return "a timer ticks"
         if all(automaton_role(taker.name) is Role.TREE_ROOT for taker in takers):
-            return "the tree begins its next tick"
+            trees = dict.fromkeys(tree_phrase(taker.name, names_of) for taker in takers)
+            return f"{_listed(list(trees))} {_verb(list(trees), 'begins its', 'begin their')} next tick"
         names = [names_of[taker.name] for taker in takers]
         return f"{_listed(names)} {_verb(names, 'takes', 'take')} {event_phrase(event, names_of, taken=True)}"
     if event:

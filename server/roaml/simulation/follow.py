@@ -10,12 +10,12 @@ from roaml.exhaustive import assert_never
 from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
 from roaml.scxml.names import (
-    BLACKBOARD,
     CLOCK,
     NODE_AUTOMATON,
     RECEIVED,
     STATUS_NAMES,
     TreeEventKind,
+    is_blackboard,
     is_generated,
     is_length,
     is_observer,
@@ -162,14 +162,14 @@ class Follower:
                     own.setdefault(instance, {})[name] = value
             elif not self.events.carries_event(name) and not is_length(name):
                 shared[name] = value
-        blackboard = self._holders.get(BLACKBOARD)
+        boards = [instance for name, instance in self._holders.items() if is_blackboard(name)]
         return SystemState(
             step,
             self.time,
             tuple(self._machines(locations, own, resting)),
             tuple(self._nodes()),
             tuple(self._events(locations)),
-            {} if blackboard is None else own.get(blackboard, {}),
+            {name: value for board in boards for name, value in own.get(board, {}).items()},
             shared,
         )
 

@@ -13,12 +13,12 @@ from collections.abc import Iterator
 from roaml.record import Record, field
 from roaml.scxml.names import (
     ACTION_HANDLER_PREFIX,
-    BLACKBOARD,
     CLOCK,
     NODE_AUTOMATON,
     SERVICE_HANDLER_PREFIX,
     STATUS_NAMES,
     TreeEventKind,
+    is_blackboard,
     is_length,
     is_timer,
     read_tree_event,
@@ -136,9 +136,9 @@ class Timeline:
             self._add(session, instance, LaneKind.NODE)
             self.lanes[-1].enter(0, IDLE)
         self._plotted = {
-            instance: "" if name == BLACKBOARD else f"{session.names[name]}."
+            instance: "" if is_blackboard(name) else f"{session.names[name]}."
             for instance, name in enumerate(self._automata)
-            if name == BLACKBOARD or instance in machines
+            if is_blackboard(name) or instance in machines
         }
         self._phrases = {instance: session.phrases(self._automata[instance]) for instance in self._plotted}
         self._fields = dict(self._field_names())

@@ -94,8 +94,8 @@ def _communication(event: EventUsage, buffers: Mapping[str, int], table: Mapping
     send, receive, buffer = on_send(event.event), on_receive(event.event), buffers[event.name]
     settled: list[tuple[int, str]] = []
     if event.role is EventRole.BLACKBOARD_READ:
-        writes = (i for name, i in buffers.items() if table[name].role is EventRole.BLACKBOARD_WRITE)
-        settled = [(i, BLACKBOARD_ENABLE) for i in writes]
+        written = ((i, table[name]) for name, i in buffers.items() if table[name].role is EventRole.BLACKBOARD_WRITE)
+        settled = [(i, BLACKBOARD_ENABLE) for i, write in written if set(write.receivers) == set(event.receivers)]
     for sender in event.senders:
         yield _sync(send, [(sender, send), (buffer, send), *settled])
     if event.receivers:

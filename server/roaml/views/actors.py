@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from roaml.exhaustive import assert_never
 from roaml.jani.model import Automaton, Model
@@ -12,6 +12,7 @@ from roaml.regex import regex
 from roaml.scxml.events import Role
 from roaml.scxml.names import (
     ACTION_HANDLER_PREFIX,
+    BLACKBOARD,
     CONDITIONS_PREFIX,
     NODE_AUTOMATON,
     SERVICE_HANDLER_PREFIX,
@@ -73,26 +74,38 @@ def _node_name(number: str, type_: str, types: Mapping[str, int]) -> str:
 def actors_of(automata: Iterable[Automaton]) -> dict[str, str]:
     """The name of each automaton -> a phrase for it, without backquotes around the name of a machine or node. Automata
     that buffer an event have no phrase of their own, only their name."""
-    return {automaton: _actor(automaton, name) for automaton, name in names_of(automata).items()}
+    names = names_of(automata)
+    return {automaton: _actor(automaton, name, names) for automaton, name in names.items()}
 
 
-def _actor(automaton: str, name: str) -> str:
+def _actor(automaton: str, name: str, automata: Collection[str]) -> str:
     role = automaton_role(automaton)
     match role:
         case Role.MACHINE:
             return name
         case Role.TREE_ROOT:
-            return "the tree"
+            return tree_phrase(automaton, automata)
         case Role.CLOCK:
             return "the clock"
         case Role.BLACKBOARD:
-            return "the blackboard"
+            tree = automaton.removeprefix(BLACKBOARD).removeprefix("_")
+            return f"the blackboard of {tree}" if tree else "the blackboard"
         case Role.HANDLER:
             is_service = automaton.startswith(SERVICE_HANDLER_PREFIX)
             what, prefix = ("service", SERVICE_HANDLER_PREFIX) if is_service else ("action", ACTION_HANDLER_PREFIX)
             return f"the {what} `/{automaton.removeprefix(prefix).replace('__', '/')}`"
         case _:
             return assert_never(role)
+
+
+def tree_phrase(root: str, automata: Iterable[str]) -> str:
+    """A phrase for the tree whose root is the automaton `root`: `the tree`, with its name if there are several trees.
+
+    Args:
+        automata: the names of all automata.
+    """
+    alone = sum(name.startswith(TREE_ROOT_PREFIX) for name in automata) < 2
+    return "the tree" if alone else f"the tree {root.removeprefix(TREE_ROOT_PREFIX)}"
 
 
 def actors(model: Model) -> Mapping[str, str]:
@@ -126,7 +139,7 @@ def _parts(model: Model) -> Iterator[tuple[str, str]]:
         elif automaton_role(name) is Role.MACHINE and not NODE_AUTOMATON.fullmatch(name):
             yield name, f"`{names[name]}`"
         else:
-            yield name, _actor(name, names[name])
+            yield name, _actor(name, names[name], names)
 
 
 def message_phrase(event: str, automata: Mapping[str, str]) -> str:
@@ -161,6 +174,6 @@ def event_subject(event: str, automata: Mapping[str, str]) -> str:
     for user, name in automata.items():
         if timer.endswith(f"__{safe_name(user)}"):
             if user.startswith(TREE_ROOT_PREFIX):
-                return "the next tick of the tree"
+                return f"the next tick of {tree_phrase(user, automata)}"
             return f"the timer `{timer.removesuffix(f'__{safe_name(user)}')}` of {name}"
     return f"the timer `{timer}`"

@@ -12,6 +12,7 @@ from roaml.scxml.names import FAILS, SUCCEEDS, TREE_ROOT_PREFIX
 from roaml.smc.end import End
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.story import Story
+from roaml.views.actors import tree_phrase
 from roaml.views.turn_words import chance, details, draws, what
 from roaml.views.turns import Turn, turns
 
@@ -50,7 +51,7 @@ def cause(story: Story, place_of: Callable[[Origin], str]) -> str:
     root = next((turn for turn in reversed(all_turns) if turn.ends and _is_root(turn)), None)
     if root is not None:
         why = _why_tree_ends(all_turns[: all_turns.index(root)], root.result, place_of)
-        end = f"the tree ends with {root.result}"
+        end = f"{tree_phrase(root.automaton, (a.name for a in story.automata))} ends with {root.result}"
         is_about_tree = story.property in (SUCCEEDS, FAILS)
         return f"{end}{_at(root.time)}{why}" if is_about_tree else f"{subject}{_at(root.time)}: {end}{why}"
     last = next((turn for turn in reversed(all_turns) if turn.ends), None)

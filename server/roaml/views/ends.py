@@ -59,7 +59,9 @@ def _mark(automaton: Automaton, location: str) -> End:
     if automaton.name == CLOCK:
         return End.TIME if location == TIME_IS_OVER else End.STUCK
     if automaton.name.startswith(TREE_ROOT_PREFIX):
-        return End.FINISHED if location == TREE_HAS_FINISHED else End.QUIET
+        # With several trees, the root of one that has ended still takes ticks, and does not end the trace.
+        is_last = location == TREE_HAS_FINISHED and all(edge.source != location for edge in automaton.edges)
+        return End.FINISHED if is_last else End.QUIET
     return End.STUCK if location == RECEIVED and is_event(automaton) else End.QUIET
 
 

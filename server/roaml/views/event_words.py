@@ -8,8 +8,6 @@ from collections.abc import Callable, Collection, Iterable
 
 from roaml.scxml.events import Role
 from roaml.scxml.names import (
-    BLACKBOARD_ANSWER,
-    BLACKBOARD_REQUEST,
     BLACKBOARD_WRITE_PREFIX,
     FIELD_PREFIX,
     FLAG,
@@ -19,6 +17,9 @@ from roaml.scxml.names import (
     TreeEventKind,
     cancel_request,
     client_of,
+    is_blackboard_answer,
+    is_blackboard_event,
+    is_blackboard_request,
     is_timer,
     read_executes_goal,
     read_interface_event,
@@ -75,7 +76,7 @@ def event_phrase(event: str, clients: Collection[str], role: Role = Role.MACHINE
         if role is Role.TREE_ROOT:
             return "its next tick"
         return f"the tick of its timer `{timer}`" if taken else f"its timer `{timer}`"
-    if event in (BLACKBOARD_REQUEST, BLACKBOARD_ANSWER) or event.startswith(BLACKBOARD_WRITE_PREFIX):
+    if is_blackboard_event(event):
         return "the blackboard"
     tree = read_tree_event(event)
     if tree is not None:
@@ -120,7 +121,9 @@ def blackboard_phrase(event: str) -> str:
     """A short phrase for an event of the blackboard; "" for other events."""
     if event.startswith(BLACKBOARD_WRITE_PREFIX):
         return f"the blackboard entry {event.removeprefix(BLACKBOARD_WRITE_PREFIX)}"
-    return {BLACKBOARD_REQUEST: "a request to the blackboard", BLACKBOARD_ANSWER: "the blackboard"}.get(event, "")
+    if is_blackboard_request(event):
+        return "a request to the blackboard"
+    return "the blackboard" if is_blackboard_answer(event) else ""
 
 
 def interface_name(event: str, clients: Collection[str]) -> str:

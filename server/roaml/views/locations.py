@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 
 from roaml.jani.model import Automaton, Edge
-from roaml.scxml.names import BLACKBOARD_ANSWER, CLOCK_ACTION, received_by
+from roaml.scxml.names import CLOCK_ACTION, is_blackboard_answer, received_by
 
 
 def states_of(automaton: Automaton) -> Mapping[str, str]:
@@ -42,7 +42,7 @@ def states_of(automaton: Automaton) -> Mapping[str, str]:
 def _is_state(location: str, edges: Sequence[Edge]) -> bool:
     """Whether an automaton waits for events in a location, or leaves it by an eventless transition."""
     actions = [edge.action or "" for edge in edges]
-    if any(received_by(edge.action or "") == BLACKBOARD_ANSWER and _leaves(edge) for edge in edges):
+    if any(is_blackboard_answer(received_by(edge.action or "")) and _leaves(edge) for edge in edges):
         return False
     own = re.compile(re.escape(location) + r"-[0-9]+")
     return all(action == CLOCK_ACTION or received_by(action) or own.fullmatch(action) for action in actions)

@@ -9,12 +9,12 @@ from collections.abc import Iterable, Mapping
 
 from roaml.scxml.events import EventRole
 from roaml.scxml.names import (
-    BLACKBOARD_ANSWER,
     FIELD_PREFIX,
     FLAG,
     InterfaceEventKind,
     client_of,
     flagged_by,
+    is_blackboard_answer,
     read_interface_event,
     read_tree_event,
     role_of,
@@ -63,7 +63,8 @@ def field_name(event: str, field: str, automata: Mapping[str, str]) -> str:
     path = f".{field.replace(_SEPARATOR, '.')}" if field else ""
     interface = read_interface_event(event, automata)
     if interface is None:
-        is_plain = role_of(event) is EventRole.PLAIN and event != BLACKBOARD_ANSWER and read_tree_event(event) is None
+        is_plain = role_of(event) is EventRole.PLAIN and not is_blackboard_answer(event)
+        is_plain = is_plain and read_tree_event(event) is None
         return f"{without_client(event, client_of(event, automata))}{path}" if is_plain and event in automata else ""
     if interface.kind in _INTERNAL:
         return ""

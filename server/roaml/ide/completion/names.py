@@ -14,6 +14,7 @@ from roaml.ide.describe import forest as describe_forest
 from roaml.ide.names.occurrence import HANDLES
 from roaml.ide.names.occurrences import uses
 from roaml.libraries import Node
+from roaml.model.kinds import FileKind
 from roaml.model.machine import Declaration, Send
 from roaml.model.outline import MachineOutline
 from roaml.model.syntax import Name
@@ -62,6 +63,14 @@ _KINDS = {SymbolKind.STATE: ItemKind.STATE, SymbolKind.VARIABLE: ItemKind.VARIAB
 
 
 # ------------------------------------------------------------------- machines
+
+
+def _trees(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
+    """The names of the trees that the system executes; only inputs of plugins refer to them."""
+    for listed in request.analysis.listed(request.path):
+        if listed.required_kind is FileKind.TREE and listed.input.tree:
+            about = Symbol(listed.path, SymbolKind.MACHINE, listed.input.tree)
+            yield CompletionItem(listed.input.tree, ItemKind.VALUE, detail="behavior tree", about=about)
 
 
 def _states(request: Request, subject: CompletionSubject) -> Iterator[CompletionItem]:
@@ -267,6 +276,7 @@ def _some(names: Iterable[str]) -> str:
 
 
 _PROVIDERS: Mapping[SymbolKind, Callable[[Request, CompletionSubject], Iterator[CompletionItem]]] = {
+    SymbolKind.MACHINE: _trees,
     SymbolKind.STATE: _states,
     SymbolKind.MODEL_PARAMETER: parameters_of_input,
     SymbolKind.PORT: _ports,

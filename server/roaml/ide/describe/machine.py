@@ -407,11 +407,11 @@ def node_id(automaton: SystemAutomaton) -> str:
 
 
 def machine(analysis: Analysis, symbol: Symbol) -> str:
-    """The description of a machine: its ports and interfaces, its automata in its systems, and its file; "" if the file
-    is not a machine."""
+    """The description of a machine: its ports and interfaces, its automata in its systems, and its file; that of an
+    executed tree, if the symbol is its name; "" if the file is neither."""
     model = analysis.machine(symbol.path)
     if model is None:
-        return ""
+        return _executed_tree(analysis, symbol)
     outlines = [a.outline for s in linked_systems(analysis, symbol.path) for a in s.automata_of(symbol.path)]
     listed = [o for s in linked_systems(analysis, symbol.path) for p, o in (*s.nodes, *s.plugins) if p == symbol.path]
     plugins = {p for s in linked_systems(analysis, symbol.path) for p, _ in s.plugins}
@@ -432,6 +432,25 @@ def machine(analysis: Analysis, symbol: Symbol) -> str:
             file(symbol.path),
         ),
     )
+
+
+def _executed_tree(analysis: Analysis, symbol: Symbol) -> str:
+    """The description of a tree to which a system gives the name of the symbol; "" if there is none."""
+    for system in linked_systems(analysis, symbol.path):
+        root = next((root for root in system.roots if root.tree == symbol.name), None)
+        if root is not None:
+            plugins = dict.fromkeys(n.plugin for n in system.instances if n.tree == symbol.name)
+            own = (name for name in plugins if system.plugin(name, symbol.name)[0])
+            return paragraphs(
+                code(f"tree {symbol.name} : {system.tree_uses[root.use].tree}"),
+                lines(
+                    f"Ticked at {system.tick_rate(symbol.name):g} Hz",
+                    f"Plugins {used}" if (used := names(own)) else "",
+                    f"Topmost node bt_{root.number}",
+                    file(symbol.path),
+                ),
+            )
+    return ""
 
 
 _VERBS = {

@@ -23,7 +23,7 @@ from roaml.model.tree import nodes
 from roaml.project.analysis import Analysis
 from roaml.regex import regex
 from roaml.roles import Direction, SymbolKind
-from roaml.scxml.names import BLACKBOARD_ANSWER, BLACKBOARD_WRITE_PREFIX, sanitise
+from roaml.scxml.names import BLACKBOARD_WRITE_PREFIX, is_blackboard_answer, sanitise
 
 _NODE = regex(r"bt_(\d{1,9})_")
 
@@ -202,7 +202,7 @@ def _full_name(variable: GlobalVariable) -> str:
     """The full name of a blackboard variable, from the name of its global variable."""
     return (
         variable.event.removeprefix(BLACKBOARD_WRITE_PREFIX)
-        if variable.event != BLACKBOARD_ANSWER
+        if not is_blackboard_answer(variable.event)
         else variable.parameter
     )
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The ROS graph of a system: its nodes and plugins, their topics, services and actions, and plain events.
 
-A plugin is drawn once, even if the tree uses it several times.
+A plugin is drawn once for each tree, even if the tree uses it several times.
 """
 
 from __future__ import annotations
@@ -48,8 +48,14 @@ def ros_picture(analysis: Analysis, path: str) -> Picture | None:
 
 
 def _id(automaton: SystemAutomaton) -> str:
-    kind = "node" if automaton.instance is None else "plugin"
-    return f"{kind} {automaton.index} {automaton.path}"
+    if automaton.instance is None:
+        return f"node {automaton.index} {automaton.path}"
+    return f"plugin {automaton.instance.tree or 0} {automaton.path}"
+
+
+def _title(automaton: SystemAutomaton) -> str:
+    tree = automaton.instance.tree if automaton.instance is not None else ""
+    return f"{tree}.{automaton.outline.name}" if tree else automaton.outline.name
 
 
 def machine_node_ids(system: System) -> Mapping[str, tuple[str, ...]]:
@@ -67,7 +73,7 @@ def _machines(analysis: Analysis, system: System) -> Iterator[tuple[str, Diagram
         if machine is not None:
             kind = DiagramNodeKind.ROS_NODE if automaton.instance is None else DiagramNodeKind.PLUGIN
             place = Location(automaton.path, machine.element.span)
-            yield _id(automaton), DiagramNode(_id(automaton), kind, automaton.outline.name, place=place)
+            yield _id(automaton), DiagramNode(_id(automaton), kind, _title(automaton), place=place)
 
 
 def _channel(analysis: Analysis, kind: DiagramNodeKind, channel: Channel, ends: list[ChannelEndpoint]) -> DiagramNode:

@@ -114,13 +114,22 @@ class _Tree:
 
     def entered(self, instance: Instance) -> list[int]:
         """The indices of the subtrees that begin between a node and its parent, outermost first."""
-        around = self.use_of[instance.parent] if instance.parent is not None else 0
+        around = self.use_of[instance.parent] if instance.parent is not None else self.root_use(instance)
         entered: list[int] = []
         use: int | None = instance.use
         while use is not None and use != around and use < len(self.uses):
             entered.append(use)
             use = self.uses[use].outer
         return entered[::-1]
+
+    def root_use(self, instance: Instance) -> int | None:
+        """The use of the executed tree, which is not drawn if the system has only one tree."""
+        if self.system is not None and len(self.system.roots) > 1:
+            return None
+        use = instance.use
+        while use < len(self.uses) and (outer := self.uses[use].outer) is not None:
+            use = outer
+        return use
 
     def subtree(self, use: int) -> DiagramNode:
         """The node of the diagram for a subtree: the values that its `<SubTree>` sets, and its conditions and
@@ -195,7 +204,11 @@ class _Tree:
 
     def direction(self, instance: Instance, key: str) -> Direction:
         """The direction of a port; `IN` if it is unknown."""
-        outline = self.system.plugin(instance.plugin)[1] if self.system else builtin_plugins().get(instance.plugin)
+        outline = (
+            self.system.plugin(instance.plugin, instance.tree)[1]
+            if self.system
+            else builtin_plugins().get(instance.plugin)
+        )
         port = outline.port(key) if outline else None
         return port.direction if port else Direction.IN
 

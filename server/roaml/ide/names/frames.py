@@ -14,7 +14,7 @@ from roaml.diagnostics import Symbol
 from roaml.forest.scripts import script_attributes
 from roaml.ide.names.occurrence import Form, tree_node
 from roaml.model import expand
-from roaml.model.expand import TreeFileOutline, tree_called
+from roaml.model.expand import tree_called
 from roaml.model.syntax import Name
 from roaml.model.tree import Tree, TreeFile, TreeNode, blackboard_variable, nodes
 from roaml.project.analysis import Analysis
@@ -88,23 +88,23 @@ class Trees:
     """The tree files of a system.
 
     Args:
-        outlines: the outlines of the files. The file with the main tree comes first.
+        listed: the trees of the system; without a system, one tree without a name.
         owner: the system file, or the first tree file if there is no system.
         is_alone: whether there is no system.
     """
 
     def __init__(
-        self, analysis: Analysis, outlines: tuple[TreeFileOutline, ...], owner: str, *, is_alone: bool = False
+        self, analysis: Analysis, listed: tuple[expand.ListedTree, ...], owner: str, *, is_alone: bool = False
     ) -> None:
         self.is_alone = is_alone
-        files = ((outline.path, analysis.tree(outline.path)) for outline in outlines)
-        self.files: dict[str, TreeFile] = {path: file for path, file in files if file is not None}
+        paths = dict.fromkeys(outline.path for tree in listed for outline in tree.files)
+        self.files: dict[str, TreeFile] = {path: file for path in paths if (file := analysis.tree(path)) is not None}
         self.owner = owner
         self.trees: dict[str, tuple[str, Tree]] = {}
         for path, file in self.files.items():
             for tree in file.trees:
                 self.trees.setdefault(tree.id.value if tree.id else "", (path, tree))
-        self._outlines = outlines
+        self._listed = listed
 
     def tree_symbol(self, path: str, name: str) -> Symbol:
         """The symbol of the tree to which a name refers in a file. If there is no system, files that do not include
@@ -138,7 +138,7 @@ class Trees:
 
     @cached_property
     def _expansion(self) -> expand.Expansion:
-        return expand.expand(self._outlines)
+        return expand.expand_listed(self._listed)
 
     @property
     def main(self) -> tuple[str, Tree] | None:
@@ -148,6 +148,11 @@ class Trees:
     @property
     def frames(self) -> tuple[Frame, ...]:
         return tuple(self._frames.values())
+
+    @cached_property
+    def _by_key(self) -> Mapping[TreeKey, Frame]:
+        """The first use of each tree."""
+        return {frame.key: frame for frame in reversed(self.frames)}
 
     @cached_property
     def nodes(self) -> Mapping[int, tuple[Frame, TreeNode]]:
@@ -184,7 +189,7 @@ class Trees:
     def _use(self, expanded: expand.Frame, outer: Frame | None) -> tuple[tuple[Piece, ...], Mapping[str, Setting]]:
         """The prefix of the names in an instance of a tree, and the values that the subtree node gives to its ports."""
         if expanded.use is None or outer is None:
-            return (), {}
+            return self._board(expanded), {}
         node = tuple(nodes(outer.tree))[expanded.use.position]
         assert node.plugin is not None
         if node.name is not None:
@@ -201,6 +206,16 @@ class Trees:
         settings = dict(self.defaults.get(node.plugin.value, {}))
         settings |= {port.key.value: Setting(outer.path, port.value) for port in node.ports}
         return prefix, {name: value for name, value in settings.items() if not name.startswith("_")}
+
+    def _board(self, frame: expand.Frame) -> tuple[Piece, ...]:
+        """The beginning of the full names of the variables of the executed tree that contains `frame`."""
+        name = frame.board.removesuffix("__")
+        return ((name, self.instance(name), Form.AS_IS), ("__", None, Form.AS_IS)) if name else ()
+
+    def instance(self, name: str) -> Symbol:
+        """The symbol of the name of an executed tree (docs/spec/trees.md#several-trees)."""
+        path = next((tree.files[0].path for tree in self._listed if tree.name == name), self.owner)
+        return Symbol(path, SymbolKind.MACHINE, name)
 
     def _names(self, tree: Tree) -> frozenset[str]:
         """The names of the variables to which a tree refers, directly or by defaults of the ports of its nodes."""
@@ -220,8 +235,10 @@ class Trees:
         because of `{=}` or automatic remapping have the same symbol."""
         if name.startswith("@"):
             name = name[1:]
-            if self.main is not None:
-                path, tree = self.main[0], self.main[1].id.value if self.main[1].id else ""
+            if (frame := self._by_key.get((path, tree), next(iter(self.frames), None))) is not None:
+                while frame.outer is not None:
+                    frame = frame.outer
+                path, tree = frame.key
         path, tree = self._root((path, tree, name))[:2]
         return Symbol(path, SymbolKind.BLACKBOARD, name, tree)
 
@@ -278,7 +295,9 @@ class Trees:
                     pieces = (*frame.prefix, (name, self.variable(*frame.key, name), Form.AS_IS))
                     by_name.setdefault("".join(piece[0] for piece in pieces), pieces)
                 elif name.startswith("@"):
-                    by_name.setdefault(name[1:], ((name[1:], self.variable(*frame.key, name), Form.AS_IS),))
+                    last = name[1:], self.variable(*frame.key, name), Form.AS_IS
+                    board = frame.expanded.board
+                    by_name.setdefault(f"{board}{name[1:]}", (*self._board(frame.expanded), last))
         return by_name
 
     def constant(self, number: int, key: str) -> Setting | None:

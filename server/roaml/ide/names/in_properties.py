@@ -21,12 +21,12 @@ from roaml.model.system import Channel, System, SystemAutomaton
 from roaml.model.value_types import INTERFACE_KINDS
 from roaml.roles import SymbolKind
 from roaml.scxml.names import (
-    BLACKBOARD_ANSWER,
     BLACKBOARD_WRITE_PREFIX,
     CANCEL_PREFIX,
     FIELD_PREFIX,
     FLAG,
     NODE_PREFIX,
+    is_blackboard_answer,
     safe_name,
     sanitise,
 )
@@ -147,12 +147,14 @@ def _automaton(automaton: SystemAutomaton, trees: Trees) -> tuple[Piece, ...]:
     instance = automaton.instance
     if instance is None:
         return ((safe_name(automaton.name), machine, Form.SAFE),)
-    head = _plain(f"{NODE_PREFIX}{instance.number}_")
+    head = [_plain(f"{NODE_PREFIX}{instance.number}_")]
+    if instance.tree:
+        head += [(instance.tree, trees.instance(instance.tree), Form.AS_IS), _plain(".")]
     _, node = trees.nodes.get(instance.number, (None, None))
     if node is not None and node.name is not None:
         source = instance.source
         machine = tree_node(source.path, source.tree, source.position, node.name.value)
-    return head, (safe_name(instance.name), machine, Form.SAFE)
+    return *head, (safe_name(instance.name), machine, Form.SAFE)
 
 
 def _rest(rest: str, variable: GlobalVariable, part: Type, system: System, trees: Trees) -> Iterator[Piece]:
@@ -162,7 +164,7 @@ def _rest(rest: str, variable: GlobalVariable, part: Type, system: System, trees
         yield _plain(rest)
     elif variable.event in system.events:
         yield from _parameter(rest, variable, system)
-    elif variable.event == BLACKBOARD_ANSWER:
+    elif is_blackboard_answer(variable.event):
         yield _plain("__")
         pieces = trees.full_names.get(variable.parameter, (_plain(variable.parameter),))
         yield from pieces

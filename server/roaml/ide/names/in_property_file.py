@@ -168,8 +168,9 @@ class _PropertyFile:
     def names_of(self, frame: Frame) -> Iterator[Symbol]:
         """The symbols of the names of an instance of a tree: the `<SubTree>`, if it has a name, and the tree."""
         use, id_ = frame.expanded.use, frame.expanded.tree.id
-        if use is not None and frame.expanded.name != id_:
-            yield tree_node(use.path, use.tree, use.position, frame.expanded.name)
+        if frame.expanded.name != id_:
+            name = frame.expanded.name
+            yield self.trees.instance(name) if use is None else tree_node(use.path, use.tree, use.position, name)
         if id_:
             yield self.trees.tree_symbol(frame.path, id_)
 

@@ -15,6 +15,7 @@ from roaml.ide.names.in_property_file import in_property_file
 from roaml.ide.names.in_structs import in_json, in_xml
 from roaml.ide.names.in_tree import in_tree
 from roaml.ide.names.occurrence import Occurrence
+from roaml.model.expand import ListedTree
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.record import Record
@@ -118,9 +119,9 @@ def global_names(analysis: Analysis, system: str) -> Mapping[str, tuple[Piece, .
 def trees_of(analysis: Analysis, path: str, system: str | None) -> Trees:
     """The trees of a system. If `system` is `None`, the trees of the file `path` and of the files that are connected
     with it by includes."""
-    outlines = analysis.tree_outlines(system) if system else analysis.family_outlines(path)
-    paths = analysis.tree_paths(system) if system else tuple(outline.path for outline in outlines)
+    listed = analysis.executed_trees(system) if system else (ListedTree("", analysis.family_outlines(path)),)
+    paths = tuple(dict.fromkeys(outline.path for tree in listed for outline in tree.files))
     digests = tuple(getattr(analysis.source(tree), "digest", b"") for tree in paths)
     owner = system or next(iter(paths), path)
-    make = functools.partial(Trees, analysis, outlines, owner, is_alone=system is None)
-    return analysis.memo.get("trees", owner, (outlines, digests), make)
+    make = functools.partial(Trees, analysis, listed, owner, is_alone=system is None)
+    return analysis.memo.get("trees", owner, (listed, digests), make)

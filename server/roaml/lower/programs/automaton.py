@@ -18,7 +18,7 @@ from roaml.interruption import checkpoint
 from roaml.libraries.programs import assembly
 from roaml.libraries.programs.assembly import CodeLabel, Instruction
 from roaml.libraries.programs.statuses import HELD, IDLE, RUNNING, SKIPPED, STATUS_CODES, Known
-from roaml.lower.blackboard_events import ANSWER, REQUEST, blackboard_write
+from roaml.lower.blackboard_events import answer_of, blackboard_write, request_of
 from roaml.lower.build import binary, both, equal, event_data, integer, name
 from roaml.lower.interfaces import tree_event
 from roaml.lower.programs.code import TYPES, Child, NodeCode, Value
@@ -237,7 +237,7 @@ class _Explorer(Record, eq=False, dict=True):
                 for entry in entries:
                     self.declare(entry.local, TYPES[entry.kind], entry.zero)
                     body.append(Assign(name(entry.local), entry.read(event_data(entry.variable)), self.code.origin))
-                transitions += self.on(ANSWER, place, dict(fixed), body=body)
+                transitions += self.on(answer_of(self.code.tree), place, dict(fixed), body=body)
             case _Deciding(place, fixed):
                 transitions += self.on(None, place, dict(fixed))
             case _Exception():
@@ -462,7 +462,7 @@ class _Explorer(Record, eq=False, dict=True):
     # -------------------------------------------------------------- blackboard
 
     def read_entries(self, entries: tuple[BoardEntry, ...], following: Place, execution: _Execution) -> str:
-        execution.body.append(Send(REQUEST, (), self.code.origin))
+        execution.body.append(Send(request_of(self.code.tree), (), self.code.origin))
         return self.state("asking", _Asking(following, _frozen(execution.fixed), entries))
 
     def write(self, entry: BoardEntry, value: Expr, execution: _Execution) -> None:

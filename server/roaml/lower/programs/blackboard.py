@@ -6,20 +6,23 @@ from __future__ import annotations
 from roaml.expr.types import BASE_TYPES
 from roaml.lower.blackboard_automaton import blackboard_automaton
 from roaml.lower.programs.board import Board
+from roaml.model.expand import board_prefix
 from roaml.scxml.model import Automaton, Data
 from roaml.text import Location
 
 
-def board_automaton(board: Board, origin: Location, *, is_read: bool) -> Automaton | None:
-    """The automaton that stores the entries of a blackboard, and the flags of the nodes that observe an entry; `None`
-    if there are none.
+def board_automaton(board: Board, origin: Location, *, is_read: bool, tree: str = "") -> Automaton | None:
+    """The automaton that stores the entries of the blackboard of a tree, and the flags of the nodes that observe an
+    entry; `None` if there are none.
 
     Args:
+        tree: the name of the tree in the system; "" if it has none.
         is_read: whether a node reads an entry.
     """
-    entries = [*board.entries.values(), *board.flag_of.values()]
+    all_entries = (*board.entries.values(), *board.flag_of.values())
+    entries = [entry for entry in all_entries if entry.variable.startswith(board_prefix(tree))]
     if not entries:
         return None
     data = [Data(entry.variable, BASE_TYPES[entry.type_name], entry.start, origin) for entry in entries]
     flags = {entry: [flag.variable for flag in observers] for entry, observers in board.flags.items()}
-    return blackboard_automaton(data, flags, origin, is_read=is_read)
+    return blackboard_automaton(data, flags, origin, is_read=is_read, tree=tree)

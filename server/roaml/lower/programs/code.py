@@ -56,6 +56,7 @@ class NodeCode(Record, frozen=True, eq=False):
         flags_at: port that writes an observed entry whose value is never read -> the flags of its observers.
         rate: the rate of the tree, in Hz.
         counts: whether counters for measurements are included.
+        tree: the name of the tree in the system; "" if it has none.
         is_halted_always: whether the node is halted even if that has no effect, because its parent may be a machine.
     """
 
@@ -75,6 +76,7 @@ class NodeCode(Record, frozen=True, eq=False):
     origin: Location
     is_halted_always: bool = False
     whole: frozenset[str] = frozenset()
+    tree: str = ""
 
     @property
     def shape(self) -> Hashable:

@@ -122,6 +122,7 @@ class Analysis:
         self.kind_in = systems.kind_in
         self.tree_paths = systems.tree_paths
         self.tree_outlines = systems.tree_outlines
+        self.executed_trees = systems.executed_trees
         self.files_of = systems.files_of
         self.systems_of = systems.systems_of
         self.structs = machines.structs

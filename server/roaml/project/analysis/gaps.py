@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 
 from roaml.language import BEHAVIOR_TREE
-from roaml.model.expand import is_whole, node_at, stray_remaps
+from roaml.model.expand import StrayRemap, TreeFileOutline, is_whole, node_at, stray_remaps
 from roaml.model.gaps import Gap, GapAct, InterfaceAct, PlacedGap
 from roaml.model.kinds import MACHINE_EXTENSIONS, PROJECT_EXTENSION, FileKind
 from roaml.model.system_file import ListedFile, SystemFile, SystemSection
@@ -52,8 +53,8 @@ class Gaps:
             if entry.input.section is SystemSection.NODE_MODELS and not entry.usable:
                 yield from ((path, PlacedGap(gap, entry.span)) for gap in self._of_missing_node(path, entry, listed))
         yield from ((place, PlacedGap(Gap(GapAct.NODE), span)) for place, span in self._tree_gaps(path, file, listed))
-        outlines = self._systems.tree_outlines(path)
-        for stray in self._sources.memo.get("stray remaps", path, outlines, lambda: tuple(stray_remaps(outlines))):
+        trees = tuple(dict.fromkeys(tree.files for tree in self._systems.executed_trees(path)))
+        for stray in self._sources.memo.get("stray remaps", path, trees, partial(_stray_remaps, trees)):
             tree = self._sources.tree(stray.source.path)
             node = node_at(tree, stray.source) if tree else None
             key = next((s.key.span for s in node.ports if s.key.value == stray.key), None) if node else None
@@ -105,11 +106,15 @@ class Gaps:
             clear = clear and not spans
             yield from ((tree_path, span) for span in spans)
         if clear and paths:
-            outlines = self._systems.tree_outlines(path)
-            if not self._sources.memo.get("whole tree", path, outlines, lambda: is_whole(outlines)):
-                first = self._sources.tree(paths[0])
+            for files in dict.fromkeys(listed.files for listed in self._systems.executed_trees(path)):
+                first = self._sources.tree(files[0].path)
                 assert first is not None
-                yield paths[0], first.element.name_span
+                if not self._sources.memo.get("whole tree", (path, files[0].path), files, partial(is_whole, files)):
+                    yield files[0].path, first.element.name_span
+
+
+def _stray_remaps(trees: tuple[tuple[TreeFileOutline, ...], ...]) -> tuple[StrayRemap, ...]:
+    return tuple(dict.fromkeys(stray for files in trees for stray in stray_remaps(files)))
 
 
 def _stem(path: str) -> str:

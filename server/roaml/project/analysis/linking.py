@@ -13,7 +13,7 @@ from roaml.forest.settings import NEWEST
 from roaml.jani.properties import identifiers
 from roaml.lower.program import TranslatableSystem
 from roaml.lower.size import size_of
-from roaml.model.expand import TreeFileOutline, expand
+from roaml.model.expand import ListedTree, expand_listed
 from roaml.model.gaps import Gap
 from roaml.model.globals import GlobalVariable, event_parameters, global_variables
 from roaml.model.kinds import FileKind
@@ -22,7 +22,7 @@ from roaml.model.outline import MachineOutline
 from roaml.model.property_links import LinkedFile, link
 from roaml.model.property_ports import observed_names
 from roaml.model.size import Size
-from roaml.model.system import System
+from roaml.model.system import System, SystemTree
 from roaml.model.system_file import ListedFile, SystemFile, SystemSection
 from roaml.model.tree import TreeFile
 from roaml.model.value_types import Environment, TypedMachine
@@ -99,7 +99,8 @@ class Linking:
             return self._sources.memo.get("expanded system", path, linked, lambda: expanded.system(path))
         listed = self._systems.listed(path)
         structs = self._machines.structs(path)
-        trees = self._systems.tree_outlines(path)
+        trees = self._systems.executed_trees(path)
+        rates = tuple(tree.input.tick_rate for tree in self._systems.listed_trees(path))
         machines = [f for f in listed if f.required_kind is FileKind.MACHINE and f.usable]
         gaps = frozenset(placed.gap for _, placed in self._gaps.gaps(path))
         plugins_known = self._knows_plugins(path, listed)
@@ -110,8 +111,9 @@ class Linking:
             nodes = tuple((f.path, o) for f, o in outlines if f.input.section is SystemSection.NODE_MODELS)
             plugins = tuple((f.path, o) for f, o in outlines if f.input.section is SystemSection.BEHAVIOR_TREE)
             known = (gaps, plugins_known, observed)
-            key = (file.parameters, file.older, nodes, plugins, trees, structs.outlines, known)
-            make = functools.partial(self._make, path, file, nodes, plugins, trees, structs, known)
+            owners = tuple(f.input.tree for f in machines if f.input.section is SystemSection.BEHAVIOR_TREE)
+            key = (file.parameters, file.older, nodes, plugins, trees, rates, owners, structs.outlines, known)
+            make = functools.partial(self._make, path, file, nodes, plugins, owners, trees, rates, structs, known)
             system = self._sources.memo.get("system", path, key, make)
             received = (received for _, o in outlines for received in o.received)
             return Round(system, system.event_data, frozenset(r.event for r in received if r.forwarded))
@@ -124,15 +126,20 @@ class Linking:
         file: SystemFile,
         nodes: tuple[tuple[str, MachineOutline], ...],
         plugins: tuple[tuple[str, MachineOutline], ...],
-        trees: tuple[TreeFileOutline, ...],
+        owners: tuple[str, ...],
+        trees: tuple[ListedTree, ...],
+        rates: tuple[float | None, ...],
         structs: Structs,
         known: tuple[frozenset[Gap], bool, frozenset[str]],
     ) -> System:
-        paths = tuple(tree.path for tree in trees)
-        expansion = expand(trees)
+        paths = tuple(dict.fromkeys(outline.path for tree in trees for outline in tree.files))
+        expansion = expand_listed(trees)
         instances, uses = expansion.instances, expansion.uses
+        listed = (SystemTree(tree.name, tree.files[0].path, rate) for tree, rate in zip(trees, rates, strict=True))
         system = System(
-            path, file.older, file.parameters, nodes, plugins, instances, uses, paths, structs.types, *known
+            *(path, file.older, file.parameters, nodes, plugins, instances, uses, paths, structs.types, *known),
+            trees=tuple(listed),
+            owners=owners,
         )
         if not system.is_library_tree:
             return system

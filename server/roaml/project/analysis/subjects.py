@@ -425,7 +425,7 @@ class _Reader:
         """The outlines of the tree files with which this file is checked: those of its system; without a system, those
         that it includes or that include it."""
         if self.system_path:
-            return self.rooms.systems.tree_outlines(self.system_path)
+            return self.rooms.systems.tree_outlines(self.system_path, self.path)
         return self.rooms.families.outlines_around(self.path)
 
     def _unknown_packages(self) -> frozenset[str]:

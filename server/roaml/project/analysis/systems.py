@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 
 from roaml.disk import UnreadableReason
-from roaml.model.expand import TreeFileOutline
+from roaml.model.expand import ListedTree, TreeFileOutline
 from roaml.model.kinds import EXTENSIONS, FileKind
 from roaml.model.system_file import ListedFile, SystemInput, SystemSection, required_kind
 from roaml.project.analysis.sources import SourceFiles
@@ -69,16 +69,32 @@ class Systems:
             kind = FileKind.JSON_STRUCTS
         return ListedFile(entry, path, None, kind_required, kind)
 
-    def tree_paths(self, path: str) -> tuple[str, ...]:
-        """The tree files of a system without duplicates: those of `trees_from` for the first listed tree file that can
-        be used; empty if there is none."""
-        first = next((f.path for f in self.listed(path) if f.required_kind is FileKind.TREE and f.usable), None)
-        return self._tree_files.trees_from(first) if first else ()
+    def listed_trees(self, path: str) -> tuple[ListedFile, ...]:
+        """The listed tree files of a system that can be used."""
+        return tuple(f for f in self.listed(path) if f.required_kind is FileKind.TREE and f.usable)
 
-    def tree_outlines(self, system: str) -> tuple[TreeFileOutline, ...]:
-        """The outlines of the tree files of a system."""
-        first = next(iter(self.tree_paths(system)), None)
+    def tree_paths(self, path: str) -> tuple[str, ...]:
+        """The tree files of a system without duplicates: those of `trees_from` for each listed tree file that can be
+        used; empty if there is none."""
+        listed = dict.fromkeys(f.path for f in self.listed_trees(path))
+        return tuple(dict.fromkeys(found for tree in listed for found in self._tree_files.trees_from(tree)))
+
+    def tree_outlines(self, system: str, file: str | None = None) -> tuple[TreeFileOutline, ...]:
+        """The outlines of the tree files with which a tree file of a system is read: those of the first listed tree
+        that contains it.
+
+        Args:
+            file: the tree file; `None` for the first listed one.
+        """
+        listed = tuple(dict.fromkeys(f.path for f in self.listed_trees(system)))
+        containing = (tree for tree in listed if file is None or file in self._tree_files.trees_from(tree))
+        first = next(containing, None)
         return self._tree_files.outlines_from(first) if first else ()
+
+    def executed_trees(self, system: str) -> tuple[ListedTree, ...]:
+        """The trees that a system executes."""
+        trees = self.listed_trees(system)
+        return tuple(ListedTree(f.input.tree, self._tree_files.outlines_from(f.path)) for f in trees)
 
     def files_of(self, system: str) -> tuple[str, ...]:
         """The system file and all files of the system, without duplicates.

@@ -14,14 +14,16 @@ from roaml.model.expand import PortConstant
 from roaml.model.machine import Declaration
 from roaml.model.syntax import Expression, Name
 from roaml.model.system import SystemAutomaton
+from roaml.model.system_file import TICK_RATE
 from roaml.model.timing import NANOSECONDS_PER_SECOND, TimerRate, period, rate
 from roaml.model.tree import TreeNode
 from roaml.model.waits import CountedWait, waits
 from roaml.record import Record
 from roaml.roles import SymbolKind
-from roaml.rules.rule import MachineContext, TreeContext
+from roaml.rules.rule import MachineContext, SystemContext, TreeContext
 from roaml.rules.support.instances import instances
 from roaml.rules.support.settings import constant_settings, integer_of
+from roaml.text import Span
 
 
 def timers(context: MachineContext) -> Iterator[tuple[Declaration, Name, Fraction]]:
@@ -79,8 +81,26 @@ def counted_waits(context: MachineContext) -> Iterator[tuple[CountedWait, Fracti
 
 
 def tick_period(context: TreeContext) -> int | None:
-    """The time between two ticks of the tree of a system, in ns; `None` without a system."""
-    return period(Fraction(str(context.system.parameters.tick_rate))).nanoseconds if context.system else None
+    """The time between two ticks of the trees of a system, in ns; `None` without a system, or if they differ."""
+    if context.system is None:
+        return None
+    names = [root.tree for root in context.system.roots]
+    rates = {context.system.tick_rate(name) for name in names} or {context.system.parameters.tick_rate}
+    return period(Fraction(str(rates.pop()))).nanoseconds if len(rates) == 1 else None
+
+
+def tree_rates(context: SystemContext) -> Iterator[tuple[Span, Fraction, str]]:
+    """The rates in Hz that a system file states for its trees, with their places, and the name of a tree with this
+    rate."""
+    element, system = context.file.parameter("bt_tick_rate"), context.system
+    value = element.get("value") if element is not None else None
+    common = next((root.tree for root in system.roots if not system.has_own_rate(root.tree)), None)
+    if value is not None and common is not None:
+        yield value.value_span, Fraction(str(context.file.parameters.tick_rate)), common
+    for listed in context.files:
+        own = listed.input.element.get(TICK_RATE)
+        if own is not None and listed.input.tick_rate is not None:
+            yield own.value_span, Fraction(str(listed.input.tick_rate)), listed.input.tree
 
 
 class Drift(Record, frozen=True):

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from fractions import Fraction
 
 from roaml.diagnostics import Finding, Severity
 from roaml.model.property_links import LinkedFile
@@ -15,7 +14,7 @@ from roaml.model.tree import TreeNode
 from roaml.rules.rule import MachineContext, Rule, SystemContext, TreeContext
 from roaml.rules.support.property_problems import problems
 from roaml.rules.support.settings import place_of
-from roaml.rules.support.timing import counted_waits, duration, durations, port_durations, timers
+from roaml.rules.support.timing import counted_waits, duration, durations, port_durations, timers, tree_rates
 
 SHORT_RUN = 10**10
 """The `max_time`, in ns, from which on it is probably right if no timer ticks before it: 10 s."""
@@ -66,26 +65,27 @@ def _system(context: SystemContext) -> Iterator[Finding]:
     end = context.file.parameters.max_time
     if end is None:
         return
-    ns = period(Fraction(str(context.file.parameters.tick_rate))).nanoseconds
-    shown, rate = context.file.parameter("max_time"), context.file.parameter("bt_tick_rate")
-    unit = min((p.unit for p in periods(context.system, context.file.parameters)), default=1)
+    shown = context.file.parameter("max_time")
+    unit = min((p.unit for p in periods(context.system)), default=1)
     if shown is not None and not _is_end_usual(end) and _nothing_ticks(context.system, end):
         if end % unit:
             return  # inexact-max-time reports it
-        shortest = min(timer.period.nanoseconds for timer in rates(context.system, context.file.parameters))
+        shortest = min(timer.period.nanoseconds for timer in rates(context.system))
         value = shown.get("value")
         message = (
             f"no timer ticks: the system runs for {duration(end)}, and the shortest period of a timer is "
             f"{duration(shortest)}"
         )
         yield RULE.at(value.value_span if value is not None else shown.name_span, message)
-    elif context.system.instances and ns > end and rate is not None:
-        value = rate.get("value")
-        message = (
-            f"the tree is never ticked: the time between two ticks is {duration(ns)}, and the system runs for "
-            f"{duration(end)} (`max_time`)"
-        )
-        yield RULE.at(value.value_span if value is not None else rate.name_span, message)
+        return
+    for place, hertz, _ in tree_rates(context):
+        ns = period(hertz).nanoseconds
+        if ns > end:
+            message = (
+                f"the tree is never ticked: the time between two ticks is {duration(ns)}, and the system runs for "
+                f"{duration(end)} (`max_time`)"
+            )
+            yield RULE.at(place, message)
 
 
 def _properties(file: LinkedFile) -> Iterator[Finding]:
@@ -99,7 +99,7 @@ def _is_end_usual(end: int) -> bool:
 
 def _nothing_ticks(system: System, end: int) -> bool:
     """Whether the system has timers and none of them ticks."""
-    periods = [timer.period.nanoseconds for timer in rates(system, system.parameters)]
+    periods = [timer.period.nanoseconds for timer in rates(system)]
     return bool(periods) and min(periods) > end
 
 

@@ -16,7 +16,7 @@ NAMES = {nanoseconds: name for name, nanoseconds in NANOSECONDS.items()}
 
 def check(context: SystemContext) -> Iterator[Finding]:
     end = context.file.parameters.max_time
-    unit = min((period.unit for period in periods(context.system, context.file.parameters)), default=1)
+    unit = min((period.unit for period in periods(context.system)), default=1)
     if end is None or end % unit == 0:
         return
     given = context.file.parameter("max_time")

@@ -9,8 +9,11 @@ from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import remove
 from roaml.facts import Facts
 from roaml.model.kinds import FileKind
-from roaml.model.system_file import ListedFile, SystemSection
+from roaml.model.system import System
+from roaml.model.system_file import TREE_ATTRIBUTE, ListedFile, SystemSection
 from roaml.rules.rule import Rule, SystemContext
+from roaml.suggest import close_names, did_you_mean, listing
+from roaml.xml_syntax import Attribute
 
 
 class InputCount(Facts, frozen=True):
@@ -20,11 +23,7 @@ class InputCount(Facts, frozen=True):
 
 
 def check(context: SystemContext) -> Iterator[Finding]:
-    trees = [f for f in context.files if f.required_kind is FileKind.TREE]
-    for extra in trees[1:]:
-        related = (Related(trees[0].input.element.name_span, "the first file of trees"),)
-        message = "a system allows only one file of trees, which may include others"
-        yield RULE.at(extra.input.element.name_span, message, _remove(context, extra), related=related)
+    yield from _trees(context)
     yield from _property_files(context)
     section = context.file.element.find(SystemSection.BEHAVIOR_TREE.value)
     kinds = [f.required_kind for f in context.files if f.input.section is SystemSection.BEHAVIOR_TREE]
@@ -33,6 +32,72 @@ def check(context: SystemContext) -> Iterator[Finding]:
     if section is not None and not unread and kinds and all(kind is FileKind.MACHINE for kind in kinds):
         message = "there are plugins but no tree: an `<input>` of type `bt.cpp-xml` is missing"
         yield RULE.at(section.name_span, message, facts=InputCount(FileKind.TREE))
+
+
+def _trees(context: SystemContext) -> Iterator[Finding]:
+    """Report trees without a name in a system with several trees, names that two of them have, and plugins of trees
+    that do not exist."""
+    trees = [f for f in context.files if f.required_kind is FileKind.TREE]
+    named: dict[str, ListedFile] = {}
+    unnamed = [tree for tree in trees if not tree.input.tree]
+    if len(unnamed) > 1:
+        del unnamed[0]  # with a name for each other one, it is reported
+    for tree in trees:
+        name = tree.input.tree
+        place = tree.input.element.get("name")
+        if len(trees) > 1 and any(tree is other for other in unnamed):
+            message = (
+                "a system with several trees needs a `name` for each of them; add the attribute, or remove this "
+                "`<input>`, if another file includes the trees"
+            )
+            yield RULE.at(tree.input.element.name_span, message, _remove(context, tree))
+        elif place is not None and ("__" in name or name != name.strip("_")):
+            message = (
+                f"`{name}` cannot be the name of a tree, because names of blackboard variables begin with it; use "
+                "single underscores between letters and digits"
+            )
+            yield RULE.at(place.value_span, message)
+        elif place is not None and name in named:
+            related = (Related(named[name].input.element.name_span, f"the first tree `{name}`"),)
+            message = f"there are two trees `{name}`; give one of them another `name`"
+            yield RULE.at(place.value_span, message, related=related)
+        else:
+            named[name] = tree
+    yield from _equal_trees(context)
+    for listed in context.files:
+        owner = listed.input.element.get(TREE_ATTRIBUTE)
+        if listed.required_kind is FileKind.MACHINE and owner is not None and listed.input.tree not in named:
+            close = close_names(listed.input.tree, named)
+            known = [name for name in named if name]
+            hint = did_you_mean(close) if close or not known else f"; the trees are {listing(known)}"
+            yield RULE.at(owner.value_span, f"there is no tree `{listed.input.tree}`{hint}")
+        elif owner is not None:
+            yield from _foreign_plugin(context.system, listed, owner)
+
+
+def _foreign_plugin(system: System, listed: ListedFile, owner: Attribute) -> Iterator[Finding]:
+    """Report a plugin of a tree that another tree uses, too."""
+    names = {outline.name for path, outline in system.plugins if path == listed.path}
+    for node in system.instances:
+        if node.plugin in names and system.plugin(node.plugin, node.tree)[1] is None:
+            message = (
+                f"the tree `{node.tree}` uses `{node.plugin}`, too, which belongs to the tree `{listed.input.tree}`; "
+                "remove the attribute, or list the plugin for both trees"
+            )
+            yield RULE.at(owner.value_span, message)
+            return
+
+
+def _equal_trees(context: SystemContext) -> Iterator[Finding]:
+    """Report files that contain different trees with the same name."""
+    first: dict[str, str] = {}
+    listed = {f.path: f for f in context.files if f.required_kind is FileKind.TREE}
+    for use in context.system.tree_uses:
+        tree = use.frame.tree
+        before = first.setdefault(tree.id, tree.path)
+        if before != tree.path and tree.path in listed:
+            message = f"two trees are called `{tree.id}`, here and in another file of the system; rename one of them"
+            yield RULE.at(listed.pop(tree.path).span, message)
 
 
 def _property_files(context: SystemContext) -> Iterator[Finding]:
@@ -62,7 +127,7 @@ def _remove(context: SystemContext, listed: ListedFile) -> Fix:
 RULE = Rule(
     "input-count",
     Severity.ERROR,
-    "A system lists too many or too few files of a kind.",
+    "A system lists too many or too few files of a kind, or does not distinguish its trees.",
     system=check,
     facts=InputCount,
 )

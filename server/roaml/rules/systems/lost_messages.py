@@ -22,7 +22,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     """Report topics whose messages arrive faster than the machine returns to a state that handles them."""
     if context.system is None or not context.automata:
         return
-    timers = list(rates(context.system, context.system.parameters))
+    timers = list(rates(context.system))
     own = {timer.name: timer for timer in timers if timer.path == context.source.path}
     arrival = {
         declaration.handle.value: _fastest(timers, channel.sources)

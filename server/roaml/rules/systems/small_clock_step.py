@@ -73,10 +73,10 @@ class _Suggestion(Record, frozen=True):
 
 def check(context: SystemContext) -> Iterator[Finding]:
     end = context.file.parameters.max_time
-    groups = _groups(rates(context.system, context.file.parameters))
+    groups = _groups(rates(context.system))
     if not groups or end is None:
         return
-    timers = list(rates(context.system, context.file.parameters))
+    timers = list(rates(context.system))
     if any(drift(timer.hertz, timers, end) is not None for timer in timers):
         return  # timer-rate reports the rate that has no exact period
     step = math.gcd(*(group.nanoseconds for group in groups))

@@ -10,7 +10,7 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.model.system import System
 from roaml.model.timing import NANOSECONDS_PER_SECOND, TimerRate, period, rates
 from roaml.rules.rule import MachineContext, Rule, SystemContext
-from roaml.rules.support.timing import are_multiples, drift, duration, timers
+from roaml.rules.support.timing import are_multiples, drift, duration, timers, tree_rates
 from roaml.text import Span, TextEdit
 
 MAX_RATE = 1000
@@ -28,11 +28,8 @@ def _machine(context: MachineContext) -> Iterator[Finding]:
 
 
 def _system(context: SystemContext) -> Iterator[Finding]:
-    element = context.file.parameter("bt_tick_rate")
-    value = element.get("value") if element is not None else None
-    if value is not None and context.system.instances:
-        hertz = Fraction(str(context.file.parameters.tick_rate))
-        yield from _check(context.system, value.value_span, hertz, ("", ""))
+    for place, hertz, tree in tree_rates(context):
+        yield from _check(context.system, place, hertz, ("", tree))
 
 
 def _check(system: System, place: Span, hertz: Fraction, own: tuple[str, str]) -> Iterator[Finding]:
@@ -43,7 +40,7 @@ def _check(system: System, place: Span, hertz: Fraction, own: tuple[str, str]) -
         message = f"{float(hertz):g} Hz is one tick every {duration(rounded)}{ticks}; check the number, which is in Hz"
         yield RULE.at(place, message)
         return
-    others = [timer for timer in rates(system, system.parameters) if (timer.path, timer.name) != own]
+    others = [timer for timer in rates(system) if (timer.path, timer.name) != own]
     drifting = drift(hertz, others, end)
     if drifting is not None:
         other = drifting.other

@@ -20,13 +20,14 @@ def check(context: SystemContext) -> Iterator[Finding]:
     """Report names that two ROS nodes or two plugins have, and names of ROS nodes that the translation gives to other
     automata."""
     outlines = dict((*context.system.nodes, *context.system.plugins))
-    first: dict[tuple[SystemSection, str], ListedFile] = {}
+    first: dict[tuple[SystemSection, str, str], ListedFile] = {}
     generated = _generated(context.system)
     for listed in context.files:
         outline = outlines.get(listed.path) if listed.required_kind is FileKind.MACHINE else None
         if outline is None or listed.input.src is None or not outline.name:
             continue
-        before = first.setdefault((listed.input.section, outline.name), listed)
+        key = (listed.input.section, outline.name)
+        before = first.get((*key, "")) or first.setdefault((*key, listed.input.tree), listed)
         if before is not listed:
             yield _finding(context, listed, before, outline.name)
         elif listed.input.section is SystemSection.NODE_MODELS and (reason := _taken(outline.name, generated)):

@@ -1,0 +1,352 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Systems with several trees (docs/spec/trees.md#several-trees)."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+
+from as2fm_lsp.cli.main import run
+from roaml import api
+from roaml.api.mocked_systems import mock_system
+from roaml.debugging.sources import Sources
+from roaml.debugging.start import Start, start
+from roaml.diagnostics import Severity, Symbol
+from roaml.ide.describe import describe
+from roaml.ide.diagrams.ros import ros_picture
+from roaml.ide.diagrams.tree import tree_picture
+from roaml.ide.names.lookup import symbol_group
+from roaml.ide.rename import Renaming, rename
+from roaml.jani.writer import write
+from roaml.roles import SymbolKind
+from roaml.text import apply_edits
+
+FLEET = Path(__file__).resolve().parents[2] / "examples" / "fleet"
+DELIVERS = {"anna": 0.9 * 0.99, "bert": 0.9 * 0.99, "carl": 0.9 * 0.75}
+"""Robot -> the probability that it delivers: it is not blocked, and the parcel slips at most once in two attempts."""
+
+
+NODE_PORT = """<ports><bt_node node="{}" event="response">
+            <state_var id="status" type="int32" field="status" expr="0" />
+        </bt_node>"""
+"""The begin of ports with a node of a tree."""
+
+
+@pytest.fixture
+def fleet(tmp_path: Path) -> Path:
+    shutil.copytree(FLEET, tmp_path / "fleet")
+    return tmp_path / "fleet"
+
+
+def jani(main: Path) -> str:
+    return "".join(write(api.to_jani(api.load(str(main)))))
+
+
+def exact(capsys: pytest.CaptureFixture[str], main: Path, *options: str) -> Mapping[str, tuple[float, float]]:
+    """Property -> its minimum and maximum over all schedulers."""
+    capsys.readouterr()
+    run(["verify", str(main), "--exhaustive", "--format", "json", "--jobs", "1", *options])
+    results = json.loads(capsys.readouterr().out)["results"]
+    return {result["property"]: (result["exact"]["least"], result["exact"]["greatest"]) for result in results}
+
+
+def problems(main: Path) -> list[str]:
+    return [d.message for d in api.check([str(main)]).diagnostics if d.severity >= Severity.WARNING]
+
+
+# ------------------------------------------------------------------- the example
+
+
+def test_the_fleet_has_the_probabilities_of_closed_forms(capsys: pytest.CaptureFixture[str]) -> None:
+    assert problems(FLEET / "main.xml") == []
+    values = exact(capsys, FLEET / "main.xml")
+    everyone = DELIVERS["anna"] * DELIVERS["bert"] * DELIVERS["carl"]
+    assert values.keys() == {"all_deliver", *(f"{robot}_delivers" for robot in DELIVERS)}
+    assert values["all_deliver"] == pytest.approx((everyone, everyone), abs=1e-9)
+    for robot, value in DELIVERS.items():
+        assert values[f"{robot}_delivers"] == pytest.approx((value, value), abs=1e-9)
+
+
+@pytest.mark.parametrize("robot", DELIVERS)
+def test_each_robot_alone_has_the_same_value(robot: str, fleet: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A system with one tree without a name, written by hand."""
+    slips = "0.5" if robot == "carl" else "0.1"
+    rate = "2" if robot == "bert" else "1"
+    for path, old, new in (
+        ("plugins/hand_over.ascxml", 'value="0.1"', f'value="{slips}"'),
+        ("delivers.xml", "/$(var robot)/delivered", "delivered"),
+    ):
+        text = (fleet / path).read_text(encoding="utf-8")
+        assert old in text
+        (fleet / path).write_text(text.replace(old, new), encoding="utf-8")
+    (fleet / "main.xml").write_text(
+        f"""<roaml>
+    <parameters>
+        <max_time value="6" unit="s" reaction_time="instant" />
+        <bt_tick_rate value="{rate}" />
+    </parameters>
+    <behavior_tree tree-semantics="behaviortree-cpp">
+        <input type="bt.cpp-xml" src="deliver.xml" />
+        <input type="bt-plugin-ascxml" src="plugins/drive.ascxml" />
+        <input type="bt-plugin-ascxml" src="plugins/hand_over.ascxml" />
+    </behavior_tree>
+    <node_models><input type="node-ascxml" src="base.ascxml" /></node_models>
+    <properties><input type="xml" src="delivers.xml" /></properties>
+</roaml>
+""",
+        encoding="utf-8",
+    )
+    assert exact(capsys, fleet / "main.xml")["anna_delivers"] == pytest.approx((DELIVERS[robot],) * 2, abs=1e-9)
+
+
+def test_values_from_outside_are_for_one_tree_or_for_all(capsys: pytest.CaptureFixture[str]) -> None:
+    one = ("--property", "carl_delivers", "--property", "anna_delivers", "--set", "carl.slips=0.3")
+    values = exact(capsys, FLEET / "main.xml", *one)
+    assert values["carl_delivers"][0] == pytest.approx(0.9 * (1 - 0.3**2), abs=1e-9)
+    assert values["anna_delivers"][0] == pytest.approx(DELIVERS["anna"], abs=1e-9)
+    every = ("--property", "anna_delivers", "--set", "HandOver.slips=0.3")
+    assert exact(capsys, FLEET / "main.xml", *every)["anna_delivers"][0] == pytest.approx(0.819, abs=1e-9)
+
+
+def test_the_expanded_files_have_the_same_translation(fleet: Path, tmp_path: Path) -> None:
+    plain = tmp_path / "plain"
+    assert run(["translate", str(fleet / "main.xml"), "--expand", str(plain), "-o", str(tmp_path / "x.jani")]) == 0
+    assert {path.name for path in (plain / "plugins").iterdir()} == {
+        f"{robot}_{plugin}.ascxml" for robot in DELIVERS for plugin in ("drive", "hand_over")
+    }
+    assert jani(plain / "main.xml") == jani(fleet / "main.xml")
+
+
+def test_automata_are_named_after_their_tree() -> None:
+    names = {automaton.name for automaton in api.to_jani(api.load(str(FLEET / "main.xml"))).automata}
+    for robot, number in (("anna", 1000), ("bert", 2000), ("carl", 3000)):
+        assert {f"bt_root_fsm_{robot}", f"bt_blackboard_fsm_{robot}", f"{robot}_base"} <= names
+        assert f"BT_plugin_{number + 1}_{robot}.Drive" in names
+        assert f"bt_blackboard_set_{robot}__place" in names
+
+
+def test_pictures_show_the_trees() -> None:
+    analysis = api.check([str(FLEET / "main.xml")]).snapshot.analysis
+    graph = ros_picture(analysis, str(FLEET / "main.xml"))
+    assert graph is not None
+    titles = {node.label for node in graph.nodes}
+    assert {f"{robot}.Drive" for robot in DELIVERS} | {f"/{robot}/go_to" for robot in DELIVERS} <= titles
+    edges = {(edge.source.rpartition("/")[2], edge.target) for edge in graph.edges}
+    assert len([edge for edge in edges if edge[0] == "drive.ascxml"]) == len(DELIVERS)
+    tree = tree_picture(analysis, str(FLEET / "main.xml"))
+    assert tree is not None
+    assert {f"{robot} : Deliver" for robot in DELIVERS} <= {node.label for node in tree.nodes}
+
+
+def test_each_tree_has_a_stack_in_the_debugger() -> None:
+    system = api.load(str(FLEET / "main.xml"))
+    debugger = start(Sources(api.as_target(system), system.analysis), Start(), lambda *_: None)
+    assert [thread.name for thread in debugger.threads[:4]] == [*(f"tree {robot}" for robot in DELIVERS), "anna_base"]
+    stacks = {thread.name: debugger.stacks.stack(thread) for thread in debugger.threads}
+    for robot in DELIVERS:
+        assert [frame.name for frame in stacks[f"tree {robot}"]] == [f"{robot}.Sequence: IDLE"]
+    texts = set()
+    while debugger.session.step() and "the tree carl begins its next tick" not in texts:
+        texts |= {choice.text for choice in debugger.session.choices()}
+    assert "the tree begins its next tick" not in texts
+    assert "the tree bert begins its next tick" in texts
+
+
+# ----------------------------------------------------------------------- editing
+
+
+def test_the_name_of_a_tree_is_a_definition_with_a_description(fleet: Path) -> None:
+    analysis = api.check([str(fleet / "main.xml")]).snapshot.analysis
+    symbol = Symbol(str(fleet / "deliver.xml"), SymbolKind.MACHINE, "bert")
+    assert [Path(place.path).name for place in symbol_group(analysis, (symbol,)).definitions] == ["main.xml"]
+    shown = describe(analysis, symbol)
+    assert "tree bert : Deliver" in shown
+    assert "Ticked at 2 Hz" in shown
+    assert "Plugins `Drive`, `HandOver`" in shown
+
+
+def test_a_tree_is_renamed_with_its_references(fleet: Path) -> None:
+    properties = fleet / "delivers.xml"
+    text = properties.read_text(encoding="utf-8").replace("<ports>", NODE_PORT.format("bert/Sequence"))
+    properties.write_text(text, encoding="utf-8")
+    main = fleet / "main.xml"
+    listed = main.read_text(encoding="utf-8").replace('hand_over.ascxml" />', 'hand_over.ascxml" />\n<x />')
+    other = '<input type="bt-plugin-ascxml" src="plugins/look.ascxml" tree="bert" />'
+    main.write_text(listed.replace("<x />", other), encoding="utf-8")
+    look = (fleet / "plugins" / "drive.ascxml").read_text(encoding="utf-8").replace('"Drive"', '"Look"')
+    (fleet / "plugins" / "look.ascxml").write_text(look, encoding="utf-8")
+    formulas = fleet / "all_deliver.jani"
+    variable = '"bt_blackboard_set_bert__place__value"'
+    formulas.write_text(formulas.read_text(encoding="utf-8").replace('"bt_2000_response__status"', variable), "utf-8")
+    analysis = api.check([str(main)]).snapshot.analysis
+    renaming = rename(analysis, str(main), main.read_text(encoding="utf-8").index('"bert"') + 1, "bob")
+    assert isinstance(renaming, Renaming), renaming
+    for changed, edits in renaming.edits.items():
+        Path(changed).write_text(apply_edits(Path(changed).read_text("utf-8"), tuple(edits)), "utf-8")
+    assert 'name="bob" namespace="bert"' in main.read_text(encoding="utf-8")
+    assert 'tree="bob"' in main.read_text(encoding="utf-8")
+    assert '"bob/Sequence"' in properties.read_text(encoding="utf-8")
+    assert "bt_blackboard_set_bob__place__value" in formulas.read_text(encoding="utf-8")
+
+
+def test_a_node_of_a_shared_tree_file_is_renamed_for_all_trees(fleet: Path) -> None:
+    tree = fleet / "deliver.xml"
+    tree.write_text(tree.read_text(encoding="utf-8").replace("<Sequence>", '<Sequence name="top">'), encoding="utf-8")
+    properties = fleet / "delivers.xml"
+    text = properties.read_text(encoding="utf-8").replace("<ports>", NODE_PORT.format("bert/top"))
+    properties.write_text(text, encoding="utf-8")
+    analysis = api.check([str(fleet / "main.xml")]).snapshot.analysis
+    renaming = rename(analysis, str(properties), text.index("/top") + 2, "all")
+    assert isinstance(renaming, Renaming), renaming
+    assert {Path(path).name for path in renaming.edits} == {"deliver.xml", "delivers.xml"}
+
+
+# ---------------------------------------------------------------- what is reported
+
+FIRST, SECOND = 'name="anna" namespace="anna"', 'name="bert" namespace="bert" tick_rate="2"'
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (FIRST, "", "needs a `name`"),
+        (SECOND, 'name="anna" namespace="bert"', "there are two trees `anna`"),
+        (SECOND, 'name="b__c" namespace="bert"', "`b__c` cannot be the name of a tree"),
+        (SECOND, 'name="b_" namespace="bert"', "`b_` cannot be the name of a tree"),
+        (SECOND, 'name="2b" namespace="bert"', "`2b` cannot be the name of an instance"),
+        ('name="slips"', 'name="slip"', "no plugin of this tree has a parameter `slip`"),
+        ("</input>", '<remap from="nothing" to="x" /></input>', "no topic, service, action or event `nothing`"),
+        ('drive.ascxml"', 'drive.ascxml" tree="anne"', "there is no tree `anne`; did you mean `anna`?"),
+        ('drive.ascxml"', 'drive.ascxml" tree="anna"', "the tree `bert` uses `Drive`, too"),
+        (SECOND, f'{SECOND[:-3]}"0.1"', "the tree is never ticked"),
+    ],
+)
+def test_mistakes_are_reported(old: str, new: str, message: str, fleet: Path) -> None:
+    main = fleet / "main.xml"
+    text = main.read_text(encoding="utf-8")
+    assert old in text
+    main.write_text(text.replace(old, new, 1), encoding="utf-8")
+    assert [found for found in problems(main) if message in found]
+
+
+def test_files_with_different_trees_of_one_name_are_reported(fleet: Path) -> None:
+    shutil.copy(fleet / "deliver.xml", fleet / "other.xml")
+    main = fleet / "main.xml"
+    text = main.read_text(encoding="utf-8")
+    main.write_text(text.replace('src="deliver.xml" name="carl"', 'src="other.xml" name="carl"'), encoding="utf-8")
+    assert [found for found in problems(main) if "two trees are called `Deliver`" in found]
+
+
+def test_mocks_are_refused(fleet: Path) -> None:
+    with pytest.raises(api.PathError, match="several trees"):
+        mock_system(str(fleet / "main.xml"), ())
+
+
+# ----------------------------------------------------------------------- meaning
+
+
+SHOW = """<ascxml name="Show" version="1.0" initial="on">
+    <bt_declare_port_in key="value" type="int32" />
+    <ros_topic_publisher name="shown" topic="shown" type="std_msgs/Int32" />
+    <datamodel><data id="last" type="int32" expr="0" /></datamodel>
+    <state id="on">
+        <bt_tick target="on">
+            <assign location="last"><expr><bt_get_input key="value" /></expr></assign>
+            <ros_topic_publish name="shown"><field name="data" expr="last" /></ros_topic_publish>
+            <bt_return_status status="SUCCESS" />
+        </bt_tick>
+        <bt_halt target="on"><bt_return_halted /></bt_halt>
+    </state>
+</ascxml>
+"""
+PUT = """<ascxml name="Put" version="1.0" initial="on">
+    <parameter name="number" type="int32" value="1" />
+    <bt_declare_port_out key="value" type="int32" />
+    <state id="on">
+        <bt_tick target="on">
+            <bt_set_output key="value" expr="number" />
+            <bt_return_status status="SUCCESS" />
+        </bt_tick>
+        <bt_halt target="on"><bt_return_halted /></bt_halt>
+    </state>
+</ascxml>
+"""
+TREE = """<root BTCPP_format="4">
+    <BehaviorTree ID="Main">
+        <Sequence><Put value="{v}" /><SubTree ID="Inner" /></Sequence>
+    </BehaviorTree>
+    <BehaviorTree ID="Inner"><Show value="{@v}" /></BehaviorTree>
+</root>
+"""
+
+
+def small(folder: Path, semantics: str, trees: str, expression: str, max_time: int = 1) -> Path:
+    (folder / "show.ascxml").write_text(SHOW, encoding="utf-8")
+    (folder / "put.ascxml").write_text(PUT, encoding="utf-8")
+    (folder / "tree.xml").write_text(TREE, encoding="utf-8")
+    states = {"op": "initial"}
+    written = {"op": "Pmin", "exp": json.loads(expression)}
+    property_ = {"name": "p", "expression": {"op": "filter", "fun": "values", "values": written, "states": states}}
+    (folder / "p.jani").write_text(json.dumps({"properties": [property_]}), encoding="utf-8")
+    main = folder / "main.xml"
+    main.write_text(
+        f"""<roaml>
+    <parameters><max_time value="{max_time}" unit="s" /></parameters>
+    <behavior_tree tree-semantics="{semantics}">
+        {trees}
+        <input type="bt-plugin-ascxml" src="put.ascxml" />
+        <input type="bt-plugin-ascxml" src="show.ascxml" />
+    </behavior_tree>
+    <properties><input type="jani" src="p.jani" /></properties>
+</roaml>
+""",
+        encoding="utf-8",
+    )
+    return main
+
+
+TWO = """<input type="bt.cpp-xml" src="tree.xml" name="a" namespace="a" />
+        <input type="bt.cpp-xml" src="tree.xml" name="b" namespace="b"><param name="number" value="2" /></input>"""
+
+
+@pytest.mark.parametrize("semantics", ["behaviortree-cpp", "as2fm"])
+def test_each_tree_has_its_own_blackboard(semantics: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Whatever the order of the steps of both trees, none reads what the other one, or nothing, has written: each
+    message has the number of its tree."""
+    wrong = [
+        {
+            "op": "∧",
+            "left": f"topic_{tree}__shown_msg.valid",
+            "right": {"op": "≠", "left": f"topic_{tree}__shown_msg__ros_fields__data", "right": number},
+        }
+        for tree, number in (("a", 1), ("b", 2))
+    ]
+    never = {"op": "G", "exp": {"op": "¬", "exp": {"op": "∨", "left": wrong[0], "right": wrong[1]}}}
+    main = small(tmp_path, semantics, TWO, json.dumps(never))
+    assert exact(capsys, main)["p"] == (1, 1)
+    both = {"op": "∧", "left": "topic_a__shown_msg.valid", "right": "topic_b__shown_msg.valid"}
+    main = small(tmp_path, semantics, TWO, json.dumps({"op": "F", "exp": both}))
+    assert exact(capsys, main, "--reaction-time", "instant")["p"] == (1, 1)
+
+
+def test_a_tree_that_has_ended_does_not_stop_the_others(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The first tree ends after 1 s, and the second one is ticked after 3 s."""
+    third = TWO.replace('name="b" namespace="b"', 'name="b" namespace="b" tick_rate="0.25"')
+    main = small(tmp_path, "behaviortree-cpp", third, '{"op": "F", "exp": "topic_b__shown_msg.valid"}', 5)
+    assert exact(capsys, main, "--reaction-time", "instant")["p"] == (1, 1)
+
+
+def test_one_tree_with_a_name_is_the_tree_without_a_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The translations differ only in names."""
+    goal = '{"op": "F", "exp": "topic_shown_msg.valid"}'
+    unnamed = jani(small(tmp_path, "as2fm", '<input type="bt.cpp-xml" src="tree.xml" />', goal))
+    named = jani(small(tmp_path, "as2fm", '<input type="bt.cpp-xml" src="tree.xml" name="tree" />', goal))
+    assert named != unnamed
+    for renamed in (r"(bt_blackboard_(?:fsm|req|get))_tree", r"(BT_plugin_\d+_)tree\."):
+        named = re.sub(renamed, r"\1", named)
+    assert sorted(re.findall(r"[\w.]+", named.replace("tree__v", "v"))) == sorted(re.findall(r"[\w.]+", unnamed))
