@@ -4,6 +4,7 @@ import * as fs from "node:fs";
 import * as path from "node:path";
 import type { Locator } from "playwright-core";
 import { MEND, sample, SharedFolder, type Stage } from "./support/stage";
+import { themes } from "./support/themes";
 import type { Window } from "./support/window";
 import { write } from "./support/workbench";
 
@@ -33,6 +34,44 @@ export function verification(stage: Stage): void {
         await hint(window, "never_empty", "=\\s1,\\sexact,\\sno\\sexpectation\\sset").waitFor();
         await window.screenshot("verified");
     });
+
+    for (const [look, theme] of themes("light", "light", "dark", "hc-light", "hc-dark")) {
+        const themed = () => {
+            // The battery is seldom empty before the last parcel.
+            const folder = sample({ ...MEND, "tree.xml": (text) => text.replace('level="30"', 'level="0"') });
+            write(path.join(folder, ".vscode/settings.json"), JSON.stringify({ "workbench.colorTheme": theme }));
+            return folder;
+        };
+        stage.test(`pictures show the coverage of the last verification, ${look}`, themed, async (window) => {
+            await window.openFile("main.xml");
+            await window.running();
+            await window.run("AS2FM: Show Behavior Tree");
+            const tree = await window.picture();
+            const coverage = tree.getByRole("button", { name: "Coverage" });
+            await coverage.click();
+            await tree.locator(".notice", { hasText: "No property has been verified" }).waitFor();
+            await window.clickTab("main.xml");
+            await lens(window, "Verify all").first().click();
+            const charge = tree.locator('.node[data-label="Charge"]');
+            await tree.locator('.node[data-cover="all"][data-label="Deliver"]').waitFor();
+            assert.equal(await charge.getAttribute("data-cover"), "some");
+            const words = /Charge, in \d+ of [\d,]+ traces, returned RUNNING in \d+ of [\d,]+ traces$/;
+            assert.match((await charge.getAttribute("aria-label")) ?? "", words);
+            await charge.locator(".cover-badge", { hasText: /^\d+ %$/ }).waitFor();
+            await tree.locator(".legend", { hasText: /Coverage by the first .* traces of main\.xml/ }).waitFor();
+            await window.screenshot(`coverage-tree-${look}`);
+            await coverage.click();
+            await tree.locator(".node:not([data-cover])[data-label='Charge']").waitFor();
+            await window.page.locator(".tab", { hasText: "Behavior Tree" }).locator(".codicon-close").click();
+            await window.openFile("deliver.ascxml");
+            await window.run("AS2FM: Show State Machine");
+            const machine = await window.picture();
+            await machine.getByRole("button", { name: "Coverage" }).press("Enter");
+            await machine.locator('.node[data-cover="all"]').first().waitFor();
+            await window.becomes(() => machine.locator(".cover-badge", { hasText: "never" }).count(), 2);
+            await window.screenshot(`coverage-machine-${look}`);
+        });
+    }
 
     stage.test("the Test Explorer runs properties and shows their results", late, async (window) => {
         await window.openFile("properties.jani");

@@ -75,6 +75,9 @@ export function activate(context: vscode.ExtensionContext): void {
         status.show(state);
     });
     pictures.onVerified(() => void tests.refresh());
+    tests.onSystems(() => {
+        pictures.refreshCoverage();
+    });
     const shown = { plain, jani, pictures, tests, counterexamples, debugging, experiments };
     registerCommands({ context, log, server, activation, status, documents, tasks, ...shown });
     context.subscriptions.push(vscode.tasks.registerTaskProvider(Tasks.type, tasks));

@@ -3,7 +3,16 @@
 
 import type { DocumentSymbol, Range, TextDocumentIdentifier, WorkspaceEdit } from "vscode-languageserver-protocol";
 import { RequestType } from "vscode-languageserver-protocol";
-import type { Direction, Picture, PictureAction, PictureFormat, PictureKind, Place, Theme } from "./pictures/contract";
+import type {
+    Coverage,
+    Direction,
+    Picture,
+    PictureAction,
+    PictureFormat,
+    PictureKind,
+    Place,
+    Theme,
+} from "./pictures/contract";
 
 export type FileKind = "machine" | "system" | "tree" | "structs" | "properties" | "interface" | "model" | "";
 
@@ -152,6 +161,8 @@ export const propertySentences = new RequestType<DocumentParams, PropertySentenc
 export const newPropertyEdit = new RequestType<NewPropertyParams, NewProperty, void>("as2fm/newProperty");
 export const about = new RequestType<DocumentParams, About, void>("as2fm/about");
 export const picture = new RequestType<PictureParams, Picture | null, void>("as2fm/picture");
+/** The coverage of the picture that `as2fm/picture` returns for the same parameters; null if nothing was verified. */
+export const coverage = new RequestType<PictureParams, Coverage | null, void>("as2fm/coverage");
 export const pictureFile = new RequestType<PictureFileParams, PictureFile | null, void>("as2fm/pictureFile");
 export const pictureEdit = new RequestType<PictureEditParams, PictureEdit, void>("as2fm/pictureEdit");
 export const plainScxml = new RequestType<DocumentParams, PlainScxml, void>("as2fm/plainScxml");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { Box, Picture, PictureEdge, PictureNode, Place, Words } from "../src/pictures/contract";
+import type { Box, CoverageWords, Picture, PictureEdge, PictureNode, Place, Words } from "../src/pictures/contract";
 import { partAt } from "../src/pictures/partAt";
 import {
     around,
@@ -19,6 +19,7 @@ import {
     shifts,
     zoom,
 } from "../src/pictures/view/find";
+import { badgeOf, isOf, nodeCoverageWords, summaryOf } from "../src/pictures/view/coverage";
 import { edgeHint, edgeWords, legendOf, nodeWords } from "../src/pictures/view/words";
 
 const URI = "file:///m.ascxml";
@@ -258,4 +259,44 @@ test("the view follows a state with the targets of its transitions", () => {
     // If they do not fit, the state is in the middle.
     const one = follow(sight, drawing, at(1500, 1500), [at(2800, 2800)], 800, 600);
     assert.deepEqual(one, { scale: 1, x: 1150, y: 1225 });
+});
+
+const COVERAGE_WORDS: CoverageWords = {
+    show: "Coverage",
+    hint: "",
+    all: "in all {0} traces",
+    some: "in {0} of {1} traces",
+    none: "in none of {0} traces",
+    never: "never",
+    part: "the first {0} of {1} traces of {2}",
+    inAll: "",
+    inSome: "",
+    inNone: "",
+    notVerified: "",
+    stale: "",
+    returned: "returned {0}",
+};
+
+test("coverage in words names the traces and the statuses", () => {
+    const node = { traces: 20, statuses: { SUCCESS: 20, FAILURE: 3 } };
+    assert.equal(
+        nodeCoverageWords(node, 20, COVERAGE_WORDS),
+        "in all 20 traces, returned SUCCESS in all 20 traces, returned FAILURE in 3 of 20 traces",
+    );
+    assert.equal(nodeCoverageWords({ traces: 0, statuses: {} }, 20, COVERAGE_WORDS), "in none of 20 traces");
+    const coverage = { traces: 20, simulated: 120, isStale: false, system: "file:///a%20b/main.xml" };
+    const words = summaryOf({ ...coverage, nodes: [], edges: [] }, COVERAGE_WORDS);
+    assert.equal(words, "the first 20 of 120 traces of main.xml");
+});
+
+test("the badge of a part never rounds to none or all of the traces", () => {
+    const badges = [0, 1, 500, 999, 1000].map((traces) => badgeOf(traces, 1000, COVERAGE_WORDS));
+    assert.deepEqual(badges, ["never", "< 1 %", "50 %", "> 99 %", ""]);
+});
+
+test("a coverage is painted only on the picture for which it was asked", () => {
+    const nodes = MACHINE.nodes.map(() => null);
+    const coverage = { traces: 1, simulated: 1, isStale: false, system: "", nodes };
+    assert.ok(isOf({ ...coverage, edges: MACHINE.edges.map(() => 1) }, MACHINE));
+    assert.ok(!isOf({ ...coverage, edges: [] }, MACHINE));
 });

@@ -26,29 +26,17 @@ FILE_METHOD = "as2fm/pictureFile"
 def register(context: Context) -> None:
     session = context.session
 
-    def asked(params: Any) -> tuple[Analysis, DiagramKind, Picture] | None:
-        kind = next((kind for kind in DiagramKind if kind.value == string(params, "kind")), None)
-        hidden = strings(params, "collapsed")
-        path = session.convert.path(document_uri(params))
-        analysis = session.moment().snapshot(path).analysis
-        picture = picture_of(kind, analysis, path) if kind else None
-        if kind is DiagramKind.TREE and picture is not None:
-            picture = collapsed(picture, hidden)
-        if kind is DiagramKind.ROS and picture is not None:
-            picture = around(matching(picture, optional_string(params, "matching")), optional_string(params, "around"))
-        return (analysis, kind, picture) if kind and picture else None
-
     @context.feature(METHOD)
     def picture(params: Any) -> dict[str, object] | None:
         """The diagram, drawn in each direction; null if the file has no diagram of this kind."""
-        shown = asked(params)
+        shown = asked_picture(session, params)
         return _converted(session, *shown) if shown else None
 
     @context.feature(FILE_METHOD)
     def picture_file(params: Any) -> dict[str, object] | None:
         """The text of an SVG file with the diagram, in the direction and the theme that the client shows. If the
         parameter `format` is `pdf`, also the PDF file, in base64."""
-        shown = asked(params)
+        shown = asked_picture(session, params)
         if shown is None:
             return None
         _, kind, diagram = shown
@@ -59,6 +47,20 @@ def register(context: Context) -> None:
         if getattr(params, "format", None) != "pdf":
             return {"svg": svg}
         return {"svg": svg, "pdf": b64encode(pdf_file(svg)).decode("ascii")}
+
+
+def asked_picture(session: Session, params: Any) -> tuple[Analysis, DiagramKind, Picture] | None:
+    """The picture that a request names; `None` if the file has none of this kind."""
+    kind = next((kind for kind in DiagramKind if kind.value == string(params, "kind")), None)
+    hidden = strings(params, "collapsed")
+    path = session.convert.path(document_uri(params))
+    analysis = session.moment().snapshot(path).analysis
+    picture = picture_of(kind, analysis, path) if kind else None
+    if kind is DiagramKind.TREE and picture is not None:
+        picture = collapsed(picture, hidden)
+    if kind is DiagramKind.ROS and picture is not None:
+        picture = around(matching(picture, optional_string(params, "matching")), optional_string(params, "around"))
+    return (analysis, kind, picture) if kind and picture else None
 
 
 def _place(session: Session, analysis: Analysis, location: Location | None) -> dict[str, object] | None:

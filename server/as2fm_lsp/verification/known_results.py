@@ -60,18 +60,23 @@ def expected_now(snapshot: Snapshot, system: str, client_settings: object) -> Ex
 
 
 class KnownResults(Record):
-    """The known results: system -> property -> result. `changes` is the number of results that were added."""
+    """The known results: system -> property -> result; the system with the latest result is the last one. `changes` is
+    the number of results that were added."""
 
     changes: int = 0
     _known: dict[str, dict[str, KnownResult]] = field(default_factory=dict)
     _target: tuple[Texts, VerificationTarget] | None = None
 
     def put(self, system: str, known: KnownResult) -> None:
-        self._known.setdefault(system, {})[known.result.name] = known
+        self._known[system] = {**self._known.pop(system, {}), known.result.name: known}
         self.changes += 1
 
     def get(self, system: str, name: str) -> KnownResult | None:
         return self._known.get(system, {}).get(name)
+
+    def of(self, system: str) -> tuple[KnownResult, ...]:
+        """The results of a system."""
+        return tuple(self._known.get(system, {}).values())
 
     def is_stale(self, known: KnownResult, analysis: Analysis, system: str) -> bool:
         return known.texts != fingerprint(analysis, system)

@@ -213,6 +213,10 @@ class Recorder:
         """The values of the variables in the current state."""
         return self._steps.values(storages)
 
+    def integer(self, storage: Storage) -> int:
+        """The value of a variable with an integer in the current state."""
+        return self._kernel.integer(storage.base)
+
     def initial(self, storages: Sequence[Storage], trace: int) -> list[Plain]:
         """The initial values of the variables in a trace."""
         self._kernel.begin(self.seed, trace, self.scheduler)
@@ -229,35 +233,39 @@ class Recorder:
 
     def walk(self, recording: Recording) -> Iterator[TraceStep]:
         """The steps of a trace. During the iteration, `values` returns the values after each step."""
-        kernel, done = self._kernel, 0
-        verdict = kernel.begin(self.seed, recording.trace, self.scheduler)
-        self._steps.start()
-        checks = frozenset(limits(self.max_steps))
-        while verdict == UNKNOWN and done < self.max_steps:
-            verdict = kernel.advance(done + 1)
-            if verdict == FAULTY:
-                break
-            if kernel.outcome()[0] == done:
-                break
-            done += 1
-            yield self._steps.read(done)
-            if done in checks:
-                verdict = self._checked(verdict, recording)
-        self._finish(recording, verdict)
+        for number in self._run(recording):
+            if number == 0:
+                self._steps.start()
+            else:
+                yield self._steps.read(number)
 
     def follow(self, recording: Recording, storages: Sequence[Storage]) -> Iterator[list[float]]:
         """The values of scalar variables at the start of a trace and after each step. It is much faster than `walk`."""
+        kernel = self._kernel
+        places = [(storage.kind == REAL, storage.base) for storage in storages]
+        for _ in self._run(recording):
+            yield [kernel.real(base) if is_real else float(kernel.integer(base)) for is_real, base in places]
+
+    def taken(self, recording: Recording) -> Iterator[tuple[int, Sequence[tuple[int, int]]]]:
+        """What is taken in each step of a trace: the index of the synchronisation in `Legend.vectors`, and for each
+        instance that takes part, its number and the index in `Legend.ways`. It is much faster than `walk`."""
+        kernel = self._kernel
+        for number in self._run(recording):
+            if number > 0:
+                yield kernel.vector, kernel.taken()
+
+    def _run(self, recording: Recording) -> Iterator[int]:
+        """Simulate a trace: 0 at its start, then the number of each step that was taken."""
         kernel, done = self._kernel, 0
         verdict = kernel.begin(self.seed, recording.trace, self.scheduler)
-        places = [(storage.kind == REAL, storage.base) for storage in storages]
         checks = frozenset(limits(self.max_steps))
-        yield [kernel.real(base) if is_real else float(kernel.integer(base)) for is_real, base in places]
+        yield 0
         while verdict == UNKNOWN and done < self.max_steps:
             verdict = kernel.advance(done + 1)
             if verdict == FAULTY or kernel.outcome()[0] == done:
                 break
             done += 1
-            yield [kernel.real(base) if is_real else float(kernel.integer(base)) for is_real, base in places]
+            yield done
             if done in checks:
                 verdict = self._checked(verdict, recording)
         self._finish(recording, verdict)

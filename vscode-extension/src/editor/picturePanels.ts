@@ -112,6 +112,11 @@ export class PicturePanels implements vscode.Disposable {
         for (const disposable of [...this.subscriptions, this.verified, ...this.panels.values()]) disposable.dispose();
     }
 
+    /** Show the coverage of new results in the pictures that show coverage. */
+    refreshCoverage(): void {
+        for (const source of this.sources) void source.showCoverage();
+    }
+
     private refreshSoon(): void {
         clearTimeout(this.timer);
         this.timer = setTimeout(() => {

@@ -18,6 +18,7 @@ import { WHOLE } from "../pictures/contract";
 import { marked } from "../pictures/breakpoints";
 import { partAt } from "../pictures/partAt";
 import {
+    coverage as coverageRequest,
     mocks as mocksRequest,
     pictureFile,
     picture as pictureRequest,
@@ -25,6 +26,7 @@ import {
     VERIFY,
     type Highlight,
     type Mocks,
+    type PictureParams,
 } from "../protocol";
 import { breakpoints, toggle } from "./breakpoints";
 import type { LanguageServer } from "./server";
@@ -64,6 +66,7 @@ export class PictureSource {
     /** The changes of mocks that are not made yet, by their patterns. */
     private readonly changes = new Map<string, SetMock>();
     private isChanging = false;
+    private showsCoverage = false;
     onVerified: () => void = () => undefined;
     /** The ids of the nodes whose descendants are hidden, and the file that they belong to. */
     private readonly collapsed = new Set<string>();
@@ -93,12 +96,7 @@ export class PictureSource {
             this.part = WHOLE;
         }
         this.chosenIn = uri;
-        const picture = await this.server.ask(pictureRequest, {
-            kind: this.kind,
-            textDocument: { uri },
-            collapsed: [...this.collapsed],
-            ...this.part,
-        });
+        const picture = await this.server.ask(pictureRequest, this.request(uri));
         if (asked !== this.asked || picture === undefined) return;
         this.picture = picture ?? undefined;
         const center = picture?.nodes.find(({ id }) => id === this.part.around)?.label;
@@ -108,7 +106,19 @@ export class PictureSource {
         this.here = this.partAtAnyCaret();
         this.shownUri = this.asServerSays(this.uri);
         this.draw();
-        await this.showMocks();
+        await Promise.all([this.showMocks(), this.showCoverage()]);
+    }
+
+    private request(uri: string): PictureParams {
+        return { kind: this.kind, textDocument: { uri }, collapsed: [...this.collapsed], ...this.part };
+    }
+
+    /** Show what the traces of the last verification have executed, if the user wants to see it. */
+    async showCoverage(): Promise<void> {
+        if (!this.showsCoverage || !this.uri) return;
+        const asked = this.asked;
+        const coverage = await this.server.ask(coverageRequest, this.request(this.uri.toString()));
+        if (asked === this.asked && coverage !== undefined) this.post({ type: "coverage", coverage });
     }
 
     /** Show the mocks of the tree. */
@@ -295,6 +305,10 @@ export class PictureSource {
             case "verify":
                 await this.verify();
                 break;
+            case "coverage":
+                this.showsCoverage = message.shows;
+                await this.showCoverage();
+                break;
             case "breakpoint":
                 toggle(message.breakpoint);
                 break;
@@ -313,10 +327,8 @@ export class PictureSource {
     /** Request the file from the server. The view converts it to PNG, the server to PDF. */
     private async save({ format, direction, theme }: Extract<FromView, { type: "save" }>): Promise<void> {
         if (!this.uri) return;
-        const textDocument = { uri: this.uri.toString() };
-        const collapsed = [...this.collapsed];
-        const options = { direction, theme, format, collapsed, ...this.part };
-        const file = await this.server.ask(pictureFile, { kind: this.kind, textDocument, ...options });
+        const options = { ...this.request(this.uri.toString()), direction, theme, format };
+        const file = await this.server.ask(pictureFile, options);
         if (!file) return;
         if (format === "png") this.post({ type: "rasterize", svg: file.svg });
         else if (file.pdf !== undefined) await this.write("pdf", Buffer.from(file.pdf, "base64"));
@@ -397,6 +409,21 @@ function words(): Words {
         verify: vscode.l10n.t("Verify"),
         unverified: vscode.l10n.t("Not verified"),
         verifying: vscode.l10n.t("Verifying…"),
+        coverage: {
+            show: vscode.l10n.t("Coverage"),
+            hint: vscode.l10n.t("Show what the traces of the last verification have executed"),
+            all: vscode.l10n.t("in all {0} traces"),
+            some: vscode.l10n.t("in {0} of {1} traces"),
+            none: vscode.l10n.t("in none of {0} traces"),
+            never: vscode.l10n.t("never"),
+            part: vscode.l10n.t("Coverage by the first {0} of {1} traces of {2}"),
+            inAll: vscode.l10n.t("in all"),
+            inSome: vscode.l10n.t("in some"),
+            inNone: vscode.l10n.t("in none"),
+            notVerified: vscode.l10n.t("No property has been verified by traces yet."),
+            stale: vscode.l10n.t("The files have changed since the verification. Verify again to see the coverage."),
+            returned: vscode.l10n.t("returned {0}"),
+        },
         kinds: {
             state: vscode.l10n.t("state"),
             choice: vscode.l10n.t("random choice"),

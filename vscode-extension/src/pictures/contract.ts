@@ -203,6 +203,48 @@ export interface Words {
     readonly verify: string;
     readonly unverified: string;
     readonly verifying: string;
+    readonly coverage: CoverageWords;
+}
+
+/** The texts about coverage; `{0}` and `{1}` are numbers of traces. */
+export interface CoverageWords {
+    readonly show: string;
+    readonly hint: string;
+    readonly all: string;
+    readonly some: string;
+    readonly none: string;
+    /** A short form of `none`, for the picture. */
+    readonly never: string;
+    /** Which traces were read: their number, that of the verification, and the file. */
+    readonly part: string;
+    /** The entries of the legend. */
+    readonly inAll: string;
+    readonly inSome: string;
+    readonly inNone: string;
+    readonly notVerified: string;
+    readonly stale: string;
+    readonly returned: string;
+}
+
+/** A state or a node of a tree: the traces that have entered or ticked it, and those that saw it return a status. */
+export interface CoveredNode {
+    readonly traces: number;
+    readonly statuses: Readonly<Record<string, number>>;
+}
+
+/**
+ * What the traces of the last verification have executed of a picture. `nodes` and `edges` belong to those of the
+ * picture, in their order; null for a part that is not executed. They are empty if the files have changed since then.
+ */
+export interface Coverage {
+    /** The traces that were read; the verification has `simulated` traces. */
+    readonly traces: number;
+    readonly simulated: number;
+    readonly isStale: boolean;
+    /** The URI of the system or tree that was verified. */
+    readonly system: string;
+    readonly nodes: readonly (CoveredNode | null)[];
+    readonly edges: readonly (number | null)[];
 }
 
 /** Fields for a mock of leaves. `nodes` are the ids of the leaves; `milliseconds` is null if it has no duration. */
@@ -252,6 +294,8 @@ export type ToView =
     | { readonly type: "rasterize"; readonly svg: string }
     /** The mocks of the shown tree; null if it belongs to a system. `opens` shows the fields. */
     | { readonly type: "mocks"; readonly mocks: MockFields | null; readonly busy: boolean; readonly opens: boolean }
+    /** The coverage of the shown picture; null if nothing was verified. */
+    | { readonly type: "coverage"; readonly coverage: Coverage | null }
     | { readonly type: "none"; readonly reason: string };
 
 export type FromView =
@@ -269,6 +313,8 @@ export type FromView =
           readonly milliseconds: number | null;
       }
     | { readonly type: "verify" }
+    /** Whether the coverage of the last verification is shown. */
+    | { readonly type: "coverage"; readonly shows: boolean }
     /** Set a breakpoint on a part, or remove it. */
     | { readonly type: "breakpoint"; readonly breakpoint: Breakpoint }
     /** The answer to `rasterize`: the PNG file in base64. */

@@ -5,6 +5,7 @@ import {
     DIRECTIONS,
     type DrawnNode,
     type Drawing,
+    type Coverage,
     type FromView,
     type Activity,
     WHOLE,
@@ -36,6 +37,7 @@ import {
     type Sight,
 } from "./find";
 import { breakpointOf } from "../breakpoints";
+import { isOf, paint, shareOf, summaryOf } from "./coverage";
 import { Minimap } from "./minimap";
 import { MockPane } from "./mocks";
 import { menuOf } from "./menu";
@@ -68,6 +70,9 @@ export class PictureView {
     });
     private readonly mocksButton = document.createElement("button");
     private readonly partButton = document.createElement("button");
+    private readonly coverageButton = document.createElement("button");
+    private showsCoverage = false;
+    private coverage: Coverage | undefined;
     private part = WHOLE;
     private words: Words | undefined;
     private picture: Picture | undefined;
@@ -152,6 +157,9 @@ export class PictureView {
                 this.mocksButton.hidden = message.mocks === null;
                 this.showMocksState();
                 break;
+            case "coverage":
+                this.receiveCoverage(message.coverage);
+                break;
             case "none":
                 this.clear();
                 this.notice.textContent = message.reason;
@@ -181,6 +189,7 @@ export class PictureView {
         this.mark(here);
         this.highlight(highlighted);
         this.offerPart();
+        this.coverageButton.hidden = picture.kind === "ros";
         if (!isOther && label !== undefined) this.select(picture.nodes.findIndex((node) => node.label === label));
         this.post({ type: "drawn", nodes: picture.nodes.length, edges: picture.edges.length });
     }
@@ -211,7 +220,7 @@ export class PictureView {
         this.svg.append(this.scene.root);
         this.minimap.show(picture, drawing);
         this.svg.setAttribute("aria-label", `${picture.title}. ${words.help}`);
-        this.legend.replaceChildren(...legendOf(picture, words).map(entry));
+        this.showCoverage(picture, drawing, words);
         this.look(this.sight);
         this.showActivity(this.activity);
         this.showBreakpoints();
@@ -229,12 +238,17 @@ export class PictureView {
         const best = this.best();
         if (best !== this.shown) {
             this.shown = best;
-            this.draw();
-            for (const group of this.parts(this.here)) group.classList.add("here");
-            this.highlight(this.highlighted);
-            this.scene?.nodes.get(this.selected)?.classList.add("selected");
+            this.drawAgain();
         }
         this.fitLegibly();
+    }
+
+    /** Draw the same picture, with the same marks. */
+    private drawAgain(): void {
+        this.draw();
+        for (const group of this.parts(this.here)) group.classList.add("here");
+        this.highlight(this.highlighted);
+        this.scene?.nodes.get(this.selected)?.classList.add("selected");
     }
 
     private clear(): void {
@@ -384,6 +398,34 @@ export class PictureView {
             node.classList.toggle("mocked", ids.includes(picture?.nodes[index]?.id ?? ""));
         const first = picture?.nodes.findIndex(({ id }) => id === ids[0]) ?? -1;
         if (first >= 0) this.reveal(first);
+    }
+
+    private toggleCoverage(): void {
+        this.showsCoverage = !this.showsCoverage;
+        this.coverageButton.setAttribute("aria-pressed", String(this.showsCoverage));
+        this.notice.textContent = "";
+        this.coverage = undefined;
+        this.post({ type: "coverage", shows: this.showsCoverage });
+        if (!this.showsCoverage) this.drawAgain();
+    }
+
+    private receiveCoverage(coverage: Coverage | null): void {
+        const { words } = this;
+        if (!words || !this.showsCoverage) return;
+        const before = this.coverage;
+        this.coverage = coverage && !coverage.isStale ? coverage : undefined;
+        if (coverage === null) this.notice.textContent = words.coverage.notVerified;
+        else this.notice.textContent = coverage.isStale ? words.coverage.stale : "";
+        if (JSON.stringify(before) !== JSON.stringify(this.coverage)) this.drawAgain();
+    }
+
+    /** Paint the coverage, if it is shown, and fill the legend. */
+    private showCoverage(picture: Picture, drawing: Drawing, words: Words): void {
+        this.legend.replaceChildren(...legendOf(picture, words).map(entry));
+        const { coverage, scene } = this;
+        if (!coverage || !scene || !isOf(coverage, picture)) return;
+        paint(scene, drawing, coverage, words.coverage);
+        this.legend.append(...coverageLegend(coverage, words));
     }
 
     private showMocksState(): void {
@@ -606,6 +648,8 @@ export class PictureView {
             } else return false;
             return true;
         }
+        // They press the button that has the focus.
+        if ((key === "Enter" || key === " ") && this.bar.contains(document.activeElement)) return false;
         if (key === "/" || (key === "f" && (ctrlKey || metaKey))) this.input.focus();
         else if (ctrlKey || metaKey) return false;
         else if (isArrow(key)) this.select(neighbour(this.drawing?.nodes ?? [], this.selected, key) ?? this.selected);
@@ -648,10 +692,18 @@ export class PictureView {
         this.partButton.addEventListener("click", () => {
             this.togglePart();
         });
+        const { coverageButton } = this;
+        coverageButton.textContent = words.coverage.show;
+        coverageButton.title = words.coverage.hint;
+        coverageButton.setAttribute("aria-pressed", String(this.showsCoverage));
+        coverageButton.addEventListener("click", () => {
+            this.toggleCoverage();
+        });
         this.bar.replaceChildren(
             this.input,
             this.partButton,
             mocksButton,
+            coverageButton,
             button("+", words.zoomIn, () => {
                 this.zoom(ZOOM);
             }),
@@ -689,6 +741,30 @@ function isMotionReduced(): boolean {
         document.body.classList.contains("vscode-reduce-motion") ||
         window.matchMedia("(prefers-reduced-motion: reduce)").matches
     );
+}
+
+/** What was read, and the shares of traces that occur in the picture. */
+function coverageLegend(coverage: Coverage, { coverage: words }: Words): HTMLElement[] {
+    const counts = [...coverage.nodes.map((node) => node?.traces), ...coverage.edges];
+    const shares = new Set(
+        counts.flatMap((traces) => (typeof traces === "number" ? shareOf(traces, coverage.traces) : [])),
+    );
+    const texts = { all: words.inAll, some: words.inSome, none: words.inNone };
+    const heading = document.createElement("span");
+    heading.className = "cover-summary";
+    heading.textContent = `${summaryOf(coverage, words)}:`;
+    const entries = (["all", "some", "none"] as const)
+        .filter((share) => shares.has(share))
+        .map((share) => {
+            const made = document.createElement("span");
+            const sample = element("svg", { width: 24, height: 10, class: "scene", "aria-hidden": "true" });
+            const group = element("g", { "data-cover": share });
+            group.append(element("rect", { x: 1, y: 1, width: 22, height: 8, rx: 2, class: "card" }));
+            sample.append(group);
+            made.append(sample, texts[share]);
+            return made;
+        });
+    return [heading, ...entries];
 }
 
 function entry({ tone, text, isLine }: LegendEntry): HTMLElement {
