@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 import os
 import resource
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import stormpy
 from fixed_point import NotExactError, in_fixed_point
@@ -99,20 +99,28 @@ def read(model: Model) -> stormpy.JaniModel:
 def exact(model: Model, name: str) -> Exact:
     """The probability of one property, computed by Storm's sparse engine.
 
+    Both probabilities are computed from one state space: what decides the property does not depend on the scheduler.
+    Other properties are left out, because then Storm need not go on where this one is decided, without which nothing
+    would be finite.
+
     Raises:
         NotExactError: the model has real variables that integers cannot represent (`fixed_point`).
     """
-    (least, states), (greatest, _) = (_checked(model, name, operator) for operator in ("Pmin", "Pmax"))
-    return Exact(least, greatest, states)
-
-
-def _checked(model: Model, name: str, operator: str) -> tuple[float, int]:
-    """One property at a time: then Storm need not go on where it is decided, without which nothing would be finite."""
     document = json.loads("".join(write(model)))
     (property_,) = (p for p in document["properties"] if p["name"] == name)
-    property_["expression"]["values"]["op"] = operator
-    document["properties"] = [property_]
+    document["properties"] = [_of_schedulers(property_, operator) for operator in ("Pmin", "Pmax")]
     parsed, properties = stormpy.parse_jani_model_from_string(json.dumps(in_fixed_point(document)))
-    built = stormpy.build_model(parsed, properties)
-    result = stormpy.model_checking(built, properties[0], only_initial_states=True)
-    return result.get_value(built.initial_states[0]), built.nr_states
+    built = stormpy.build_model(parsed, properties[:1])
+    results = (stormpy.model_checking(built, property_, only_initial_states=True) for property_ in properties)
+    least, greatest = (result.get_value(built.initial_states[0]) for result in results)
+    return Exact(least, greatest, built.nr_states)
+
+
+def _of_schedulers(property_: dict[str, Any], operator: str) -> dict[str, Any]:
+    """A property with another operator, Pmin or Pmax, which is its name as well."""
+    expression = property_["expression"]
+    return {
+        **property_,
+        "name": operator,
+        "expression": {**expression, "values": {**expression["values"], "op": operator}},
+    }
