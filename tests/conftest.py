@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import gc
+import itertools
 import os
+import re
 import sys
 import threading
 from functools import cache
@@ -27,6 +29,19 @@ gc.set_threshold(50_000)
 
 # The progress of a command that waits for a busy machine is not part of its expected output.
 status_line.LOG_DELAY_S = threading.TIMEOUT_MAX / 2
+
+
+_numbers = itertools.count()
+
+
+@pytest.fixture
+def tmp_path(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """As the fixture of pytest, but without a link to the last folder with the same name: most of the time that the
+    fixture takes goes into this link, which nobody uses."""
+    name = re.sub(r"\W", "_", request.node.name)[:30]
+    path = tmp_path_factory.getbasetemp() / f"{name}{next(_numbers)}"
+    path.mkdir(mode=0o700)
+    return path
 
 
 def pytest_ignore_collect(collection_path: Path) -> bool | None:
