@@ -12,8 +12,8 @@ from pathlib import Path
 
 import conformance
 from fixture import read_cases, read_marks, split_files
-from roaml import api
 from roaml.project.settings import Settings
+from roaml.project.workspace import Workspace
 from roaml.text import decode
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -55,8 +55,11 @@ def interfaces() -> dict[str, str]:
 
 
 def _on_disk(main: Path, ros_paths: tuple[str, ...]) -> Model:
-    result = api.check([str(main)], ros_paths, Settings())
-    texts = {path: result.source(path).text for path in result.files}
+    settings = Settings(ros_paths=ros_paths)
+    analysis = Workspace((), settings, [str(main)], packages=[str(main.parent)]).snapshot().analysis
+    files = (*analysis.files_of(str(main)), *analysis.interface_files_of(str(main)))
+    sources = {path: analysis.source(path) for path in files}
+    texts = {path: source.text for path, source in sources.items() if source is not None}
     return Model(f"{main.parent.name}/{main.name}", str(main), texts, ros_paths)
 
 
