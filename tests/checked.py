@@ -14,9 +14,14 @@ from roaml.rules import BY_CODE
 
 def check_text(folder: Path, text: str, settings: Settings | None = None) -> tuple[list[Diagnostic], list[Mark]]:
     """Write the files of `text` into `folder` and check the folder. Return the actual and the expected findings."""
-    marks = write_files(folder, text)
-    result = api.check([str(folder)], settings=settings or Settings())
+    result, marks = checked(folder, text, settings)
     return list(result.diagnostics), marks
+
+
+def checked(folder: Path, text: str, settings: Settings | None = None) -> tuple[api.CheckResult, list[Mark]]:
+    """As `check_text`, with everything that was found out about the files."""
+    marks = write_files(folder, text)
+    return api.check([str(folder)], settings=settings or Settings()), marks
 
 
 def of_rule(diagnostics: list[Diagnostic], code: str) -> list[Diagnostic]:

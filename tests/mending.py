@@ -6,7 +6,7 @@ from __future__ import annotations
 import itertools
 import os
 from collections import Counter
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from pathlib import Path
 
 from roaml.diagnostics import Diagnostic, Severity
@@ -45,18 +45,19 @@ def offered(snapshot: Snapshot, code: str | None = None) -> Iterator[tuple[Diagn
                 yield diagnostic, action
 
 
-def broken_promises(workspace: Workspace, code: str | None = None, *, may_add: Collection[str] = ()) -> Iterator[str]:
-    """The invariants that the fixes of all findings in a folder, or those of one rule, violate.
+def broken_promises(
+    snapshot: Snapshot, fixes: Iterable[tuple[Diagnostic, CodeAction]], *, may_add: Collection[str] = ()
+) -> Iterator[str]:
+    """The invariants that fixes violate.
 
     Args:
-        workspace: the folder.
-        code: the rule; all rules if it is not given.
+        snapshot: the folder.
+        fixes: what is `offered` in it.
         may_add: the codes of errors that a preferred fix may add. If there are several errors at once, a fix of one
             may reveal another.
     """
-    snapshot = workspace.snapshot()
     before = found(snapshot)
-    for diagnostic, action in offered(snapshot, code):
+    for diagnostic, action in fixes:
         reason = _reason(snapshot, before, diagnostic, action, may_add)
         if reason:
             name = os.path.basename(diagnostic.path)

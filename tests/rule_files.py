@@ -30,6 +30,11 @@ def section(code: str, title: str) -> str:
     return match[1].strip()
 
 
+def has_fix(code: str) -> bool:
+    """Whether the document of a rule describes a fix."""
+    return "\n## Fix\n" in documents()[code]
+
+
 def examples(code: str, title: str) -> list[Case]:
     """The examples of a document in its section *Bad* or *Good*."""
     return [Case(code, f"{title} {number}", text) for number, text in enumerate(_BLOCK.findall(section(code, title)))]

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import conformance
-from mending import broken_promises, found, workspace_of
+from mending import broken_promises, found, offered, workspace_of
 from roaml.diagnostics import Severity
 from roaml.text import apply_edits
 
@@ -18,7 +18,8 @@ MISTAKES = conformance.mistakes()
 
 @pytest.mark.parametrize("mistake", MISTAKES, ids=lambda mistake: mistake.id)
 def test_fixes(mistake: conformance.Mistake) -> None:
-    assert not list(broken_promises(workspace_of(mistake.folder)))
+    snapshot = workspace_of(mistake.folder).snapshot()
+    assert not list(broken_promises(snapshot, offered(snapshot)))
 
 
 SPELLING = ["01_misspelled_exec_tag", "02_misspelled_decl_tag"]

@@ -5,7 +5,8 @@
   are expected only of rules that report nothing else. What other rules report does not matter.
 - The marks of a case in `one_report` are all errors and warnings of all rules: one mistake gives one report, and what
   only follows from it is not reported.
-- Every fix removes its finding. A preferred fix adds no error that the case does not declare (`fix adds: CODE`).
+- Every fix removes its finding. A preferred fix adds no error that the case does not declare (`fix adds: CODE`). The
+  document of a rule with a fix has a section Fix.
 
 `fixture` describes the format.
 """
@@ -17,8 +18,8 @@ from types import ModuleType
 
 import pytest
 
-from fixture import Case, read_cases, write_files
-from rule_files import CASES_FOLDER, RULES_FOLDER, cases_of_all_rules, cases_of_rules, documents
+from fixture import Case, read_cases
+from rule_files import CASES_FOLDER, RULES_FOLDER, cases_of_all_rules, cases_of_rules, has_fix
 
 
 def parameters(cases: tuple[Case, ...]) -> list[object]:
@@ -30,25 +31,23 @@ OF_ALL_RULES = pytest.mark.parametrize("case", parameters(cases_of_all_rules()))
 
 
 @OF_RULES
-def test_findings_of_the_rule(case: Case, checked: ModuleType, tmp_path: Path) -> None:
-    diagnostics, marks = checked.check_text(tmp_path, case.text)
-    assert not [d.message for d in diagnostics if d.code == "internal-error"]
-    reported = checked.of_rule(diagnostics, case.subject)
+def test_case_of_a_rule(case: Case, checked: ModuleType, mending: ModuleType, tmp_path: Path) -> None:
+    result, marks = checked.checked(tmp_path, case.text)
+    assert not [d.message for d in result.diagnostics if d.code == "internal-error"]
+    reported = checked.of_rule(result.diagnostics, case.subject)
     assert sorted(checked.as_mark(d, tmp_path) for d in reported) == sorted(marks)
+    fixes = list(mending.offered(result.snapshot, case.subject))
+    assert not fixes or has_fix(case.subject)
+    assert not list(mending.broken_promises(result.snapshot, fixes, may_add=case.fix_adds))
 
 
 @OF_ALL_RULES
-def test_findings_of_all_rules(case: Case, checked: ModuleType, tmp_path: Path) -> None:
-    diagnostics, marks = checked.check_text(tmp_path, case.text)
-    reported = [d for d in diagnostics if d.severity >= checked.Severity.WARNING]
+def test_case_of_all_rules(case: Case, checked: ModuleType, mending: ModuleType, tmp_path: Path) -> None:
+    result, marks = checked.checked(tmp_path, case.text)
+    reported = [d for d in result.diagnostics if d.severity >= checked.Severity.WARNING]
     assert sorted(checked.as_mark(d, tmp_path) for d in reported) == sorted(marks)
-
-
-@pytest.mark.parametrize("case", parameters((*cases_of_rules(), *cases_of_all_rules())))
-def test_fixes(case: Case, mending: ModuleType, tmp_path: Path) -> None:
-    write_files(tmp_path, case.text)
-    code = case.subject if case.subject in documents() else None
-    assert not list(mending.broken_promises(mending.workspace_of(tmp_path), code, may_add=case.fix_adds))
+    fixes = mending.offered(result.snapshot)
+    assert not list(mending.broken_promises(result.snapshot, fixes, may_add=case.fix_adds))
 
 
 @pytest.mark.parametrize("path", sorted(CASES_FOLDER.glob("*/*.txt")), ids=lambda path: path.stem)
