@@ -42,6 +42,7 @@ from roaml.model.syntax import Expression
 from roaml.model.syntax import Name as WrittenName
 from roaml.model.system import System
 from roaml.model.timing import periods
+from roaml.model.values.domain import ValueSet
 from roaml.observers.properties import (
     CLOSE,
     LEFT,
@@ -58,7 +59,7 @@ from roaml.observers.properties import (
 from roaml.observers.properties import (
     walk as walk_formula,
 )
-from roaml.record import Record
+from roaml.record import Record, field
 from roaml.suggest import close_names
 from roaml.text import Span
 from roaml.xml_syntax import Element
@@ -85,12 +86,18 @@ class LinkedProperty(Record, frozen=True):
 
 
 class LinkedFile(Record, frozen=True, eq=False):
-    """A linked file; `properties` are those without problems."""
+    """A linked file.
+
+    Attributes:
+        properties: the properties without problems.
+        values: variable of a port -> the values that it can have, as far as they are known.
+    """
 
     file: PropertyFile
     ports: tuple[LinkedPort, ...]
     properties: tuple[LinkedProperty, ...]
     problems: tuple[Problem, ...]
+    values: Mapping[str, ValueSet] = field(default_factory=dict)
 
 
 def clock_step(system: System) -> int | None:

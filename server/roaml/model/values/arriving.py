@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What can arrive at a machine: the values that all senders of the system send, or those of the types."""
+"""What can arrive at a machine, and at the ports of a property file: the values that all senders of the system send, or
+those of the types."""
 
 from __future__ import annotations
 
@@ -11,13 +12,17 @@ from roaml.expr.types import leaves
 from roaml.interfaces.registry import NotFound
 from roaml.model.expand import PortConstant
 from roaml.model.machine import Declaration, Machine, Port
+from roaml.model.property_file import ObservedPart, PortKind, PortVariableKind
+from roaml.model.property_links import LinkedFile
+from roaml.model.property_ports import LinkedPort
 from roaml.model.ros import InterfaceType
-from roaml.model.system import ChannelEndpoint, System, SystemAutomaton
+from roaml.model.system import Channel, ChannelEndpoint, System, SystemAutomaton
 from roaml.model.value_types import INTERFACE_KINDS, section_of
 from roaml.model.values.analyse import Arriving, DataChannel, Fields, Sent, merged, of_type
 from roaml.model.values.domain import ANYTHING, ValueSet, exactly, joined
 from roaml.model.values.evaluate import literal
 from roaml.roles import ProtocolPart, SymbolKind
+from roaml.scxml.names import sanitise
 from roaml.text import Decoded
 
 FindInterface: TypeAlias = "Callable[[str, str], InterfaceType | NotFound]"
@@ -31,6 +36,13 @@ _RECEIVED: Mapping[SymbolKind, tuple[ProtocolPart, ...]] = {
 }
 _FROM_USERS = (ProtocolPart.REQUEST, ProtocolPart.GOAL)
 """The parts that clients send; servers and publishers send the others."""
+_OBSERVED_AT_SOURCES = {
+    ObservedPart.PUBLISH: ProtocolPart.MESSAGE,
+    ObservedPart.RESPONSE: ProtocolPart.RESPONSE,
+    ObservedPart.FEEDBACK: ProtocolPart.FEEDBACK,
+    ObservedPart.RESULT: ProtocolPart.RESULT,
+}
+_OBSERVED_AT_USERS = {ObservedPart.REQUEST: ProtocolPart.REQUEST, ObservedPart.GOAL_REQUEST: ProtocolPart.GOAL}
 
 
 def arriving_by_type(machine: Machine, interface: FindInterface) -> Arriving:
@@ -63,6 +75,27 @@ def arriving(
             if values != ANYTHING:
                 result[DataChannel(ProtocolPart.BLACKBOARD, port.key.value)] = {"": values}
     return result
+
+
+def observed_values(file: LinkedFile, system: System, sent: Mapping[str, Sent | None]) -> dict[str, ValueSet]:
+    """Variable of a port -> the values that it can have. Variables about which nothing is known are left out.
+
+    Args:
+        sent: path of a machine of the complete `system` -> what it sends; `None` if this is not known.
+    """
+    known: dict[str, ValueSet] = {}
+    for port in file.ports:
+        messages = list(_messages(port, system))
+        for variable in port.variables:
+            initial, field = variable.written.initial, variable.written.field
+            if variable.kind is not PortVariableKind.STATE or not messages or field is None or initial is None:
+                continue
+            start = dict(literal("", initial.tree)).get("", ANYTHING)
+            values = [_sent(field.value, channel, sent.get(path)) for path, channel in messages]
+            possible = joined((start, *values))
+            if possible != ANYTHING:
+                known[variable.id] = possible
+    return known
 
 
 def _channels(machine: Machine) -> Iterator[tuple[Declaration, DataChannel]]:
@@ -121,3 +154,41 @@ def _constant(automaton: SystemAutomaton, port: Port) -> ValueSet:
         return exactly(value.text)
     tree, findings = parse(Decoded(value.text.strip(), 0))
     return dict(literal("", tree)).get("", ANYTHING) if not findings else ANYTHING
+
+
+# ------------------------------------------------------------- property files
+
+
+def _messages(port: LinkedPort, system: System) -> Iterator[tuple[str, DataChannel]]:
+    """The paths of the machines that send what a port observes, each with its channel."""
+    written = port.written
+    channel = _observed_channel(port, system)
+    if channel is None or written.part is None:
+        return
+    users = _OBSERVED_AT_USERS.get(written.part)
+    part = users or _OBSERVED_AT_SOURCES.get(written.part)
+    for endpoint in channel.users if users else channel.sources:
+        if part is not None and part in endpoint.use.sends:
+            yield endpoint.automaton.path, DataChannel(part, endpoint.use.handle)
+
+
+def _observed_channel(port: LinkedPort, system: System) -> Channel | None:
+    name = port.written.name
+    if name is None:
+        return None
+    match port.written.kind:
+        case PortKind.TOPIC:
+            return system.topics.get(sanitise(name.value))
+        case PortKind.SERVICE:
+            return system.services.get(name.value)
+        case PortKind.ACTION:
+            return system.actions.get(name.value)
+        case _:
+            return None
+
+
+def _sent(field: str, channel: DataChannel, messages: Sent | None) -> ValueSet:
+    if messages is None:
+        return ANYTHING
+    fields = messages.get(channel)
+    return joined(()) if fields is None else fields.get(field, ANYTHING)

@@ -247,7 +247,7 @@ class _Reader:
             case FileKind.PROPERTIES if self.system_path:
                 return (*parts, tuple(self.rooms.systems.names_before(self.path, self.system_path)))
             case FileKind.XML_PROPERTIES if self.system_path:
-                return (*parts, self.rooms.linking.linked_properties(self.path, self.system_path))
+                return (*parts, self.rooms.values.observed(self.path, self.system_path))
             case FileKind.STRUCTS | FileKind.JSON_STRUCTS:
                 structs = self.rooms.machines.structs(self.system_path)
                 return (*parts, structs.outlines, structs.complete)
@@ -302,7 +302,7 @@ class _Reader:
             case FileKind.STRUCTS | FileKind.JSON_STRUCTS:
                 return self._structs_context()
             case FileKind.XML_PROPERTIES:
-                return self.rooms.linking.linked_properties(self.path, self.system_path) if self.system_path else None
+                return self.rooms.values.observed(self.path, self.system_path) if self.system_path else None
             case FileKind.PROPERTIES:
                 return self._properties_context()
         return None

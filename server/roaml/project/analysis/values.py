@@ -12,14 +12,16 @@ from collections.abc import Mapping
 from typing import TypeAlias
 
 from roaml.model.kinds import FileKind
+from roaml.model.property_links import LinkedFile
 from roaml.model.system import System
 from roaml.model.values.analyse import Arriving, MachineValues, Sent, analyse
-from roaml.model.values.arriving import arriving, arriving_by_type
+from roaml.model.values.arriving import arriving, arriving_by_type, observed_values
 from roaml.model.values.remembered import Memory
 from roaml.project.analysis.linking import Linking
 from roaml.project.analysis.sources import SourceFiles
 from roaml.project.analysis.systems import Systems
 from roaml.project.ros_types import Interfaces
+from roaml.record import replace
 
 ROUNDS = 2
 
@@ -51,6 +53,21 @@ class ReachedValues:
     def local_values(self, path: str, system: str | None) -> MachineValues:
         """The values in the machine in the file `path` if everything may arrive that the types allow."""
         return self._analysed(path, system, (self._by_type(path),))
+
+    def observed(self, path: str, system: str) -> LinkedFile | None:
+        """The properties in the XML file `path`, linked to `system`, with the values of their variables."""
+        file, linked = self._linking.linked_properties(path, system), self._linking.system(system)
+        if file is None or linked is None or not linked.complete:
+            return file
+        machines = dict.fromkeys(path for path, _ in (*linked.nodes, *linked.plugins))
+        known = {path: self.values_in(path, system) for path in machines if self._sources.machine(path) is not None}
+        values = {path: values.sent if values.complete else None for path, values in known.items()}
+        of_file = observed_values(file, linked, values)
+
+        def compute() -> LinkedFile:
+            return replace(file, values=of_file)
+
+        return self._sources.memo.get("observed properties", (path, system), (file, of_file), compute)
 
     def _by_type(self, path: str) -> Arriving:
         machine = self._sources.machine(path)

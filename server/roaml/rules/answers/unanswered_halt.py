@@ -98,7 +98,8 @@ def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Syste
         if state.id is not None and state.id.value not in reported:
             message = (
                 f"the plugin is running in the state `{state.id.value}`, which does not handle a halt, unlike its "
-                "other states; if a node above it interrupts it, the tree waits for ever; add a `<bt_halt>`"
+                "other states; if a node above it interrupts it, the tree waits until the state is left; "
+                "add a `<bt_halt>`"
             )
             yield RULE.at(state.id.span, message, *_add_handler(context, state), severity=Severity.WARNING)
 

@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
-from roaml.model.behavior.explore import BehaviorStep, Fault, FaultKind
+from roaml.model.behavior.explore import Fault, FaultKind
 from roaml.model.machine import RosSend, Statement
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.answers import behaviors, place
+from roaml.rules.support.answers import behaviors
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -24,10 +24,10 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     and isinstance(fault.statement, RosSend)
                 ):
                     reported.add(fault.statement)
-                    yield _finding(context, step, fault, fault.statement)
+                    yield _finding(context, fault, fault.statement)
 
 
-def _finding(context: MachineContext, step: BehaviorStep, fault: Fault, statement: RosSend) -> Finding:
+def _finding(context: MachineContext, fault: Fault, statement: RosSend) -> Finding:
     thread = next(t for t in context.machine.threads if t.server and t.server.value == fault.duty.handle)
     assert statement.thread_id is not None
     numbers = "the only number is 0" if thread.count == 1 else f"the numbers are 0 to {(thread.count or 1) - 1}"
@@ -36,9 +36,8 @@ def _finding(context: MachineContext, step: BehaviorStep, fault: Fault, statemen
         "so no thread receives this start; use the number of an existing thread, or raise `n_threads`"
     )
     count = thread.element.get("n_threads")
-    related = [Related(statement.element.name_span, "started here")]
-    related += [Related(count.value_span, "the number of threads")] if count else []
-    return RULE.at(place(step.handler, statement), message, related=related)
+    related = [Related(count.value_span, "the number of threads")] if count else []
+    return RULE.at(statement.thread_id.span, message, related=related)
 
 
 RULE = Rule(

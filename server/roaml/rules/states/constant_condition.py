@@ -16,6 +16,7 @@ from roaml.interruption import checkpoint
 from roaml.model.behavior.explore import condition_facts
 from roaml.model.behavior.knowledge import NOTHING, ConditionFacts, variables_in
 from roaml.model.machine import Assign, Chart, Handler, If, State
+from roaml.model.property_links import LinkedFile
 from roaml.model.syntax import Expression
 from roaml.model.triggers import trigger
 from roaml.model.value_types import ValuePlace, ValueUse, find_handle
@@ -24,6 +25,7 @@ from roaml.model.values.arriving import arriving_by_type
 from roaml.model.values.describe import described, is_informative
 from roaml.model.values.domain import FALSE, MAX_LISTED, TRUE, Origin, ValueSet, exactly, joined
 from roaml.model.values.evaluate import compared, place_of
+from roaml.observers.properties import Pattern
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule, close_names
 from roaml.rules.support.assignments import is_unchanged
@@ -55,6 +57,58 @@ def check(context: MachineContext) -> Iterator[Finding]:
     yield from _beyond_type(context, findings.keys())
 
 
+def check_properties(file: LinkedFile) -> Iterator[Finding]:
+    """Report comparisons in conditions of properties whose result is the same for all values of the type, and the
+    comparisons with a number that is never sent, in conditions that are expected to hold at some time."""
+    types = {variable.id: variable.type for port in file.ports for variable in port.variables}
+    for written in file.file.properties:
+        pattern = written.pattern.value if written.pattern is not None else ""
+        for expression in written.expressions:
+            for node, name, number in () if expression.broken else _comparisons(expression.tree):
+                type_ = types.get(name)
+                if not isinstance(type_, Scalar) or type_.name not in INTEGER_RANGES:
+                    continue
+                result = _by_type(node, name, type_, number)
+                known = file.values.get(name)
+                if result is not None:
+                    yield RULE.at(node.span, result)
+                elif (
+                    pattern in _OCCURRING
+                    and node.operator is Operator.EQUAL
+                    and known is not None
+                    and known.only is not None
+                    and known.value is None
+                    and not known.includes(number)
+                ):
+                    sent = described(known, most=MAX_LISTED)
+                    yield RULE.at(node.span, f"this comparison is never true: the values of `{name}` are {sent}")
+
+
+_OCCURRING = frozenset(p.value for p in Pattern) - {Pattern.ABSENCE.value, Pattern.UNIVERSALITY.value}
+"""The patterns whose conditions are expected to hold at some time."""
+
+
+def _comparisons(tree: Expr) -> Iterator[tuple[Binary, str, float]]:
+    """The comparisons of a variable with a constant: each with the name of the variable and the constant."""
+    for node in walk(tree):
+        if isinstance(node, Binary) and node.operator.kind in (OperatorKind.EQUALITY, OperatorKind.ORDER):
+            for variable, other in ((node.left, node.right), (node.right, node.left)):
+                number = constant(other)
+                if isinstance(variable, Name) and number is not None:
+                    yield node, variable.name, number
+
+
+def _by_type(node: Binary, name: str, type_: Scalar, number: float) -> str | None:
+    """The message about a comparison that has the same result for all values of an integer type."""
+    is_left = isinstance(node.left, Name) and node.left.name == name
+    sides = (of_type(type_), exactly(number)) if is_left else (exactly(number), of_type(type_))
+    result = compared(node.operator, *sides)
+    if result.value is None:
+        return None
+    how = "always" if result == TRUE else "never"
+    return f"this comparison is {how} true: the values of `{type_}` are {described(of_type(type_))}"
+
+
 def _causes(context: MachineContext, findings: Mapping[Span, Finding]) -> Collection[Span]:
     """The conditions that are constant by themselves. Others are constant only because one of these is: a part that is
     never executed assigns no values."""
@@ -79,20 +133,12 @@ def _beyond_type(context: MachineContext, reported: Collection[Span]) -> Iterato
         if tree is None or value.use not in _CONDITIONS or value.value.span in reported:
             continue
         types = context.typed.variables.get(value.place.chart.scope, {})
-        for node in walk(tree):
-            if not isinstance(node, Binary) or node.operator.kind not in (OperatorKind.EQUALITY, OperatorKind.ORDER):
-                continue
-            for variable, other in ((node.left, node.right), (node.right, node.left)):
-                type_ = types.get(variable.name) if isinstance(variable, Name) else None
-                number = constant(other)
-                if not isinstance(type_, Scalar) or type_.name not in INTEGER_RANGES or number is None:
-                    continue
-                sides = [of_type(type_) if side is variable else exactly(number) for side in (node.left, node.right)]
-                result = compared(node.operator, *sides)
-                if result.value is not None:
-                    how = "always" if result == TRUE else "never"
-                    range_ = described(of_type(type_))
-                    yield RULE.at(node.span, f"this comparison is {how} true: the values of `{type_}` are {range_}")
+        for node, name, number in _comparisons(tree):
+            type_ = types.get(name)
+            if isinstance(type_, Scalar) and type_.name in INTEGER_RANGES:
+                message = _by_type(node, name, type_, number)
+                if message is not None:
+                    yield RULE.at(node.span, message)
 
 
 def _never_sent(context: MachineContext, reported: Collection[Span]) -> Iterator[Finding]:
@@ -328,5 +374,10 @@ def _why(values: ChartValues, tree: Expr) -> str:
 
 
 RULE = Rule(
-    "constant-condition", Severity.WARNING, "A condition is always true or never true.", machine=check, whole=True
+    "constant-condition",
+    Severity.WARNING,
+    "A condition is always true or never true.",
+    machine=check,
+    xml_properties=check_properties,
+    whole=True,
 )

@@ -453,22 +453,28 @@ def unhandled_states(
 
 def running_without(behavior: Behavior, missing: ProtocolPart) -> Iterator[State]:
     """The state of a plugin that handles only halts or only ticks while the node is running, although every other state
-    that handles one of both handles both; none if there are several such states. If it does not handle halts, no answer
-    ends it.
+    that handles one of both handles both; none if there are several such states. If it does not handle halts, an answer
+    may end it before a halt arrives, so at least two similar states must handle halts, or no answer ends it.
 
     Args:
         missing: what the state does not handle: `BT_TICK` or `BT_HALT`.
     """
     other = ProtocolPart.BT_HALT if missing is ProtocolPart.BT_TICK else ProtocolPart.BT_TICK
     handling = [state for state in behavior.chart.states if _handles(state, other)]
-    waiting: Iterable[int] = range(behavior.size)
-    if missing is ProtocolPart.BT_HALT:
-        waiting = untaken(behavior, HALT)  # an answer may end the state before a halt arrives
-    configurations = (behavior.configurations[number] for number in waiting)
-    running = {configuration.state for configuration in configurations if configuration.tree is Phase.RUNNING}
     without = [state for state in handling if not _handles(state, missing)]
+    running = _running(behavior, range(behavior.size))
+    initial = behavior.chart.initial.value if behavior.chart.initial else ""
+    alike = [s for s in handling if s.id and s.id.value in running - {initial} and _handles(s, missing)]
+    if missing is ProtocolPart.BT_HALT and len(alike) < 2:
+        running = _running(behavior, untaken(behavior, HALT))
     if len(without) == 1 and len(handling) > 1 and without[0].id is not None and without[0].id.value in running:
         yield without[0]
+
+
+def _running(behavior: Behavior, numbers: Iterable[int]) -> set[str]:
+    """The states of those of the configurations in which the node is running."""
+    configurations = (behavior.configurations[number] for number in numbers)
+    return {configuration.state for configuration in configurations if configuration.tree is Phase.RUNNING}
 
 
 def _handles(state: State, part: ProtocolPart) -> bool:

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Tag
 from roaml.edit.elements import removal, remove
-from roaml.expr.tree import Name, access_path, walk
+from roaml.expr.operators import OperatorKind
+from roaml.expr.tree import Binary, Call, Expr, Name, access_path, walk
 from roaml.model.machine import Assign, CallChild, Chart, Data, ReturnStatus
 from roaml.model.syntax import Expression, Value
 from roaml.rules.rule import MachineContext, Rule
@@ -29,9 +30,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 yield RULE.at(data.id.span, message, _remove(context, data), tags=(Tag.UNNECESSARY,))
             elif data.id.value in written:
                 message = f"the variable `{data.id.value}` is assigned, but its value is never read"
-                spans, counts = written[data.id.value]
+                spans, computed = written[data.id.value]
                 related = [Related(span, "assigned here") for span in spans]
-                yield RULE.at(data.id.span, message, related=related, severity=Severity.WARNING if counts else None)
+                yield RULE.at(data.id.span, message, related=related, severity=Severity.WARNING if computed else None)
 
 
 def _remove(context: MachineContext, data: Data) -> Fix:
@@ -45,7 +46,7 @@ def _remove(context: MachineContext, data: Data) -> Fix:
 
 def _only_written(values: list[Value], chart: Chart) -> dict[str, tuple[list[Span], bool]]:
     """Variable that is assigned and read nowhere else than in its own assignments -> the places of the assignments, and
-    whether one of them reads it, as in `n + 1`."""
+    whether one of them computes its value, as in `n + 1`."""
     assigned: dict[str, list[Span]] = {}
     own: dict[Span, str] = {}
     for statement in chart.statements:
@@ -55,15 +56,23 @@ def _only_written(values: list[Value], chart: Chart) -> dict[str, tuple[list[Spa
             own[statement.location.span] = root
             if isinstance(statement.value, Expression):
                 own[statement.value.span] = root
-    read, counting = _named(chart), set()
+    read, computed = _named(chart), set()
     locations = {span for spans in assigned.values() for span in spans}
     for value in values:
-        for node in walk(value.tree) if isinstance(value, Expression) else ():
-            if isinstance(node, Name) and own.get(value.span) != node.name:
-                read.add(node.name)
-            elif isinstance(node, Name) and value.span not in locations:
-                counting.add(node.name)
-    return {name: (spans, name in counting) for name, spans in assigned.items() if name not in read}
+        if not isinstance(value, Expression):
+            continue
+        target = own.get(value.span)
+        nodes = list(walk(value.tree))
+        read |= {node.name for node in nodes if isinstance(node, Name) and node.name != target}
+        if target is not None and value.span not in locations and any(_computes(node, target) for node in nodes):
+            computed.add(target)
+    return {name: (spans, name in computed) for name, spans in assigned.items() if name not in read}
+
+
+def _computes(node: Expr, variable: str) -> bool:
+    if isinstance(node, Name):
+        return node.name == variable
+    return isinstance(node, Call) or (isinstance(node, Binary) and node.operator.kind is OperatorKind.ARITHMETIC)
 
 
 def _used(values: list[Value], chart: Chart) -> set[str]:
