@@ -99,6 +99,7 @@ class ChartValues(Record, frozen=True, eq=False):
         states: state that is entered -> the values of variables while the machine waits in it.
         conditions: the place of a condition -> its results; conditions in parts that are not executed are left out.
         seen: the place of an expression -> its values; expressions in parts that are not executed are left out.
+        lengths: the place of an index -> the lengths of its array where it is used.
         uncovered: the place of the last condition of the handlers of a state for one event, all of which have
             conditions -> the values with which none of the conditions holds; left out if one of them always holds.
     """
@@ -106,6 +107,7 @@ class ChartValues(Record, frozen=True, eq=False):
     states: Mapping[str, Mapping[str, ValueSet]]
     conditions: Mapping[Span, ConditionValues]
     seen: Mapping[Span, ValueSet]
+    lengths: Mapping[Span, ValueSet]
     uncovered: Mapping[Span, Mapping[str, ValueSet]]
 
     def at(self, expr: Expr) -> ValueSet | None:
@@ -300,7 +302,9 @@ class _Interpreter(Record, eq=False, dict=True):
             checkpoint()
             for _ in self._from(name, self.entered[name]):
                 pass
-        return ChartValues(dict(self.entered), self.conditions, self.evaluator.seen, self.uncovered)
+        return ChartValues(
+            dict(self.entered), self.conditions, self.evaluator.seen, self.evaluator.lengths, self.uncovered
+        )
 
     def _ascend(self, initial: str) -> bool:
         """Follow all transitions until no set grows; the result states whether sets were widened."""

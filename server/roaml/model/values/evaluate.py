@@ -87,12 +87,14 @@ class Evaluator(Record, eq=False):
         whole: whether the values of a place are integers.
         constants: names that are constants, such as `SUCCESS`.
         seen: the places of expressions in the file -> all values that they had, if `records` is true.
+        lengths: the places of indices -> all lengths that their arrays had when they were read, as far as known.
     """
 
     whole: Callable[[str], bool]
     constants: dict[str, Constant] = field(default_factory=dict)
     records: bool = False
     seen: dict[Span, ValueSet] = field(default_factory=dict)
+    lengths: dict[Span, ValueSet] = field(default_factory=dict)
 
     # ------------------------------------------------------------- values
 
@@ -115,7 +117,7 @@ class Evaluator(Record, eq=False):
             case Member():
                 return self._member(known, expr)
             case Index():
-                self.values(known, expr.index)
+                self._index(known, expr)
                 place = place_of(expr)
                 return known.get(place, ANYTHING) if place is not None else ANYTHING
             case Unary():
@@ -142,8 +144,16 @@ class Evaluator(Record, eq=False):
         """Record the indices inside a chain of members."""
         while isinstance(expr, Member | Index):
             if isinstance(expr, Index):
-                self.values(known, expr.index)
+                self._index(known, expr)
             expr = expr.object
+
+    def _index(self, known: Valuation, expr: Index) -> None:
+        """Record the values of an index, and the lengths of its array."""
+        self.values(known, expr.index)
+        if self.records:
+            length = known.get(f"{place_of(expr.object)}.length", _LENGTH)
+            before = self.lengths.get(expr.index.span)
+            self.lengths[expr.index.span] = length if before is None else join(before, length)
 
     def _unary(self, operator: UnaryOperator, values: ValueSet) -> ValueSet:
         match operator:

@@ -14,7 +14,8 @@ from roaml.expr.types import Array, Type
 from roaml.model.machine import Handler
 from roaml.model.syntax import Expression
 from roaml.model.value_types import TypedValue, ValuePlace, ValueUse
-from roaml.model.values.domain import Origin, interval
+from roaml.model.values.describe import described
+from roaml.model.values.domain import Origin, exactly, interval
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.written import written
 from roaml.text import TextEdit
@@ -34,6 +35,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
             yield from _unbounded(context, value.place, value.value.tree)
             yield from _computed(context, value.place, value.value.tree)
             yield from _behind(context, value)
+            yield from _beyond_length(context, value)
             if value.use is ValueUse.LOCATION:
                 yield from _append(context, value, value.value.tree)
                 yield from _length(context, value, value.value.tree)
@@ -121,6 +123,38 @@ def _behind(context: MachineContext, value: TypedValue) -> Iterator[Finding]:
             message = f"`{name}` has no element `{name}.length`; the last index is `{name}.length - 1`"
             fix = Fix(f"Change to `{name}.length - 1`", (TextEdit(node.index.span, f"{name}.length - 1"),))
             yield RULE.at(node.index.span, message, fix)
+
+
+def _beyond_length(context: MachineContext, value: TypedValue) -> Iterator[Finding]:
+    """Report reads of elements that an array does not have yet."""
+    assert isinstance(value.value, Expression)
+    chart = context.values.charts.get(value.place.chart.scope)
+    if chart is None or value.use is ValueUse.LOCATION:
+        return
+    size = context.system.parameters.max_array_size if context.system else None
+    nodes = list(walk(value.value.tree))
+    measured = {node.object.span for node in nodes if isinstance(node, Member) and node.name == "length"}
+    for node in nodes:
+        if not isinstance(node, Index) or node.span in measured or _is_length_of(context, node.index, node.object):
+            continue
+        length = chart.lengths.get(node.index.span)
+        if length is None:
+            continue
+        number = constant(node.index)
+        index, most = (exactly(number) if number is not None else chart.at(node.index)), interval(length)
+        array = _type_of(context, value.place, node.object)
+        room = (array.bound or size) if isinstance(array, Array) else None
+        if index is None or index.only == frozenset() or most.high_from is not Origin.REACHED:
+            continue
+        reached = interval(index)
+        if room is not None and (reached.high >= room or reached.low < 0):
+            continue  # outside of the array in any case
+        always = reached.low >= most.high and reached.low_from is Origin.REACHED
+        if always or (length.value is not None and reached.high >= most.high and reached.high_from is Origin.REACHED):
+            name, text = written(context, node.object), context.source.text[slice(*node.index.span)]
+            what = f"`{name}` has no element {reached.low if always else reached.high:g} here"
+            where = f": its length is {described(length)}" if always else f", but `{text}` can be {reached.high:g}"
+            yield RULE.at(node.index.span, f"{what}{where}", severity=Severity.WARNING)
 
 
 def _append(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[Finding]:
