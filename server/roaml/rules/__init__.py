@@ -101,6 +101,7 @@ from roaml.rules.interfaces import (
     duplicate_handle,
     interface_type_conflict,
     invalid_rate,
+    misleading_handle,
     missing_client,
     missing_feedback,
     missing_field,

@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Severity
 from roaml.model.gaps import InterfaceAct
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule, TreeContext, did_you_mean
-from roaml.rules.support.interfaces import close_channels, has_publisher, named_here, renamings
+from roaml.rules.support.interfaces import close_channels, has_publisher, is_intended, named_here, renamings
 
 _PUBLISHES = InterfaceAct(SymbolKind.PUBLISHER, ProtocolPart.MESSAGE)
 
@@ -24,6 +24,8 @@ def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
         topic = naming.channel
         if not naming.use.receives or system.may(_PUBLISHES, topic.name):
             continue
+        if is_intended(system, topic, SymbolKind.PUBLISHER):
+            continue  # misleading-handle reports the publisher
         # A topic that is declared on both sides is unlikely to be misspelled.
         close = close_channels(topic.name, () if topic.sources else published)
         silent = " (a publisher is declared but never publishes)" if topic.sources else ""

@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from roaml.diagnostics import Fix, Related
 from roaml.expr.types import leaves
 from roaml.expr.zero import zero_text
-from roaml.model.gaps import OTHER_SIDE
+from roaml.model.gaps import OTHER_SIDE, InterfaceAct
 from roaml.model.machine import Declaration, Handler, Machine, RosSend
 from roaml.model.outline import InterfaceUse
 from roaml.model.ros import InterfaceType
@@ -20,6 +20,7 @@ from roaml.record import Record
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, TreeContext
 from roaml.rules.support.instances import instances
+from roaml.scxml.names import topic_message
 from roaml.suggest import are_similar, close_names
 from roaml.text import Span, TextEdit
 
@@ -133,6 +134,45 @@ def close_channels(name: str, names: Iterable[str]) -> tuple[str, ...]:
         for close in close_names(name, names)
         if len(_parts(close)) != len(parts) or all(map(are_similar, parts, _parts(close)))
     )
+
+
+_CHANNELS = {
+    SymbolKind.PUBLISHER: "topics",
+    SymbolKind.SUBSCRIBER: "topics",
+    SymbolKind.SERVICE_CLIENT: "services",
+    SymbolKind.ACTION_CLIENT: "actions",
+}
+
+
+def intended(system: System, use: InterfaceUse, current: Channel) -> Channel | None:
+    """The topic, service or action that a declaration probably means instead of `current`: it has the name of the
+    handle and the same type, and no other automaton is on the side of the declaration."""
+    if not use.name or use.kind not in _CHANNELS or use.handle == _parts(use.name)[-1]:
+        return None
+    if use.kind is not SymbolKind.PUBLISHER and not current.sources:
+        return None  # reported by the rules about missing publishers and servers
+    channels: Mapping[str, Channel] = getattr(system, _CHANNELS[use.kind])
+    for channel in channels.values():
+        own, other = channel.users, channel.sources
+        if use.kind is SymbolKind.PUBLISHER:
+            own, other = other, own
+        if own or system.may(InterfaceAct(use.kind), channel.name):
+            continue
+        if use.kind is SymbolKind.SUBSCRIBER and system.is_observed(topic_message(channel.name)):
+            continue  # a property is on this side
+        if any(_parts(end.use.name)[-1] == use.handle and end.use.type == use.type for end in other):
+            return channel
+    return None
+
+
+def is_intended(system: System, channel: Channel, kind: SymbolKind) -> bool:
+    """Whether a declaration of the kind `kind` probably means a topic, service or action that has none of this kind."""
+    for automaton in system.automata:
+        for use in automaton.outline.interfaces:
+            current = system.channel(automaton, use) if use.kind is kind else None
+            if current is not None and intended(system, use, current) is channel:
+                return True
+    return False
 
 
 def _parts(name: str) -> list[str]:
