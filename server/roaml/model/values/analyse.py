@@ -435,19 +435,45 @@ class _Interpreter(Record, eq=False, dict=True):
         state = self.states[name]
         whole, groups = self._groups(name)
         if self.evaluator.records:
-            return (found for group in groups for found in self._followed(state, group, known))
+            waiting = self._waiting(groups, known)
+            return (
+                found
+                for group in groups
+                for found in self._followed(
+                    state, group, known if group.handlers[0].trigger is None else waiting, known
+                )
+            )
 
         def follow(inside: Valuation) -> Iterator[tuple[str, Valuation]]:
+            waiting = self._waiting(groups, inside)
             for group in groups:
-                yield from self.memory.transitions(group.part, inside, functools.partial(self._followed, state, group))
+                values = inside if group.handlers[0].trigger is None else waiting
+                yield from self.memory.transitions(group.part, values, functools.partial(self._followed, state, group))
 
         return self.memory.transitions(whole, known, follow)
 
-    def _followed(self, state: State, group: _Group, known: Valuation) -> Iterator[tuple[str, Valuation]]:
-        """The states that follow `state` by the handlers of `group`."""
+    def _waiting(self, groups: Iterable[_Group], known: Valuation) -> Valuation:
+        """The values with which a state waits for events: no transition without an event can be taken."""
+        waiting = known
+        for group in groups:
+            for handler in group.handlers if group.handlers[0].trigger is None else ():
+                left = None if handler.cond is None else self._unless(waiting, handler.cond)
+                if left is None:
+                    return known  # the state never waits
+                waiting = left
+        return waiting
+
+    def _followed(
+        self, state: State, group: _Group, known: Valuation, entered: Valuation | None = None
+    ) -> Iterator[tuple[str, Valuation]]:
+        """The states that follow `state` by the handlers of `group`.
+
+        Args:
+            entered: the values with which the state is entered. Conditions of handlers are judged alone with these, so
+                that one that repeats what other transitions exclude is not constant.
+        """
         left: Valuation | None = {**known, **group.data}
-        alone = left
-        assert alone is not None
+        alone = {**(known if entered is None else entered), **group.data}
         for handler in group.handlers:
             taken = left
             if handler.cond is not None:
