@@ -61,6 +61,7 @@ from roaml.rules.events import (
     handler_without_effect,
     late_event_data,
     removed_bt_event,
+    unhandled_value,
     unknown_event_parameter,
     unsupported_event,
 )
