@@ -136,6 +136,7 @@ from roaml.rules.states import (
     constant_condition,
     delayed_transition,
     duplicate_state,
+    equal_branches,
     event_beside_eventless,
     probability_sum,
     shadowed_branch,

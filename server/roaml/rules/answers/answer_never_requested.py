@@ -31,6 +31,8 @@ def _dead_waits(context: MachineContext, behavior: Behavior) -> Iterator[Finding
     waiting = {s.id.value: s for s in behavior.chart.states if s.id is not None and _waits_for_answers(context, s)}
     in_vain = [_waits_in_vain(context, waiting.get(c.state), c) for c in behavior.configurations]
     elsewhere = {c.state for c, is_vain in zip(behavior.configurations, in_vain, strict=True) if not is_vain}
+    handlers = (h for state in behavior.chart.states for h in state.handlers if h.effective)
+    is_server = any(h.trigger in (ProtocolPart.REQUEST, ProtocolPart.GOAL) for h in handlers)
     reported: set[Handler] = set()
     for step in behavior.steps:
         target = behavior.configurations[step.target]
@@ -40,8 +42,8 @@ def _dead_waits(context: MachineContext, behavior: Behavior) -> Iterator[Finding
         if not in_vain[step.target] or _owes(target):
             continue  # another rule reports the answer that the machine owes
         is_inside = behavior.configurations[step.source].state == target.state
-        if is_inside and (in_vain[step.source] or not _serves(state)):
-            continue  # the step that leads to the state is reported
+        if is_inside and (in_vain[step.source] or not (_serves(state) or is_server)):
+            continue  # the step that leads to the state is reported; a client may have nothing more to do
         if _serves(state) and target.state not in elsewhere:
             continue  # a state that serves requests waits for an answer only if it is requested on another path
         reported.add(step.handler)
