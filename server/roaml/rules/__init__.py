@@ -108,6 +108,7 @@ from roaml.rules.interfaces import (
     missing_field,
     missing_server,
     repeated_interface,
+    repeated_subscription,
     several_servers,
     silent_client,
     silent_server,
