@@ -128,7 +128,7 @@ def state(number: int, following: int, machine_number: int, before: int) -> str:
         </ros_rate_callback>
         <ros_rate_callback name="t{machine_number}" target="state_{number}">
             <assign location="counter" expr="0" />
-            <assign location="goal.pose" expr="route[{(number + 1) % 5}]" />
+            <assign location="goal.pose" expr="route[{number % 5}]" />
         </ros_rate_callback>
         <ros_topic_callback name="in" target="state_{following}">
             <assign location="counter" expr="_msg.data % 100" />
@@ -138,7 +138,7 @@ def state(number: int, following: int, machine_number: int, before: int) -> str:
                     <field name="b" expr="{number}" />
                 </ros_service_send_request>
             <elseif cond="counter &gt; 50 || values.length &gt; 3" />
-                <assign location="values[0]" expr="counter" />
+                <assign location="values[{number % 10}]" expr="counter" />
                 <send event="ring_{machine_number}_event_{number % 2}">
                     <param name="value" expr="counter * 2 + values[{number % 10}]" />
                     <param name="pose" expr="here" />

@@ -16,8 +16,8 @@ def test_no_fix_brings_an_error_to_another_file(tmp_path: Path) -> None:
     """The fix removes what is reported in one file and breaks another file of the same system."""
     talker = (
         '<ascxml name="Talker" version="1.0" initial="a"><datamodel><data id="n" type="int32" expr="0"/></datamodel>'
-        '<ros_topic_publisher name="told" topic="/told" type="std_msgs/Int32"/>'
-        '<state id="a"><transition event="go" target="a"><ros_topic_publish name="told">'
+        '<ros_topic_publisher name="out" topic="/told" type="std_msgs/Int32"/>'
+        '<state id="a"><transition event="go" target="a"><ros_topic_publish name="out">'
         '<field name="data" expr="1"/></ros_topic_publish></transition></state></ascxml>'
     )
     hearer = (
