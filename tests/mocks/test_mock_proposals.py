@@ -84,6 +84,41 @@ def test_leaves_of_which_nothing_is_known(tmp_path: Path) -> None:
     ]
 
 
+GUARDED = """
+<ReactiveSequence>
+    <Ready/>
+    <Inverter><Blocked/></Inverter>
+    <SubTree ID="Safe"/>
+    <Sequence><Move/><Sequence><Open/></Sequence></Sequence>
+</ReactiveSequence>
+"""
+SAFE = f'<BehaviorTree ID="Safe"><IsCalm/></BehaviorTree>{MODELS}'
+
+
+@pytest.mark.parametrize(
+    ("content", "proposed"),
+    [
+        (
+            GUARDED,
+            {"Ready": "0.999", "Blocked": "0.001", "IsCalm": "0.999", "Move": "0.9 in 1 s", "Open": "0.9 in 1 s"},
+        ),
+        ("<ReactiveFallback><There/><Clear/><Go/></ReactiveFallback>", {"There": "0.001", "Clear": "0.001"}),
+        ("<WhileDoElse><Ask/><Then/><Else/></WhileDoElse>", {"Ask": "0.999", "Then": "0.9 in 1 s"}),
+        ("<Sequence><First/><Second/></Sequence>", {"First": "0.9 in 1 s"}),
+        ("<Parallel><First/><Second/></Parallel>", {"First": "0.9 in 1 s"}),
+    ],
+)
+def test_leaves_that_guard_others_take_no_time_and_let_them_run(
+    tmp_path: Path, content: str, proposed: dict[str, str]
+) -> None:
+    """Otherwise hardly any tree with a ReactiveSequence would succeed with its proposal."""
+    path = tree(tmp_path, content, SAFE)
+    text = path.read_text(encoding="utf-8").replace("<root ", '<root main_tree_to_execute="Main" ')
+    path.write_text(text, encoding="utf-8")
+    leaves = dict(line.partition("  #")[0].split(": ", 1) for line in lines(path))
+    assert {name: leaves[name] for name in proposed} == proposed
+
+
 def test_events_of_the_world_are_proposed_unless_the_tree_sets_them(tmp_path: Path) -> None:
     nodes = "<GoalUpdatedController><Grasp/></GoalUpdatedController>"
     assert list(values(tree(tmp_path, nodes))) == ["GoalUpdatedController", "Grasp"]

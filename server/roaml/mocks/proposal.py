@@ -4,14 +4,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from enum import Enum
 from fractions import Fraction
 
 from roaml.forest.forest import Forest
+from roaml.libraries.programs.statuses import SUCCESS
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree
 from roaml.lower.programs.nodes import EVENT_PROBABILITY, event_probability, program_of
 from roaml.mocks.assumptions import Assumption, Constant, assumption
+from roaml.mocks.guards import guards_of
 from roaml.mocks.mock import ALL, Mock, mock_for
 from roaml.mocks.unfolding import unfold
 from roaml.record import Record
@@ -21,6 +23,9 @@ _READS_AS_CONDITION = regex(r"(Is|Has|Are|Can)[A-Z_0-9]|(is|has|are|can)_")
 """The beginning of a name that reads as a condition."""
 _LIBRARY = "Nav2"
 CONDITION_PROBABILITY = 0.5
+GUARD_PROBABILITY = 0.999
+"""The probability with which a guard lets the nodes behind it run at a tick."""
+_GUARDS = "it is ticked again while a node behind it runs, and mostly lets it run"
 ACTION = Assumption(0.9, Fraction(1000), "no library describes it: a common action")
 """The assumption about an action of which nothing is known."""
 
@@ -116,8 +121,9 @@ class _Proposal(Record, frozen=True, eq=False):
 
 def _groups(tree: ExecutedTree, mocks: Sequence[Mock]) -> Iterator[MockableLeaf]:
     by_type: dict[str, list[_Proposal]] = {}
+    guards = guards_of(tree)
     for node in tree.nodes:
-        proposal = _proposal(node, tree)
+        proposal = _proposal(node, tree, guards)
         if proposal is not None:
             by_type.setdefault(node.type, []).append(proposal)
     for type_, proposals in by_type.items():
@@ -158,8 +164,12 @@ def _mock_of(proposal: _Proposal, mocks: Sequence[Mock]) -> Mock | None:
     return mock_for(mocks, proposal.node.name, proposal.node.type)
 
 
-def _proposal(node: ExecutedNode, tree: ExecutedTree) -> _Proposal | None:
-    """The proposal for a node; `None` if its behaviour is known, or if the tree sets it."""
+def _proposal(node: ExecutedNode, tree: ExecutedTree, guards: Mapping[int, frozenset[int]]) -> _Proposal | None:
+    """The proposal for a node; `None` if its behaviour is known, or if the tree sets it.
+
+    Args:
+        guards: see `guards_of`.
+    """
     program = program_of(node, tree.version)
     if program is not None:
         if not program.reads_world or event_probability(node) is not None:
@@ -174,14 +184,22 @@ def _proposal(node: ExecutedNode, tree: ExecutedTree) -> _Proposal | None:
         kind = LeafKind.CONDITION if is_condition or known_condition else LeafKind.SYNCHRONOUS
     else:
         kind = LeafKind.ACTION
-    return _Proposal(node, kind, _assumed(node, kind))
+    return _Proposal(node, kind, _assumed(node, kind, guards.get(node.number, frozenset())))
 
 
-def _assumed(node: ExecutedNode, kind: LeafKind) -> Assumption:
+def _assumed(node: ExecutedNode, kind: LeafKind, continuing: frozenset[int]) -> Assumption:
+    """The assumption about a leaf.
+
+    Args:
+        continuing: the statuses with which a guard lets the nodes behind it run; empty for other leaves.
+    """
     if node.known is not None and _LIBRARY in (node.known.library, node.known.behaviour):
         known = assumption(node.type, _constants(node))
         if known is not None:
             return known
+    if continuing and (node.known is None or kind is LeafKind.CONDITION):
+        probability = GUARD_PROBABILITY if SUCCESS in continuing else 1 - GUARD_PROBABILITY
+        return Assumption(probability, Fraction(0), _GUARDS)
     if kind is LeafKind.CONDITION:
         return Assumption(CONDITION_PROBABILITY, Fraction(0), "no library describes it: both outcomes are as likely")
     if kind is LeafKind.SYNCHRONOUS:
