@@ -64,7 +64,7 @@ def shown(folder: Path) -> list[tuple[object, ...]]:
 
 def test_messages_are_reworded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Without the rewording, the test above would prove nothing."""
-    [case] = examples("input-count", "Bad")[:1]
+    [case] = examples("missing-file", "Bad")[:1]
     write_files(tmp_path, case.text)
     messages = {d.message for d in found(workspace_of(tmp_path).snapshot())}
     reword_all(monkeypatch)
