@@ -63,8 +63,9 @@ def _only_field(part: ProtocolPart, trees: Sequence[Expr]) -> tuple[str, str] | 
 
 
 def _unhandled(place: str, trees: Sequence[Expr], sent: ValueSet | None) -> ValueSet | None:
-    """The values of `sent` with which no condition holds, if there are others, too."""
-    if sent is None or sent.only is None:
+    """The value of `sent` with which no condition holds, if there is exactly one other value. Of several values, as
+    those of a topic for commands, a machine often handles only some."""
+    if sent is None or sent.only is None or len(sent.only) != 2:
         return None
     evaluator = Evaluator(lambda _: False)
     left = frozenset(
@@ -82,14 +83,14 @@ def _repeated(conditions: Sequence[tuple[State, Expression]], place: str, unhand
         name = other.value if other is not None else ""
         message = (
             f"the state `{name}` tests the same, so no state handles that `{place}` is {described(unhandled)}, which "
-            "machines send; change one of the conditions, or handle this value"
+            "machines send; unless this is intended, change one of the conditions, or handle this value"
         )
         yield RULE.at(cond.span, message, related=[Related(c.span, "the same condition") for _, c in others])
 
 
 RULE = Rule(
     "unhandled-value",
-    Severity.WARNING,
+    Severity.INFORMATION,
     "Two states test the same value of a message, and another value that is sent is never handled.",
     machine=check,
     whole=True,

@@ -6,45 +6,65 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
+from roaml.model.outline import InterfaceUse
 from roaml.model.syntax import Name
+from roaml.model.system import Channel, System, SystemAutomaton
 from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, TreeContext
-from roaml.rules.support.interfaces import declared, named_by_ports, port_span
+from roaml.rules.support.interfaces import declared, find_use, is_subscribed, named_by_ports, port_span
+from roaml.scxml.names import topic_message
 from roaml.text import Span
 
 
 def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
     """Report subscribers of one machine that get the same topic, by their names or by the ports of a node."""
-    seen: dict[object, tuple[Span, str]] = {}
+    seen: dict[tuple[int, str], tuple[Span, str]] = {}
     reported: set[Span] = set()
-    for key, span, handle, topic in _subscribers(context):
-        first, other = seen.setdefault(key, (span, handle))
+    for automaton, span, use, topic in _subscribers(context):
+        handle = use.handle
+        first, other = seen.setdefault((id(automaton), topic.name), (span, handle))
         if other != handle and span not in reported:
             reported.add(span)
+            is_likely = context.system is not None and _is_another_missed(context.system, use, topic)
+            name = use.name or topic.name
             message = (
-                f"`{other}` and `{handle}` subscribe to the same topic `{topic}`, so each message arrives at both; "
-                "change one of the names, or remove one of the subscribers"
+                f"`{other}` and `{handle}` subscribe to the same topic `{name}`, so each message arrives at both; "
+                "unless this is intended, change one of the names, or remove one of the subscribers"
             )
-            yield RULE.at(span, message, related=[Related(first, f"the topic of `{other}`")])
+            severity = Severity.WARNING if is_likely else Severity.INFORMATION
+            yield RULE.at(span, message, related=[Related(first, f"the topic of `{other}`")], severity=severity)
 
 
-def _subscribers(context: MachineContext | TreeContext) -> Iterator[tuple[object, Span, str, str]]:
-    """A key for each automaton and topic, with the place where the topic is named, the handle, and the topic."""
+def _is_another_missed(system: System, use: InterfaceUse, topic: Channel) -> bool:
+    """Whether machines publish messages of the same type on another topic, to which nothing subscribes. Ports are
+    written to connect a node with the machines, so a property that observes the topic is not enough for them."""
+    for other in system.topics.values():
+        if other is topic or not any(source.use.type == use.type for source in other.sources):
+            continue
+        if not is_subscribed(system, other) and (use.port or not system.is_observed(topic_message(other.name))):
+            return True
+    return False
+
+
+def _subscribers(
+    context: MachineContext | TreeContext,
+) -> Iterator[tuple[SystemAutomaton, Span, InterfaceUse, Channel]]:
+    """The subscribers of each automaton, with the place where the topic is named, and the topic."""
     if isinstance(context, MachineContext):
         for declaration, automaton, channel in declared(context, SymbolKind.SUBSCRIBER):
-            if isinstance(declaration.interface, Name) and declaration.handle is not None:
-                key = (id(automaton), channel.name)
-                yield key, declaration.interface.span, declaration.handle.value, declaration.interface.value
+            use = find_use(automaton, declaration)
+            if isinstance(declaration.interface, Name) and use is not None:
+                yield automaton, declaration.interface.span, use, channel
         return
     for node, automaton, use in named_by_ports(context):
         topic = context.system.channel(automaton, use) if context.system is not None else None
         if use.kind is SymbolKind.SUBSCRIBER and topic is not None:
-            yield (id(automaton), topic.name), port_span(node, use.port), use.handle, topic.name
+            yield automaton, port_span(node, use.port), use, topic
 
 
 RULE = Rule(
     "repeated-subscription",
-    Severity.WARNING,
+    Severity.INFORMATION,
     "A machine subscribes to the same topic twice.",
     machine=check,
     tree=check,

@@ -64,16 +64,21 @@ def check_properties(file: LinkedFile) -> Iterator[Finding]:
     for written in file.file.properties:
         pattern = written.pattern.value if written.pattern is not None else ""
         for expression in written.expressions:
+            required = [] if expression.broken else list(_required(expression.tree))
             for node, name, number in () if expression.broken else _comparisons(expression.tree):
                 type_ = types.get(name)
                 if not isinstance(type_, Scalar) or type_.name not in INTEGER_RANGES:
                     continue
-                result = _by_type(node, name, type_, number)
+                by_type = _by_type(node, name, type_, number)
                 known = file.values.get(name)
-                if result is not None:
-                    yield RULE.at(node.span, result)
+                if by_type is not None:
+                    holds, message = by_type
+                    # As a part, `x >= 0` states a range completely: `x >= 0 && x <= 9`.
+                    is_range = holds and node is not expression.tree
+                    yield RULE.at(node.span, message, severity=Severity.INFORMATION if is_range else None)
                 elif (
                     pattern in _OCCURRING
+                    and any(node is part for part in required)
                     and node.operator is Operator.EQUAL
                     and known is not None
                     and known.only is not None
@@ -88,6 +93,14 @@ _OCCURRING = frozenset(p.value for p in Pattern) - {Pattern.ABSENCE.value, Patte
 """The patterns whose conditions are expected to hold at some time."""
 
 
+def _required(tree: Expr) -> Iterator[Expr]:
+    """The parts of a condition without which it cannot hold: itself, and what it joins with `&&`."""
+    yield tree
+    if isinstance(tree, Binary) and tree.operator is Operator.AND:
+        yield from _required(tree.left)
+        yield from _required(tree.right)
+
+
 def _comparisons(tree: Expr) -> Iterator[tuple[Binary, str, float]]:
     """The comparisons of a variable with a constant: each with the name of the variable and the constant."""
     for node in walk(tree):
@@ -98,15 +111,16 @@ def _comparisons(tree: Expr) -> Iterator[tuple[Binary, str, float]]:
                     yield node, variable.name, number
 
 
-def _by_type(node: Binary, name: str, type_: Scalar, number: float) -> str | None:
-    """The message about a comparison that has the same result for all values of an integer type."""
+def _by_type(node: Binary, name: str, type_: Scalar, number: float) -> tuple[bool, str] | None:
+    """The result of a comparison that is the same for all values of an integer type, and a message about it."""
     is_left = isinstance(node.left, Name) and node.left.name == name
     sides = (of_type(type_), exactly(number)) if is_left else (exactly(number), of_type(type_))
     result = compared(node.operator, *sides)
     if result.value is None:
         return None
     how = "always" if result == TRUE else "never"
-    return f"this comparison is {how} true: the values of `{type_}` are {described(of_type(type_))}"
+    message = f"this comparison is {how} true: the values of `{type_}` are {described(of_type(type_))}"
+    return result == TRUE, message
 
 
 def _causes(context: MachineContext, findings: Mapping[Span, Finding]) -> Collection[Span]:
@@ -136,9 +150,9 @@ def _beyond_type(context: MachineContext, reported: Collection[Span]) -> Iterato
         for node, name, number in _comparisons(tree):
             type_ = types.get(name)
             if isinstance(type_, Scalar) and type_.name in INTEGER_RANGES:
-                message = _by_type(node, name, type_, number)
-                if message is not None:
-                    yield RULE.at(node.span, message)
+                by_type = _by_type(node, name, type_, number)
+                if by_type is not None:
+                    yield RULE.at(node.span, by_type[1])
 
 
 def _never_sent(context: MachineContext, reported: Collection[Span]) -> Iterator[Finding]:

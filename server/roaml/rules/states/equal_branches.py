@@ -27,16 +27,18 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     place = target.body[0].element if target.body else target.element
                     key = (target.state.value, _content(target.body))
                     alike.setdefault(key, []).append(place.name_span)
+            # Among other targets, the probabilities of several causes of the same outcome may be stated separately.
+            severity = Severity.WARNING if len(alike) == 1 else Severity.INFORMATION
             for spans in alike.values():
                 if len(spans) > 1:
                     message = "another `<target>` of this element has the same state and content, so both are one"
-                    yield from _alike(message, spans)
+                    yield from _alike(message, spans, severity)
 
 
-def _alike(message: str, spans: Sequence[Span]) -> Iterator[Finding]:
+def _alike(message: str, spans: Sequence[Span], severity: Severity = Severity.WARNING) -> Iterator[Finding]:
     for span in spans:
         related = [Related(other, "the same") for other in spans if other != span]
-        yield RULE.at(span, f"{message}; change one of them, or merge them", related=related)
+        yield RULE.at(span, f"{message}; change one of them, or merge them", related=related, severity=severity)
 
 
 def _content(body: Sequence[Statement]) -> tuple[object, ...]:

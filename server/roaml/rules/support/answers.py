@@ -453,8 +453,9 @@ def unhandled_states(
 
 def running_without(behavior: Behavior, missing: ProtocolPart) -> Iterator[State]:
     """The state of a plugin that handles only halts or only ticks while the node is running, although every other state
-    that handles one of both handles both; none if there are several such states. If it does not handle halts, an answer
-    may end it before a halt arrives, so at least two similar states must handle halts, or no answer ends it.
+    that handles one of both handles both; none if there are several such states. If it does not handle halts, a
+    response may end it before a halt arrives, and so may everything else that arrives, unless at least two similar
+    states handle halts.
 
     Args:
         missing: what the state does not handle: `BT_TICK` or `BT_HALT`.
@@ -462,13 +463,21 @@ def running_without(behavior: Behavior, missing: ProtocolPart) -> Iterator[State
     other = ProtocolPart.BT_HALT if missing is ProtocolPart.BT_TICK else ProtocolPart.BT_TICK
     handling = [state for state in behavior.chart.states if _handles(state, other)]
     without = [state for state in handling if not _handles(state, missing)]
-    running = _running(behavior, range(behavior.size))
+    everywhere = running = _running(behavior, range(behavior.size))
     initial = behavior.chart.initial.value if behavior.chart.initial else ""
-    alike = [s for s in handling if s.id and s.id.value in running - {initial} and _handles(s, missing)]
-    if missing is ProtocolPart.BT_HALT and len(alike) < 2:
-        running = _running(behavior, untaken(behavior, HALT))
+    alike = [s for s in handling if s.id and s.id.value in everywhere - {initial} and _handles(s, missing)]
+    if missing is ProtocolPart.BT_HALT:
+        running = _running(behavior, untaken(behavior, HALT, always if len(alike) < 2 else _needs_no_time))
     if len(without) == 1 and len(handling) > 1 and without[0].id is not None and without[0].id.value in running:
         yield without[0]
+
+
+def _needs_no_time(step: BehaviorStep) -> bool:
+    """Whether a step does not wait for something that usually takes time."""
+    return step.event is None or step.event.part not in _LASTING
+
+
+_LASTING = (ProtocolPart.MESSAGE, ProtocolPart.FEEDBACK, ProtocolPart.RESULT, ProtocolPart.TICK)
 
 
 def _running(behavior: Behavior, numbers: Iterable[int]) -> set[str]:

@@ -13,7 +13,7 @@ from roaml.model.machine import Declaration, Handler, Machine, RosSend
 from roaml.model.outline import InterfaceUse
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
-from roaml.model.system import CLOCK_TOPIC, Channel, System, SystemAutomaton
+from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton
 from roaml.model.tree import TreeNode
 from roaml.model.value_types import find_handle
 from roaml.record import Record
@@ -146,11 +146,16 @@ _CHANNELS = {
 
 def intended(system: System, use: InterfaceUse, current: Channel) -> Channel | None:
     """The topic, service or action that a declaration probably means instead of `current`: it has the name of the
-    handle and the same type, and no other automaton is on the side of the declaration."""
+    handle and the same type, and no other automaton is on the side of the declaration. A subscriber is not doubted if
+    its topic contains the handle, as `/scan_filtered` contains `scan`, or if other machines publish on its topic than
+    on the other one."""
     if not use.name or use.kind not in _CHANNELS or use.handle == _parts(use.name)[-1]:
+        return None
+    if use.kind is SymbolKind.SUBSCRIBER and use.handle in use.name:
         return None
     if use.kind is not SymbolKind.PUBLISHER and not current.sources:
         return None  # reported by the rules about missing publishers and servers
+    itself = _machines(end for end in current.users if end.use is use)  # its own messages are hardly intended
     channels: Mapping[str, Channel] = getattr(system, _CHANNELS[use.kind])
     for channel in channels.values():
         own, other = channel.users, channel.sources
@@ -160,9 +165,20 @@ def intended(system: System, use: InterfaceUse, current: Channel) -> Channel | N
             continue
         if use.kind is SymbolKind.SUBSCRIBER and system.is_observed(topic_message(channel.name)):
             continue  # a property is on this side
+        if use.kind is SymbolKind.SUBSCRIBER and not _machines(current.sources) <= itself | _machines(other):
+            continue
         if any(_parts(end.use.name)[-1] == use.handle and end.use.type == use.type for end in other):
             return channel
     return None
+
+
+def is_subscribed(system: System, topic: Channel) -> bool:
+    """Whether a machine subscribes to a topic, or may do so."""
+    return bool(topic.users) or system.may(InterfaceAct(SymbolKind.SUBSCRIBER), topic.name)
+
+
+def _machines(ends: Iterable[ChannelEndpoint]) -> set[str]:
+    return {end.automaton.path for end in ends}
 
 
 def is_intended(system: System, channel: Channel, kind: SymbolKind) -> bool:
