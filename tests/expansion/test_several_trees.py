@@ -21,7 +21,7 @@ from roaml.ide.describe import describe
 from roaml.ide.diagrams.ros import ros_picture
 from roaml.ide.diagrams.tree import tree_picture
 from roaml.ide.names.lookup import symbol_group
-from roaml.ide.rename import Renaming, rename
+from roaml.ide.rename import RenameRefusal, Renaming, rename
 from roaml.jani.writer import write
 from roaml.roles import SymbolKind
 from roaml.text import apply_edits
@@ -206,6 +206,43 @@ def test_a_node_of_a_shared_tree_file_is_renamed_for_all_trees(fleet: Path) -> N
     assert {Path(path).name for path in renaming.edits} == {"deliver.xml", "delivers.xml"}
 
 
+@pytest.mark.parametrize(("place", "new"), [("/top", "all"), ("/top", "bert"), ("/Drive", "Go")])
+def test_a_node_after_a_parameter_is_renamed(place: str, new: str, fleet: Path) -> None:
+    """The name of the tree comes from a parameter, and that of the node is written in the path."""
+    replaced(fleet / "deliver.xml", ("<Sequence>", '<Sequence name="top">'))
+    properties = fleet / "delivers.xml"
+    ports = NODE_PORT.format(f"$(var robot){place}")
+    replaced(properties, ("<ports>", ports), ("place == 2", "place == 2 &amp;&amp; status == 1"))
+    assert problems(fleet / "main.xml") == []
+    before = jani(fleet / "main.xml")
+    analysis = api.check([str(fleet / "main.xml")]).snapshot.analysis
+    at = properties.read_text(encoding="utf-8").index(place) + 1
+    renaming = rename(analysis, str(properties), at, new)
+    if new == "bert":
+        assert isinstance(renaming, RenameRefusal)
+        return
+    assert isinstance(renaming, Renaming), renaming
+    for changed, edits in renaming.edits.items():
+        Path(changed).write_text(apply_edits(Path(changed).read_text("utf-8"), tuple(edits)), "utf-8")
+    assert f"$(var robot)/{new}" in properties.read_text(encoding="utf-8")
+    assert problems(fleet / "main.xml") == []
+    assert jani(fleet / "main.xml") == re.sub(rf"\b{place[1:]}\b", new, before)
+
+
+def test_a_tree_that_a_parameter_names_is_not_renamed(fleet: Path) -> None:
+    main = fleet / "main.xml"
+    at = main.read_text(encoding="utf-8").index('"bert"') + 1
+
+    def renamed() -> Renaming | RenameRefusal:
+        return rename(api.check([str(main)]).snapshot.analysis, str(main), at, "bob")
+
+    assert isinstance(renamed(), Renaming)
+    replaced(fleet / "delivers.xml", ("<ports>", NODE_PORT.format("$(var robot)/Drive")))
+    refusal = renamed()
+    assert isinstance(refusal, RenameRefusal)
+    assert refusal.reason.startswith("`delivers.xml` takes the name `bert` from the value of a parameter")
+
+
 # ---------------------------------------------------------------- what is reported
 
 FIRST, SECOND = 'name="anna" namespace="anna"', 'name="bert" namespace="bert" tick_rate="2"'
@@ -232,6 +269,66 @@ def test_mistakes_are_reported(old: str, new: str, message: str, fleet: Path) ->
     assert old in text
     main.write_text(text.replace(old, new, 1), encoding="utf-8")
     assert [found for found in problems(main) if message in found]
+
+
+def replaced(path: Path, *changes: tuple[str, str]) -> None:
+    text = path.read_text(encoding="utf-8")
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    path.write_text(text, encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        (SECOND, 'namespace="bert"'),
+        (SECOND, 'name="anna" namespace="bert"'),
+        (SECOND, 'name="bert robot" namespace="bert"'),
+        ('drive.ascxml"', 'drive.ascxml" tree="anne"'),
+    ],
+)
+def test_a_wrong_name_of_a_tree_is_one_mistake(old: str, new: str, fleet: Path) -> None:
+    """Neither the copies of the plugins for the trees nor the topics of these are reported."""
+    replaced(fleet / "main.xml", (old, new))
+    assert len(problems(fleet / "main.xml")) == 1
+
+
+def test_a_plugin_can_be_listed_for_each_tree(fleet: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    drive = '<input type="bt-plugin-ascxml" src="plugins/drive.ascxml"'
+    for_each = "\n        ".join(f'{drive} tree="{robot}" />' for robot in DELIVERS)
+    before = jani(fleet / "main.xml")
+    replaced(fleet / "main.xml", (f"{drive} />", for_each))
+    assert problems(fleet / "main.xml") == []
+    assert jani(fleet / "main.xml") == before
+
+
+def test_scripts_of_all_trees_create_entries(fleet: Path) -> None:
+    tree = ("<Sequence>", '<Sequence><Script code="tries := 0" />'), ("<Drive ", '<Drive _onSuccess="tries += 1" ')
+    replaced(fleet / "deliver.xml", *tree)
+    assert problems(fleet / "main.xml") == []
+    replaced(fleet / "deliver.xml", ("tries := 0", "trys := 0"))
+    assert len(problems(fleet / "main.xml")) == 1
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            '"{place}" />\n            </R',
+            '"{plase}" />\n            </R',
+            "no node writes the blackboard variable `plase`",
+        ),
+        ('HandOver place="{place}"', 'HandOver place="2"', "no node reads the blackboard variable `place`"),
+        ('HandOver place="{place}"', 'HandOver place="{plase}"', "variable `place`; did you mean `plase`?"),
+        ('Drive place="2"', 'Drive place="{place}"', '`place="{place}"` in the tree binds the port'),
+    ],
+)
+def test_a_variable_is_shown_as_in_its_tree(old: str, new: str, message: str, fleet: Path) -> None:
+    """The name of the executed tree is no part of the name of the variable for users, and each mistake is reported once
+    for all robots."""
+    replaced(fleet / "deliver.xml", (old, new))
+    assert len([found for found in problems(fleet / "main.xml") if message in found]) == 1
 
 
 def test_files_with_different_trees_of_one_name_are_reported(fleet: Path) -> None:

@@ -248,7 +248,7 @@ class _Expander:
                     self._note_tree(instance.tree, tree, defines=False)
             seen.add(target)
             if instance.is_plugin and any(tree.changes_files for tree in trees):
-                edits += self._plugin(document, instance, target, trees, scope)
+                edits += self._plugin(document, instance, target, trees, scope, is_again=count[target] > 1)
                 continue
             if instance.name is not None:
                 symbol = Symbol(target, SymbolKind.MACHINE, instance.name.value)
@@ -270,20 +270,31 @@ class _Expander:
         return self._result(scope, declared)
 
     def _plugin(
-        self, document: Document, plugin: ListedInstance, target: str, trees: list[ListedInstance], scope: Scope
+        self,
+        document: Document,
+        plugin: ListedInstance,
+        target: str,
+        trees: list[ListedInstance],
+        scope: Scope,
+        *,
+        is_again: bool,
     ) -> Iterator[TextEdit]:
-        """Expand a plugin for each tree to which it belongs. The input is replaced by one for each of them."""
+        """Expand a plugin for each tree to which it belongs. The input is replaced by one for each of them. `is_again`
+        tells whether the system lists the file several times."""
         owners = [tree for tree in trees if plugin.tree is None or _named(tree) == plugin.tree.value]
         source = self.sources.document(target) if self.sources.kind(target) is FileKind.MACHINE else None
         own = {p.name.value for p in declarations(source, Problems())} if source is not None else set()
         inputs = []
         for tree in owners or [plugin]:
             instance = in_tree(plugin, tree, own) if tree is not plugin else plugin
-            new = self._fresh(target, instance) if len(owners) > 1 and tree.changes_files else target
+            is_copied = len(owners) > 1 or (is_again and bool(owners))
+            new = self._fresh(target, instance) if is_copied and instance.changes_files else target
             self._expand_listed(target, new, instance, scope)
             inputs.append((_relative(new, plugin.src.value), _named(tree)))
             self.set_by_trees |= {name for name, _ in tree.params if name.value in own}
         if len(owners) < 2:
+            if inputs[0][0] != plugin.src.value:
+                yield TextEdit(plugin.src.value_span, inputs[0][0])
             yield from self._plain_input(document, plugin)
             return
         type_ = plugin.element.get("type")

@@ -119,7 +119,7 @@ def _instance(element: Element, section: SystemSection, src: Attribute, problems
             "with a digit"
         )
         problems.add(ExpansionProblem.INSTANCE, name.span, message)
-        name = None
+        name = name if is_tree(element, section) else None  # the plugins of a tree still refer to it
     given = name_of(element.get("namespace"))
     namespace = given.value.strip("/") if given is not None else ""
     if given is not None and not _NAMESPACE.match(given.value) and given.value != "/":

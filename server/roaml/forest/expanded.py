@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from functools import partial
 
@@ -53,8 +54,9 @@ def expanded_trees(forest: Forest) -> Iterator[ExpandedTree]:
     if forest.system is not None:
         frames = tuple(use.frame for use in forest.system.tree_uses)
         seen |= {(frame.tree.path, frame.tree.id) for frame in frames}
-        if frames:
-            yield ExpandedTree(frames, True)
+        tops = [number for number, frame in enumerate(frames) if frame.outer is None]
+        for start, end in itertools.pairwise((*tops, len(frames))):
+            yield ExpandedTree(frames[start:end], True)
     for tree, is_top in _tops_first(forest, files):
         if (tree.path, tree.id) not in seen:
             seen.add((tree.path, tree.id))

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from roaml.disk import UnreadableReason
 from roaml.durations import NANOSECONDS, integer, reaction_time
 from roaml.exhaustive import Vocabulary
@@ -110,6 +112,12 @@ _REQUIRED_KINDS = {
     "json": FileKind.JSON_STRUCTS,
     "jani": FileKind.PROPERTIES,
 }
+
+
+def are_named(files: Iterable[ListedFile]) -> bool:
+    """Whether each tree of a system has a name of its own, which only a single tree does not need."""
+    names = [file.input.tree for file in files if file.required_kind is FileKind.TREE]
+    return len(names) < 2 or (len(set(names)) == len(names) and "" not in names)
 
 
 def required_kind(entry: SystemInput) -> FileKind | None:

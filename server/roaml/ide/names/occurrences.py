@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Iterable, Iterator, Mapping
+from typing import NamedTuple
 
 from roaml.diagnostics import Symbol
+from roaml.expansion.uses import VARIABLE
 from roaml.ide.names.frames import Piece, Trees
 from roaml.ide.names.in_machine import in_machine
 from roaml.ide.names.in_parameters import in_parameters
@@ -17,6 +19,7 @@ from roaml.ide.names.in_tree import in_tree
 from roaml.ide.names.occurrence import Occurrence
 from roaml.model.expand import ListedTree
 from roaml.model.kinds import FileKind
+from roaml.model.property_file import PortKind
 from roaml.project.analysis import Analysis
 from roaml.record import Record
 from roaml.text import Span
@@ -75,6 +78,40 @@ def _of(analysis: Analysis, path: str, system: str | None) -> Iterator[Occurrenc
     for occurrence in _of_kind(analysis, path, system):
         if occurrence.span not in spans:  # the name of a parameter is that of a variable only where one hides it
             yield occurrence
+    yield from (use.occurrence for use in _with_parameters(analysis, path, system) if use.is_written)
+
+
+class _ExpandedUse(NamedTuple):
+    """A part of the path of a node, in a path that contains parameters. `is_written` tells whether the part itself
+    contains none."""
+
+    occurrence: Occurrence
+    is_written: bool
+
+
+def from_parameters(analysis: Analysis, path: str, system: str) -> Iterator[Occurrence]:
+    """The parts of paths of nodes in a property file that values of parameters name. Their spans are those of the uses
+    of the parameters."""
+    yield from (use.occurrence for use in _with_parameters(analysis, path, system) if not use.is_written)
+
+
+def _with_parameters(analysis: Analysis, path: str, system: str | None) -> Iterator[_ExpandedUse]:
+    file = (
+        analysis.property_file(path) if system and analysis.kind_in(path, system) is FileKind.XML_PROPERTIES else None
+    )
+    expanded = analysis.expanded(system) if system else None
+    if file is None or expanded is None:
+        return
+    ports = (port for port in file.ports if port.kind is PortKind.NODE and port.name is not None)
+    paths = [port.name.span for port in ports if port.name is not None and VARIABLE.search(port.name.value)]
+    for variant in expanded.expansion.paths(path) if paths else ():
+        text = expanded.expansion.texts.get(variant)
+        for found in uses(expanded.analysis, variant, system).all if text is not None else ():
+            assert text is not None
+            span = text.origin(found.span)
+            if any(place.start <= span.start and span.end <= place.end for place in paths):
+                symbol = expanded.symbol(found.symbol)
+                yield _ExpandedUse(found._replace(span=span, symbol=symbol), text.is_written(found.span))
 
 
 def _of_kind(analysis: Analysis, path: str, system: str | None) -> Iterator[Occurrence]:

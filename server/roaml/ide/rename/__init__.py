@@ -10,9 +10,11 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
+from roaml.diagnostics import Symbol
 from roaml.ide.names.lookup import SymbolGroup, SymbolUse, occurrences_at, symbol_group_at
 from roaml.ide.names.occurrence import DEFINED_BY_ROS, HANDLES, Form
-from roaml.ide.rename.new_name import problem
+from roaml.ide.names.occurrences import from_parameters
+from roaml.ide.rename.new_name import OF_NODES, problem
 from roaml.model.system import CHILDREN_COUNT, CLOCK_TOPIC
 from roaml.project.analysis import Analysis
 from roaml.record import Record
@@ -109,6 +111,12 @@ def _of_instances(analysis: Analysis, group: SymbolGroup) -> str:
         symbol = use.occurrence.symbol
         if "$(" in symbol.name:
             return f"a parameter is a part of `{symbol.name}`"
+        for system in analysis.systems_of(use.path):
+            if symbol.kind in OF_NODES and system is not None and (found := _from_parameter(analysis, system, symbol)):
+                return (
+                    f"`{found}` takes the name `{symbol.name}` from the value of a parameter, which would not be "
+                    "changed; change both by hand"
+                )
         if symbol.kind not in _OF_INTERFACES:
             continue
         for system in analysis.systems_of(use.path):
@@ -119,6 +127,15 @@ def _of_instances(analysis: Analysis, group: SymbolGroup) -> str:
                     f"instances of its machine have other names for `{symbol.name}` (`namespace` or `<remap>` in the "
                     "system file), which would not be changed"
                 )
+    return ""
+
+
+def _from_parameter(analysis: Analysis, system: str, symbol: Symbol) -> str:
+    """The name of a property file with the path of a node in which the value of a parameter is the name of `symbol`;
+    "" if there is none."""
+    for path in analysis.files_of(system):
+        if any(occurrence.symbol == symbol for occurrence in from_parameters(analysis, path, system)):
+            return re.split(r"[/\\]", path)[-1]
     return ""
 
 

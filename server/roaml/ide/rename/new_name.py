@@ -73,7 +73,7 @@ def _is_word(name: str) -> bool:
     return _WORD.match(name) is not None and name not in STATUSES
 
 
-_OF_NODES = (SymbolKind.TREE_NODE, SymbolKind.MACHINE, SymbolKind.PLUGIN, SymbolKind.TREE)
+OF_NODES = (SymbolKind.TREE_NODE, SymbolKind.MACHINE, SymbolKind.PLUGIN, SymbolKind.TREE)
 """Kinds of symbols that may occur in the paths of nodes in property files."""
 
 
@@ -85,7 +85,7 @@ def _in_property_files(analysis: Analysis, group: SymbolGroup, symbol: Symbol, n
         paths = [file.path for file in listed_files if file.required_kind is FileKind.PROPERTIES and file.usable]
         properties = (declared.name for path in paths for declared in analysis.properties(path)[0])
         return f"a property `{new}` already exists" if new in properties else ""
-    if symbol.kind not in _OF_NODES:
+    if symbol.kind not in OF_NODES:
         return ""
     files = {use.path for use in group.uses if analysis.kind(use.path) is FileKind.XML_PROPERTIES}
     for path in {system for file in files for system in analysis.systems_of(file) if system is not None}:

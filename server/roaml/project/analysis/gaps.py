@@ -10,7 +10,7 @@ from roaml.language import BEHAVIOR_TREE
 from roaml.model.expand import StrayRemap, TreeFileOutline, is_whole, node_at, stray_remaps
 from roaml.model.gaps import Gap, GapAct, InterfaceAct, PlacedGap
 from roaml.model.kinds import MACHINE_EXTENSIONS, PROJECT_EXTENSION, FileKind
-from roaml.model.system_file import ListedFile, SystemFile, SystemSection
+from roaml.model.system_file import ListedFile, SystemFile, SystemSection, are_named
 from roaml.model.tree import blackboard_variable
 from roaml.project.analysis.machines import Machines
 from roaml.project.analysis.sources import SourceFiles
@@ -52,6 +52,7 @@ class Gaps:
         for entry in listed:
             if entry.input.section is SystemSection.NODE_MODELS and not entry.usable:
                 yield from ((path, PlacedGap(gap, entry.span)) for gap in self._of_missing_node(path, entry, listed))
+        yield from ((path, PlacedGap(Gap(GapAct.ANYTHING), span)) for span in _unclear_trees(listed))
         yield from ((place, PlacedGap(Gap(GapAct.NODE), span)) for place, span in self._tree_gaps(path, file, listed))
         trees = tuple(dict.fromkeys(tree.files for tree in self._systems.executed_trees(path)))
         for stray in self._sources.memo.get("stray remaps", path, trees, partial(_stray_remaps, trees)):
@@ -111,6 +112,18 @@ class Gaps:
                 assert first is not None
                 if not self._sources.memo.get("whole tree", (path, files[0].path), files, partial(is_whole, files)):
                     yield files[0].path, first.element.name_span
+
+
+def _unclear_trees(listed: tuple[ListedFile, ...]) -> Iterator[Span]:
+    """The inputs because of which the plugins of some trees are unknown: trees without a name of their own, and plugins
+    of trees that do not exist."""
+    trees = [file for file in listed if file.required_kind is FileKind.TREE]
+    if not are_named(listed):
+        yield trees[-1].input.element.name_span
+    names = {file.input.tree for file in trees}
+    for file in listed:
+        if file.required_kind is FileKind.MACHINE and file.input.tree and file.input.tree not in names:
+            yield file.input.element.name_span
 
 
 def _stray_remaps(trees: tuple[tuple[TreeFileOutline, ...], ...]) -> tuple[StrayRemap, ...]:

@@ -43,7 +43,7 @@ def places(context: TreeContext, variable: str, ports: Iterable[BoundPort]) -> I
 
 
 def described(variable: str, written: str) -> str:
-    """A phrase for a variable; `written` is its name inside a subtree, which may differ."""
+    """A phrase for a variable of an executed tree; `written` is its name inside a subtree, which may differ."""
     if written in ("", variable, f"@{variable}"):
         return f"the blackboard variable `{variable}`"
     if variable.endswith(f"__{written}"):

@@ -66,6 +66,8 @@ def _trees(context: SystemContext) -> Iterator[Finding]:
     yield from _equal_trees(context)
     for listed in context.files:
         owner = listed.input.element.get(TREE_ATTRIBUTE)
+        if not listed.input.tree:
+            continue
         if listed.required_kind is FileKind.MACHINE and owner is not None and listed.input.tree not in named:
             close = close_names(listed.input.tree, named)
             known = [name for name in named if name]

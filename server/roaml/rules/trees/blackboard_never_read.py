@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
+from roaml.model.expand import board_prefix
 from roaml.model.gaps import GapAct
 from roaml.roles import Direction
 from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean
@@ -28,14 +29,16 @@ def check(context: TreeContext) -> Iterator[Finding]:
             continue
         if system.is_observed(f"{BLACKBOARD_WRITE_PREFIX}{variable}") or system.may(GapAct.VARIABLE, variable):
             continue
-        close = close_names(variable, unwritten)
         for bound, span, written in places(context, variable, ports):
             if bound.port.direction is Direction.IN:
                 message = f"`{bound.automaton.outline.name}` never reads its port `{bound.port.key}`"
                 yield RULE.at(span, message)
             else:
-                message = f"no node reads {described(variable, written)}{did_you_mean(close)}"
-                yield RULE.at(span, message, *renamings(span, written, variable, close))
+                prefix = board_prefix(bound.automaton.instance.tree) if bound.automaton.instance is not None else ""
+                own = variable.removeprefix(prefix)
+                close = close_names(own, [name.removeprefix(prefix) for name in unwritten if name.startswith(prefix)])
+                message = f"no node reads {described(own, written)}{did_you_mean(close)}"
+                yield RULE.at(span, message, *renamings(span, written, own, close))
 
 
 RULE = Rule("blackboard-never-read", Severity.WARNING, "A blackboard variable is written but never read.", tree=check)

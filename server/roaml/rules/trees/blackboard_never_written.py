@@ -132,7 +132,8 @@ def _unwritten(forest: Forest, bound: BoundUse, close: tuple[str, ...]) -> Findi
     hint = did_you_mean(close) or ("" if certain else "; the program that runs the tree must set it")
     fixes = () if use.is_default else replacements(use.span, tuple(f"{{{name}}}" for name in close))
     severity = Severity.ERROR if certain else Severity.WARNING if close else Severity.INFORMATION
-    return RULE.at(use.span, f"no node writes {described(bound.variable, use.name)}{hint}", *fixes, severity=severity)
+    variable = bound.variable.removeprefix(bound.frame.board)
+    return RULE.at(use.span, f"no node writes {described(variable, use.name)}{hint}", *fixes, severity=severity)
 
 
 def _unread(writer: Use, reader: Use) -> Finding:

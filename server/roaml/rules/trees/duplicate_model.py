@@ -10,7 +10,7 @@ from roaml.edit.elements import removal
 from roaml.model.globals import event_names
 from roaml.model.kinds import FileKind
 from roaml.model.system import System
-from roaml.model.system_file import ListedFile, SystemSection
+from roaml.model.system_file import TREE_ATTRIBUTE, ListedFile, SystemSection, are_named
 from roaml.roles import SymbolKind
 from roaml.rules.rule import Rule, SystemContext
 from roaml.scxml.names import is_generated, sanitise
@@ -26,6 +26,8 @@ def check(context: SystemContext) -> Iterator[Finding]:
         outline = outlines.get(listed.path) if listed.required_kind is FileKind.MACHINE else None
         if outline is None or listed.input.src is None or not outline.name:
             continue
+        if listed.input.element.get(TREE_ATTRIBUTE) is not None and not are_named(context.files):
+            continue  # the copies for trees with one name are no mistake; `input-count` reports the names
         key = (listed.input.section, outline.name)
         before = first.get((*key, "")) or first.setdefault((*key, listed.input.tree), listed)
         if before is not listed:
