@@ -40,6 +40,7 @@ from roaml.jani.typecheck import check_property
 from roaml.jani.types import BOOL, INT
 from roaml.jani.writer import write_properties
 from roaml.json_syntax import parse
+from roaml.model.kinds import FileKind, kind_of
 from roaml.text import apply_edits
 
 
@@ -211,3 +212,17 @@ def test_names_and_types_of_a_property_are_checked_elsewhere() -> None:
         ("jani-type", "level"),
     ]
     assert "seen.valid" in apply_edits(text, findings[0].fixes[0].edits)
+
+
+@pytest.mark.parametrize(
+    ("text", "kind"),
+    [
+        ('{"properties": []}', FileKind.PROPERTIES),
+        ('{"jani-version": 1, "properties": []}', FileKind.PROPERTIES),
+        ('{"jani-version": 1, "properties": [], "automata": []}', FileKind.JANI_MODEL),
+        ('{"automata": []}', FileKind.JANI_MODEL),
+        ('{"jani-version": 1}', FileKind.JANI_MODEL),
+    ],
+)
+def test_a_file_with_properties_may_state_a_version(text: str, kind: FileKind) -> None:
+    assert kind_of("p.jani", text) is kind

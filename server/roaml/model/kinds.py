@@ -60,6 +60,8 @@ _FIRST_TAG = regex(r"<(?:[^\s<>!?/:\"'=]+:)?([^\s<>!?/:\"'=]+)")
 _SKIPPED = regex(r"<!--.*?(?:-->|\Z)|<\?.*?(?:\?>|\Z)|<!DOCTYPE[^>\[]*(?:\[.*?\]\s*>|>|\Z)", re.DOTALL)
 _TREE_MARK = regex(r"<\s*(?:BehaviorTree|TreeNodesModel)\b|BTCPP_format|main_tree_to_execute")
 _JANI_MODEL = regex(r'"(?:jani-version|automata)"\s*:')
+_AUTOMATA = regex(r'"automata"\s*:')
+_PROPERTIES = regex(r'"properties"\s*:')
 _JSON_SCHEMA = regex(r'"type"\s*:\s*"object"')
 _OUR_TABLE = regex(r"^\s*\[.*\bas2fm\b|^\s*tool\b.*\bas2fm\b", re.MULTILINE)
 _EXTENSION = regex(r"(?<=[^/\\])\.[^./\\]+\Z")
@@ -96,7 +98,8 @@ def kind_of(path: str, text: str) -> FileKind:
     if extension == MOCKS_EXTENSION:
         return FileKind.MOCKS
     if extension in (".jani", ".json"):
-        if _JANI_MODEL.search(text[:_HEAD]):
+        # A version of JANI is no reason to miss automata in a file with properties.
+        if _JANI_MODEL.search(text[:_HEAD]) and (_AUTOMATA.search(text) or not _PROPERTIES.search(text)):
             return FileKind.JANI_MODEL
         if extension == ".jani":
             return FileKind.PROPERTIES
