@@ -325,7 +325,7 @@ def test_scripts_of_all_trees_create_entries(fleet: Path) -> None:
     ],
 )
 def test_a_variable_is_shown_as_in_its_tree(old: str, new: str, message: str, fleet: Path) -> None:
-    """The name of the executed tree is no part of the name of the variable for users, and each mistake is reported once
+    """Messages name a variable without the name of its tree, and each mistake is reported once
     for all robots."""
     replaced(fleet / "deliver.xml", (old, new))
     assert len([found for found in problems(fleet / "main.xml") if message in found]) == 1

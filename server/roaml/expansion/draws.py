@@ -76,8 +76,8 @@ class _Piece(NamedTuple):
 def expand_draws(
     text: ExpandedText, problems: Problems, read: Callable[[str], str | None]
 ) -> tuple[ExpandedText, tuple[DrawnNumber, ...]]:
-    """A machine in which targets with probabilities replace the draws, and these draws. A number
-    replaces an invalid draw, which is a problem.
+    """A machine in which targets with probabilities replace the draws, and these draws. An invalid draw is a
+    problem, and a number replaces it.
 
     Args:
         text: the machine without parameters.

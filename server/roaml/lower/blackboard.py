@@ -8,7 +8,7 @@ from roaml.expr.zero import zero
 from roaml.lower.blackboard_automaton import blackboard_automaton
 from roaml.lower.program import TranslatableSystem
 from roaml.lower.programs.blackboard import board_automaton
-from roaml.model.expand import Instance, board_prefix
+from roaml.model.expand import Instance, is_on_board
 from roaml.scxml.model import Automaton, Data
 from roaml.text import Location
 
@@ -19,7 +19,7 @@ def blackboard(program: TranslatableSystem, root: Instance) -> Automaton | None:
     is_read = system.reads_blackboard(tree)
     if program.library is not None:
         return board_automaton(program.library.board, program.node(root.number), is_read=is_read, tree=tree)
-    names = (variable for variable in system.blackboard if variable.startswith(board_prefix(tree)))
+    names = (variable for variable in system.blackboard if is_on_board(variable, tree))
     variables = {variable: BASE_TYPES[system.variable_type(variable)] for variable in names}
     if not variables:
         return None

@@ -10,6 +10,9 @@ from roaml.libraries.programs.statuses import FAILURE, RUNNING, SUCCESS
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree
 from roaml.roles import NodeKind
 
+_ENDS = (SUCCESS, FAILURE)
+_RUNNING = Possible(frozenset((RUNNING,)), frozenset((RUNNING,)))
+
 
 def guards_of(tree: ExecutedTree) -> dict[int, frozenset[int]]:
     """The number of each node that guards others, also below decorators -> the statuses with which it lets them run."""
@@ -23,14 +26,10 @@ def guards_of(tree: ExecutedTree) -> dict[int, frozenset[int]]:
             found[node.children[0]] = wanted if node.is_subtree else _passed_on(bound, wanted)
         elif bound.program is not None:
             for index, number in enumerate(node.children[:-1]):
-                continuing = frozenset(end for end in _ENDS if _is_guard(bound, node, index, end))
+                continuing = frozenset(end for end in _ENDS if _is_guard(bound, len(node.children), index, end))
                 if continuing:
                     found[number] = continuing
     return found
-
-
-_ENDS = (SUCCESS, FAILURE)
-_RUNNING = Possible(frozenset((RUNNING,)), frozenset((RUNNING,)))
 
 
 def _bound(node: ExecutedNode, tree: ExecutedTree) -> LinkedNode:
@@ -46,10 +45,10 @@ def _ended(status: int) -> Possible:
     return Possible(frozenset((status,)), frozenset((status,)))
 
 
-def _is_guard(bound: LinkedNode, node: ExecutedNode, index: int, end: int) -> bool:
+def _is_guard(bound: LinkedNode, count: int, index: int, end: int) -> bool:
     """Whether a child that has returned `end` is ticked again while a child behind it is RUNNING."""
     assert bound.program is not None
-    below = [_ended(end)] * (index + 1) + [_RUNNING] * (len(node.children) - index - 1)
+    below = [_ended(end)] * (index + 1) + [_RUNNING] * (count - index - 1)
     effects = effects_on(bound.program, bound.situation(below), index)
     return effects.ticks_ended or effects.restarts
 

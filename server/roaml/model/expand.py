@@ -520,6 +520,11 @@ def board_prefix(tree: str) -> str:
     return f"{tree}__" if tree else ""
 
 
+def is_on_board(variable: str, tree: str) -> bool:
+    """Whether a variable, by its full name, is on the blackboard of the tree with the name `tree`."""
+    return variable.startswith(board_prefix(tree))
+
+
 def entered_uses(uses: tuple[TreeUse, ...], inner: int, around: int | None = None) -> tuple[int, ...]:
     """The uses of trees between two nodes: the use `inner` and its enclosing ones up to `around`, without `around`, the
     outermost first. The executed tree itself is left out."""

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from roaml.diagnostics import Symbol
 from roaml.expr.types import BASE_TYPES, BOOL, INT, EmptyArray, ScalarKind, Struct, Type, is_kind, leaves, unwrap, wrap
 from roaml.interruption import checkpoint
-from roaml.model.expand import board_prefix
+from roaml.model.expand import is_on_board
 from roaml.model.outline import InterfaceUse, SentField
 from roaml.model.ros import InterfaceType
 from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton
@@ -240,6 +240,6 @@ def _blackboard(system: System) -> Iterator[_Event]:
             yield f"{BLACKBOARD_WRITE_PREFIX}{name}", None, [("value", variables[name])]
     for root in system.roots:
         if system.reads_blackboard(root.tree):
-            own = [item for item in variables.items() if item[0].startswith(board_prefix(root.tree))]
+            own = [item for item in variables.items() if is_on_board(item[0], root.tree)]
             yield blackboard_request(root.tree), None, []
             yield blackboard_answer(root.tree), None, own

@@ -19,7 +19,16 @@ from roaml.exhaustive import assert_never
 from roaml.expr.types import BASE_TYPES, Struct, StructKind, Type
 from roaml.language import BEHAVIOR_TREE, ElementType
 from roaml.libraries import BEHAVIORTREE_CPP, LIBRARIES, Node, Port, library, library_node
-from roaml.model.expand import Instance, NodeSource, PortConstant, PortValue, Reference, TreeUse, board_prefix
+from roaml.model.expand import (
+    Instance,
+    NodeSource,
+    PortConstant,
+    PortValue,
+    Reference,
+    TreeUse,
+    board_prefix,
+    is_on_board,
+)
 from roaml.model.gaps import Act, Gap, GapAct, InterfaceAct, answers, is_interface_name
 from roaml.model.outline import (
     EventReceived,
@@ -74,6 +83,11 @@ class SystemAutomaton(Record, frozen=True):
     outline: MachineOutline
     instance: Instance | None = None
     index: int = 0
+
+    @property
+    def board(self) -> str:
+        """The beginning of the full names of the variables of its tree; "" for ROS nodes."""
+        return "" if self.instance is None else board_prefix(self.instance.tree)
 
     def port(self, key: str) -> PortValue | None:
         """The value of the port `key`; `None` if the machine does not declare it or the tree does not set it."""
@@ -545,10 +559,9 @@ class System(Record, frozen=True, eq=False, dict=True, weakref=True):
 
     def reads_blackboard(self, tree: str) -> bool:
         """Whether a node or script reads a variable of the blackboard of the tree with the name `tree`."""
-        prefix = board_prefix(tree)
-        if any(entry.read for name, entry in self.entries.items() if name.startswith(prefix)):
+        if any(entry.read for name, entry in self.entries.items() if is_on_board(name, tree)):
             return True
-        boards = (ports for name, ports in self.blackboard.items() if name.startswith(prefix))
+        boards = (ports for name, ports in self.blackboard.items() if is_on_board(name, tree))
         return any(bound.port.read for ports in boards for bound in ports)
 
     def variable_type(self, variable: str) -> str:

@@ -451,10 +451,10 @@ class Verifier(Record, frozen=True):
         """Why the exact values of a property differ; see `Computed.reason`."""
         if exact.endless is None:
             return ""
-        metadata = self.target.model.metadata
-        clock = None if metadata is None else metadata.clock
         from roaml.verification.delays import endless_delay  # noqa: PLC0415 - few verifications need it
 
+        metadata = self.target.model.metadata
+        clock = None if metadata is None else metadata.clock
         return endless_delay(*alone(self.checker, property_), exact.endless, clock)
 
     def _considers_choices(self, property_: CompiledProperty) -> bool:

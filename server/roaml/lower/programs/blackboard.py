@@ -6,7 +6,7 @@ from __future__ import annotations
 from roaml.expr.types import BASE_TYPES
 from roaml.lower.blackboard_automaton import blackboard_automaton
 from roaml.lower.programs.board import Board
-from roaml.model.expand import board_prefix
+from roaml.model.expand import is_on_board
 from roaml.scxml.model import Automaton, Data
 from roaml.text import Location
 
@@ -20,7 +20,7 @@ def board_automaton(board: Board, origin: Location, *, is_read: bool, tree: str 
         is_read: whether a node reads an entry.
     """
     all_entries = (*board.entries.values(), *board.flag_of.values())
-    entries = [entry for entry in all_entries if entry.variable.startswith(board_prefix(tree))]
+    entries = [entry for entry in all_entries if is_on_board(entry.variable, tree)]
     if not entries:
         return None
     data = [Data(entry.variable, BASE_TYPES[entry.type_name], entry.start, origin) for entry in entries]

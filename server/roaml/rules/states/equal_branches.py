@@ -31,7 +31,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
             severity = Severity.WARNING if len(alike) == 1 else Severity.INFORMATION
             for spans in alike.values():
                 if len(spans) > 1:
-                    message = "another `<target>` of this element has the same state and content, so both are one"
+                    message = (
+                        "another `<target>` of this element has the same state and content, so one of them is enough"
+                    )
                     yield from _alike(message, spans, severity)
 
 

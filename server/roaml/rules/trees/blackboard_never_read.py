@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
-from roaml.model.expand import board_prefix
 from roaml.model.gaps import GapAct
 from roaml.roles import Direction
 from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean
@@ -34,7 +33,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 message = f"`{bound.automaton.outline.name}` never reads its port `{bound.port.key}`"
                 yield RULE.at(span, message)
             else:
-                prefix = board_prefix(bound.automaton.instance.tree) if bound.automaton.instance is not None else ""
+                prefix = bound.automaton.board
                 own = variable.removeprefix(prefix)
                 close = close_names(own, [name.removeprefix(prefix) for name in unwritten if name.startswith(prefix)])
                 message = f"no node reads {described(own, written)}{did_you_mean(close)}"

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.expr.tree import Name, walk
-from roaml.model.expand import Reference, board_prefix
+from roaml.model.expand import Reference
 from roaml.model.machine import Declaration
 from roaml.model.syntax import Expression, PortRead
 from roaml.model.value_types import TypedValue, ValueUse
@@ -48,8 +48,8 @@ def _bound(context: MachineContext) -> dict[str, str]:
         for port in automaton.outline.ports:
             value = automaton.port(port.key)
             if isinstance(value, Reference):
-                prefix = board_prefix(automaton.instance.tree) if automaton.instance is not None else ""
-                bindings.setdefault(port.key, f'{port.key}="{{{value.variable.removeprefix(prefix)}}}"')
+                written = value.variable.removeprefix(automaton.board)
+                bindings.setdefault(port.key, f'{port.key}="{{{written}}}"')
     return bindings
 
 
