@@ -51,13 +51,25 @@ compiled_from() {
     done
 }
 
+# Installs Ruff alone, in the version of pyproject.toml: its results need nothing else of the project.
+prepare_ruff() {
+    wanted=$(grep -o 'ruff==[0-9.]*' pyproject.toml)
+    [ "$(.venv/bin/ruff --version 2>/dev/null)" != "ruff ${wanted#ruff==}" ] || return 0
+    is_recent .venv/bin/python || make_environment
+    install "$wanted"
+}
+
+install() {
+    .venv/bin/python -m pip install --quiet --disable-pip-version-check "$@" 2>.venv/pip.log ||
+        { cat .venv/pip.log >&2; fail "pip could not install the project; is a package index configured and reachable?"; }
+}
+
 prepare() {
     wanted=$(compiled_from | cksum)
     case "$(cat .venv/prepared 2>/dev/null)" in
         "$wanted $1" | "$wanted [dev]") return ;;
     esac
     is_recent .venv/bin/python || make_environment
-    .venv/bin/python -m pip install --quiet --disable-pip-version-check --editable ".$1" 2>.venv/pip.log ||
-        { cat .venv/pip.log >&2; fail "pip could not install the project; is a package index configured and reachable?"; }
+    install --editable ".$1"
     echo "$wanted $1" >.venv/prepared
 }

@@ -117,7 +117,7 @@ def tree(tmp_path: Path, tools: Path) -> Path:
     (folder / "tests").mkdir(parents=True)
     for name in ("run", "failed.py"):
         shutil.copy(ROOT / "tests" / name, folder / "tests")
-    (folder / "tests/environment.sh").write_text("prepare() { :; }\n")
+    (folder / "tests/environment.sh").write_text("prepare_ruff() { :; }\nprepare() { :; }\n")
     (folder / "tests/vscode.sh").write_text("[ \"$1\" = --static ] || echo '  ✔ it draws'\n")
     for name in ("ruff", "mypy"):
         script(folder / ".venv/bin" / name, ":")
@@ -130,9 +130,10 @@ def test_all_passes(tree: Path, tools: Path) -> None:
     assert (done.returncode, done.stderr) == (0, "")
     said = [line for line in done.stdout.splitlines() if line.startswith(("==", "  ✔"))]
     assert said == [
-        "== preparation, which takes a minute the first time",
+        "== Ruff, which is prepared first and alone",
         "== ruff check",
         "== ruff format",
+        "== preparation, which takes a minute the first time",
         "== mypy",
         "== tests; meanwhile, those of the VS Code extension",
         "== VS Code extension",
@@ -142,10 +143,24 @@ def test_all_passes(tree: Path, tools: Path) -> None:
     ]
 
 
+def test_ruff_is_installed_in_the_version_that_the_project_demands(tmp_path: Path) -> None:
+    shutil.copy(ROOT / "tests/environment.sh", tmp_path)
+    (tmp_path / "pyproject.toml").write_text('dev = [\n    "ruff==0.17.5",\n]\n')
+    script(tmp_path / ".venv/bin/python", 'echo "$*"')
+    script(tmp_path / "set_up", 'cd "$(dirname "$0")"\n. ./environment.sh\nprepare_ruff')
+    done = run(tmp_path / "set_up", environment=os.environ)
+    assert done.stdout.splitlines()[-1].endswith(" ruff==0.17.5")
+    script(tmp_path / ".venv/bin/ruff", "echo ruff 0.17.4")
+    assert run(tmp_path / "set_up", environment=os.environ).stdout.splitlines()[-1].endswith(" ruff==0.17.5")
+    script(tmp_path / ".venv/bin/ruff", "echo ruff 0.17.5")
+    assert run(tmp_path / "set_up", environment=os.environ).stdout == ""
+
+
 def test_the_time_of_each_part_is_reported(tree: Path, tools: Path) -> None:
     done = run(tree / "tests/run", environment=os.environ)
     _, _, end = done.stdout.partition("== times:\n")
-    parts = ["preparation", "ruff check", "ruff format", "mypy", "tests", "VS Code extension, meanwhile"]
+    python = ["preparation of Ruff", "ruff check", "ruff format", "preparation", "mypy", "tests"]
+    parts = [*python, "VS Code extension, meanwhile"]
     assert re.fullmatch("".join(rf"  {part}: \d+ s\n" for part in parts) + "== all passed\n", end)
     done = run(tree / "tests/run", "tests/cli", environment=os.environ)
     assert re.search(r"== times:\n(  [\w ]+: \d+ s\n)+== all passed\n", done.stdout)
