@@ -103,17 +103,12 @@ class Converter:
 
     # ----------------------------------------------------------- diagnostics
 
-    def diagnostic(
-        self, diagnostic: Diagnostic, source: SourceFile, sources: Mapping[str, SourceFile]
-    ) -> types.Diagnostic:
-        """A diagnostic in the protocol's types. `sources` contains the files of the related places, by path."""
+    def diagnostic(self, diagnostic: Diagnostic, source: SourceFile) -> types.Diagnostic:
+        """A diagnostic of a file with the text `source`, in the protocol's types."""
         related = [
-            types.DiagnosticRelatedInformation(
-                types.Location(self.uri(r.location.path), self.range(sources[r.location.path], r.location.span)),
-                r.message,
-            )
+            types.DiagnosticRelatedInformation(self.location(r.source, r.location), r.message)
             for r in diagnostic.related
-            if r.location.path in sources
+            if r.source is not None
         ]
         return types.Diagnostic(
             range=self.range(source, diagnostic.span),

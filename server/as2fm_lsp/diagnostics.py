@@ -28,12 +28,9 @@ from as2fm_lsp.client import Client
 from as2fm_lsp.inbox import Inbox
 from as2fm_lsp.progress import Progress, ProgressReporter
 from as2fm_lsp.session import Moment, Session
-from roaml.diagnostics import Diagnostic
 from roaml.ide.names.occurrences import uses
 from roaml.interruption import Interrupted
 from roaml.project.provisional import MIN_CHARACTERS, Checked, after, checked
-from roaml.project.workspace import Snapshot
-from roaml.text import SourceFile
 
 log = logging.getLogger(__name__)
 T = TypeVar("T")
@@ -112,11 +109,7 @@ class Diagnostics:
         versions = [self._newer(path) for path in self._waiting]
         for version in filter(None, versions):
             self._checked[version.source.path] = version
-            source_of, diagnostics = version.runner.analysis.source, version.diagnostics
-            related = {r.location.path for d in diagnostics for r in d.related}
-            sources = {path: source for path in related if (source := source_of(path)) is not None}
-            sources[version.source.path] = version.source
-            sent = [self.session.convert.diagnostic(d, version.source, sources) for d in diagnostics]
+            sent = [self.session.convert.diagnostic(d, version.source) for d in version.diagnostics]
             self._send(version.source.path, sent, self.session.version(version.source.path))
         return bool(versions) and None not in versions
 
@@ -197,20 +190,8 @@ class Diagnostics:
 
     def of(self, moment: Moment, path: str) -> list[types.Diagnostic]:
         """The diagnostics of a file, in the protocol's types; empty if the file does not exist."""
-        snapshot = moment.snapshot(path)
-        diagnostics = snapshot.checker.diagnostics(path)
-        source = next((diagnostic.source for diagnostic in diagnostics), None)
-        return [] if source is None else self.converted(snapshot, source, diagnostics)
-
-    def converted(
-        self, snapshot: Snapshot, source: SourceFile, diagnostics: Iterable[Diagnostic]
-    ) -> list[types.Diagnostic]:
-        """Diagnostics of a file, in the protocol's types."""
-        diagnostics = tuple(diagnostics)
-        others = {r.location.path for d in diagnostics for r in d.related} - {source.path}
-        sources = {path: other for path in others if (other := snapshot.analysis.source(path)) is not None}
-        sources[source.path] = source
-        return [self.session.convert.diagnostic(d, source, sources) for d in diagnostics]
+        diagnostics = moment.snapshot(path).checker.diagnostics(path)
+        return [self.session.convert.diagnostic(d, d.source) for d in diagnostics if d.source is not None]
 
     def document_report(
         self, path: str, previous: str | None

@@ -59,22 +59,24 @@ class Moment:
         it, any folder in which a system uses it, the innermost folder around it, a workspace outside all folders.
         """
         near = sorted((folder for folder in self._folders if is_below(path, folder)), key=len, reverse=True)
+        if near and len(self._folders) == 1:
+            return self._frozen(self._folders[near[0]])
         for folder in dict.fromkeys((*near, *self._folders)):
             snapshot = self._frozen(self._folders[folder])
-            if path in snapshot.analysis.memberships:
+            if path in snapshot.memberships:
                 return snapshot
         return self._frozen(self._folders[near[0]] if near else self._around(path))
 
     def files(self) -> tuple[str, ...]:
         """All files that are reported: open files, the files of their systems, and the files of the folders."""
-        paths = dict.fromkeys(self.versions)
+        there = dict.fromkeys(path for workspace in self._folders.values() for path in self._frozen(workspace).files())
+        paths: dict[str, None] = {}
         for path in self.versions:
-            analysis = self.snapshot(path).analysis
-            for system in analysis.memberships.get(path, ()):
-                paths.update(dict.fromkeys(analysis.files_of(system)))
-        for workspace in self._folders.values():
-            paths.update(dict.fromkeys(self._frozen(workspace).files()))
-        return tuple(path for path in paths if self.snapshot(path).analysis.source(path) is not None)
+            snapshot = self.snapshot(path)
+            of_systems = (f for s in snapshot.memberships.get(path, ()) for f in snapshot.analysis.files_of(s))
+            opened = dict.fromkeys((path, *of_systems))
+            paths.update((file, None) for file in opened if file in there or snapshot.analysis.source(file) is not None)
+        return tuple({**paths, **there})
 
     def _frozen(self, workspace: Workspace) -> Snapshot:
         if id(workspace) not in self._snapshots:

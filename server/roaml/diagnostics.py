@@ -117,11 +117,14 @@ class Finding(Record, frozen=True):
     facts: Facts | None = None
 
 
-class RelatedPlace(Record, frozen=True):
-    """A `Related` whose place has been resolved to a location in a file."""
+class RelatedPlace(PartlyCompared, frozen=True):
+    """A `Related` whose place has been resolved to a location in a file. `source` is the text of this file."""
+
+    UNCOMPARED = frozenset({"source"})
 
     location: Location
     message: str
+    source: SourceFile | None = None
 
 
 class Diagnostic(PartlyCompared, frozen=True):

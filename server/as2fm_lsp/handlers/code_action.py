@@ -37,7 +37,7 @@ def register(context: Context) -> None:
         if source is None:
             return []
         place, only = session.convert.span(source, params.range), params.context.only
-        shown = _ClientDiagnostics(context, snapshot, source, params.context.diagnostics)
+        shown = _ClientDiagnostics(context, source, params.context.diagnostics)
         offered = [
             _converted(context, snapshot, path, place, shown, action)
             for action in _all(context, snapshot, path, place, lambda kind: _is_requested(kind, only))
@@ -112,10 +112,8 @@ class _ClientDiagnostics:
     facts.
     """
 
-    def __init__(
-        self, context: Context, snapshot: Snapshot, source: SourceFile, sent: Iterable[types.Diagnostic]
-    ) -> None:
-        self._context, self._snapshot, self._source = context, snapshot, source
+    def __init__(self, context: Context, source: SourceFile, sent: Iterable[types.Diagnostic]) -> None:
+        self._context, self._source = context, source
         self._sent: dict[tuple[str, Span, Facts | None], list[types.Diagnostic]] = {}
         for diagnostic in sent:
             self._sent.setdefault(self._identity(diagnostic), []).append(diagnostic)
@@ -131,7 +129,7 @@ class _ClientDiagnostics:
         known = self._sent.get((diagnostic.code, diagnostic.span, diagnostic.facts), [])
         if len(known) == 1:
             return known
-        return self._context.diagnostics.converted(self._snapshot, self._source, [diagnostic])
+        return [self._context.session.convert.diagnostic(diagnostic, self._source)]
 
 
 def _resolves(context: Context) -> bool:

@@ -13,10 +13,10 @@ from __future__ import annotations
 import functools
 import itertools
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TypeAlias
 
-from roaml.diagnostics import Diagnostic, Finding, Related, RelatedPlace, Severity, Symbol, Tag
+from roaml.diagnostics import Diagnostic, Finding, RelatedPlace, Severity, Symbol, Tag
 from roaml.exhaustive import assert_never
 from roaml.expansion import ExpandedText
 from roaml.expansion.problems import ExpansionProblem
@@ -24,10 +24,9 @@ from roaml.model.kinds import FileKind
 from roaml.model.machine import Dialect
 from roaml.model.property_links import LinkedFile
 from roaml.project.analysis import Analysis, Expanded
-from roaml.project.analysis.subjects import Contexts, FileInSystem
+from roaml.project.analysis.subjects import CheckedFile, Contexts, FileInSystem, Inspection
 from roaml.project.edits import laid_out
 from roaml.project.files import MAX_CHARACTERS
-from roaml.project.locate import locate
 from roaml.project.memo import Memo
 from roaml.project.settings import Settings
 from roaml.project.suppress import Suppression, covering, suppressions
@@ -73,10 +72,11 @@ class RuleRunner:
     def __init__(self, analysis: Analysis, settings: Settings) -> None:
         self.analysis = analysis
         self.settings = settings
+        self._inspection = Inspection(settings.limits, functools.partial(_found, analysis.memo))
 
     def diagnostics(self, path: str) -> tuple[Diagnostic, ...]:
         """The diagnostics of a file, sorted by position; empty if the file cannot be read."""
-        file = self.analysis.checked_file(path)
+        file = self.checked_file(path)
         if file is None:
             return ()
         known = [self._findings(subject) for subject in file.subjects]
@@ -86,19 +86,21 @@ class RuleRunner:
         if hidden and all(system is not None and system.complete for system in linked):
             unused = self._unused(file.source, [finding for of_system in known for finding in of_system], hidden)
             findings.update(dict.fromkeys(finding for finding in unused if self._is_selected(finding)))
-        return tuple(sorted((self._publish(file.source, f) for f in _visible(findings, hidden)), key=order))
+        published = [(file.source, finding, self._severity(finding)) for finding in _visible(findings, hidden)]
+        return tuple(sorted(self._published(published), key=order))
+
+    def checked_file(self, path: str) -> CheckedFile[Expanded[Analysis]] | None:
+        """A file with the findings of the rules; `None` if it cannot be read."""
+        return self.analysis.checked_file(path, self._inspection)
 
     def provisional(self, source: SourceFile, document: Document, findings: Iterable[Finding]) -> Iterator[Diagnostic]:
         """Diagnostics of a text that differs from the one that has been checked. They have no fixes and no places in
         other files."""
         selected = [finding for finding in findings if self._is_selected(finding)]
         for finding in _visible(selected, suppressions(document)):
-            places = [(r.place, r.message) for r in finding.related if isinstance(r.place, Span)]
-            related = tuple(RelatedPlace(Location(source.path, place), message) for place, message in places)
-            severity = self.settings.severities.get(finding.code, _own_severity(finding))
             yield Diagnostic(
-                *(source.path, finding.code, severity, finding.span, finding.message),
-                related=related,
+                *(source.path, finding.code, self._severity(finding), finding.span, finding.message),
+                related=tuple(_related(source, finding, {})),
                 tags=finding.tags,
                 facts=finding.facts,
                 source=source,
@@ -128,19 +130,20 @@ class RuleRunner:
     def errors(self, system: str) -> tuple[Diagnostic, ...]:
         """The errors that prevent the translation of a system. The default severities of the rules are used: settings
         and comments cannot make a system translatable."""
-        subjects = (self.analysis.subject(path, system) for path in self.analysis.files_of(system))
-        return tuple(
-            self._diagnostic(subject.source, finding, _own_severity(finding))
+        subjects = (self.analysis.subject(path, system, self._inspection) for path in self.analysis.files_of(system))
+        errors = [
+            (subject.source, finding, Severity.ERROR)
             for subject in subjects
             if subject is not None
             for finding in sorted(self._findings(subject), key=lambda finding: finding.span)
             if _own_severity(finding) is Severity.ERROR
-        )
+        ]
+        return tuple(self._published(errors))
 
     def findings(self, path: str, system: str | None) -> tuple[Finding, ...]:
         """The findings of the rules in the file `path` as a part of `system`. If `system` is `None`, the file is not in
         a system."""
-        subject = self.analysis.subject(path, system)
+        subject = self.analysis.subject(path, system, self._inspection)
         return () if subject is None else self._findings(subject)
 
     def _findings(self, subject: _FileInSystem) -> tuple[Finding, ...]:
@@ -148,21 +151,10 @@ class RuleRunner:
             return (_too_large(subject.source),)
         if subject.expanded is not None:
             return self._expanded_findings(subject.expanded, subject)
-        failure = subject.failure
-        if failure is None:
-            try:
-                place = (subject.path, subject.system_path)
-                return self.analysis.memo.get("findings", place, subject.key, lambda: self._found(subject))
-            except Exception as error:  # an internal error in one file must not prevent the check of the others
-                failure = error
-        _log_exception(failure, "%s cannot be analysed", subject.path)
-        return (internal_error("the analysis of this file", failure),)
-
-    def _found(self, subject: _FileInSystem) -> tuple[Finding, ...]:
-        contexts = self.analysis.contexts(subject, self.settings.limits)
-        return found(
-            subject.path, [*file_checks(contexts.file), *_own_checks(subject.path, contexts)], self.analysis.memo
-        )
+        if subject.failure is None:
+            return subject.findings
+        _log_exception(subject.failure, "%s cannot be analysed", subject.path)
+        return (internal_error("the analysis of this file", subject.failure),)
 
     def contexts(self, subject: _FileInSystem) -> tuple[FileContext, MachineContext] | None:
         """The contexts in which the rules check a machine; `None` for other files, and if its text is expanded."""
@@ -214,22 +206,36 @@ class RuleRunner:
         chosen = not settings.select or code in settings.select or code in _OF_CONFIGURATION
         return chosen and code not in settings.ignore
 
-    def _publish(self, source: SourceFile, finding: Finding) -> Diagnostic:
+    def _severity(self, finding: Finding) -> Severity:
         severity = self.settings.severities.get(finding.code)
-        return self._diagnostic(source, finding, _own_severity(finding) if severity is None else severity)
+        return _own_severity(finding) if severity is None else severity
 
-    def _diagnostic(self, source: SourceFile, finding: Finding, severity: Severity) -> Diagnostic:
-        path = source.path
-        related = tuple(place for other in finding.related if (place := self._related(path, other)) is not None)
-        fixes = tuple(laid_out(source, fix) for fix in finding.fixes)
-        span, message, tags, facts = finding.span, finding.message, finding.tags, finding.facts
-        return Diagnostic(path, finding.code, severity, span, message, fixes, related, tags, facts, source)
+    def _published(self, findings: Iterable[tuple[SourceFile, Finding, Severity]]) -> Iterator[Diagnostic]:
+        """Findings in texts, with their severities, as diagnostics."""
+        findings = tuple(findings)
+        symbols = {r.place for _, finding, _ in findings for r in finding.related if isinstance(r.place, Symbol)}
+        places = self.analysis.places(symbols) if symbols else {}
+        for source, finding, severity in findings:
+            yield Diagnostic(
+                *(source.path, finding.code, severity, finding.span, finding.message),
+                fixes=tuple(laid_out(source, fix) for fix in finding.fixes),
+                related=tuple(_related(source, finding, places)),
+                tags=finding.tags,
+                facts=finding.facts,
+                source=source,
+            )
 
-    def _related(self, path: str, related: Related) -> RelatedPlace | None:
-        if isinstance(related.place, Symbol):
-            location = locate(self.analysis, related.place)
-            return None if location is None else RelatedPlace(location, related.message)
-        return RelatedPlace(Location(path, related.place), related.message)
+
+def _related(
+    source: SourceFile, finding: Finding, places: Mapping[Symbol, tuple[Location, SourceFile]]
+) -> Iterator[RelatedPlace]:
+    """The related places of a finding. Symbols that no longer exist are left out."""
+    for related in finding.related:
+        if isinstance(related.place, Span):
+            yield RelatedPlace(Location(source.path, related.place), related.message, source)
+        elif related.place in places:
+            location, text = places[related.place]
+            yield RelatedPlace(location, related.message, text)
 
 
 def _in_all_copies(text: ExpandedText, findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
@@ -312,6 +318,11 @@ def _without_repetition(findings: Iterable[Finding]) -> Iterator[Finding]:
 def _too_large(source: SourceFile) -> Finding:
     message = f"the file is too large to be checked: {len(source.text):,} characters; the limit is {MAX_CHARACTERS:,}"
     return file_too_large.RULE.at(Span(0, source.lines.line_end(0)), message)
+
+
+def _found(memo: Memo, path: str, contexts: Contexts) -> tuple[Finding, ...]:
+    """The findings of all rules in a file."""
+    return found(path, [*file_checks(contexts.file), *_own_checks(path, contexts)], memo)
 
 
 def _own_checks(path: str, contexts: Contexts) -> list[Check]:

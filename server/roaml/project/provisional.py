@@ -85,7 +85,7 @@ class Checked(Record, frozen=True, eq=False):
 
 def checked(runner: RuleRunner, path: str) -> Checked | None:
     """A machine after a complete check; `None` if it is short, is not in the language, or cannot be analysed."""
-    file = runner.analysis.checked_file(path)
+    file = runner.checked_file(path)
     if file is None or len(file.source.text) < MIN_CHARACTERS:
         return None
     source, document = file.source, file.document
@@ -206,7 +206,7 @@ def _moved(diagnostic: Diagnostic, source: SourceFile, edit: _Edit) -> Diagnosti
     for place in diagnostic.related:
         path, span = place.location
         is_here = path == source.path
-        related.append(RelatedPlace(Location(path, edit.moved(span)), place.message) if is_here else place)
+        related.append(RelatedPlace(Location(path, edit.moved(span)), place.message, source) if is_here else place)
     return replace(diagnostic, span=edit.moved(diagnostic.span), related=tuple(related), fixes=(), source=source)
 
 

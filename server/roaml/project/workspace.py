@@ -9,6 +9,7 @@ moment.
 
 from __future__ import annotations
 
+import functools
 import os
 from collections.abc import Callable, Iterable, Mapping
 
@@ -58,6 +59,11 @@ class Snapshot:
         self.listed = tuple(dict.fromkeys((*listed, *opened)))
         self._listed = listed
         self._again = again
+
+    @functools.cached_property
+    def memberships(self) -> Mapping[str, tuple[str, ...]]:
+        """File -> its systems."""
+        return self.analysis.memberships
 
     def with_texts(self, texts: Mapping[str, str]) -> Snapshot:
         """A copy of this snapshot in which some files have other texts: path -> text."""

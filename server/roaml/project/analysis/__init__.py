@@ -5,9 +5,10 @@
 - Results are cached by content (`Memo`), so a later analysis recomputes only what differs. Parsed files and models are
   cached by the text of the file, types and outlines by the text and the declarations, a system by the outlines of
   its files.
-- An analysis reports no findings; `roaml.project.checking` runs the rules.
+- An analysis knows no rules: `roaml.project.checking` passes them to it, and it keeps what they find.
 - The work is divided by subject. A module uses only those before it: `sources`, `tree_files`, `systems`,
-  `families`, `expanding`, `machines`, `gaps`, `linking`, `values`, `subjects`. Other packages use only `Analysis`.
+  `families`, `expanding`, `machines`, `gaps`, `linking`, `values`, `symbols`, `subjects`. Other packages use only
+  `Analysis`.
 - A system with parameters or instances is expanded to other texts, which have an analysis of their own (`expanded`).
 """
 
@@ -93,6 +94,7 @@ class Analysis:
         self.checked_file = subjects.checked_file
         self.subject = subjects.subject
         self.contexts = subjects.contexts
+        self.places = subjects.places
 
     def _open_files(self, sources: SourceFiles, interfaces: Interfaces) -> None:
         self.source = sources.source

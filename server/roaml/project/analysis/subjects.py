@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the rules check in one file: a value for the file, with a key for each of its systems, and the contexts of the
-rules.
+"""The findings of the rules in one file, as a part of each of its systems.
 
-A check asks for the value first. It asks for the contexts only if the findings for the key are not known.
+Findings are cached by all values on which they depend. The contexts of the rules are read only if these have changed.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Generic, TypeAlias, TypeVar
 
-from roaml.diagnostics import Finding
+from roaml.diagnostics import Finding, Symbol
 from roaml.disk import UnreadableReason
 from roaml.interfaces.parse import parse as parse_interface
 from roaml.interfaces.registry import NotFound, Reason
@@ -33,6 +32,7 @@ from roaml.project.analysis.gaps import Gaps
 from roaml.project.analysis.linking import Linking
 from roaml.project.analysis.machines import NO_STRUCTS, Machines
 from roaml.project.analysis.sources import SourceFiles
+from roaml.project.analysis.symbols import symbol_name
 from roaml.project.analysis.systems import Systems
 from roaml.project.analysis.tree_files import TreeFiles
 from roaml.project.analysis.values import ReachedValues
@@ -51,7 +51,7 @@ from roaml.rules.rule import (
     UntranslatablePart,
     replacements,
 )
-from roaml.text import SourceFile
+from roaml.text import Location, SourceFile
 from roaml.xml_syntax import Document
 
 E = TypeVar("E")
@@ -72,7 +72,7 @@ class FileInSystem(Record, Generic[E], frozen=True, eq=False):
         system_path: the system file; `None` if the file is not in a system.
         system: the linked system; `None` if there is none, or it cannot be read.
         kind: the kind of the file in the system.
-        key: all values on which the findings depend.
+        findings: the findings of the rules; empty if the file is too large or its text is expanded.
         expanded: the analysis of the expanded texts, which is checked instead; `None` if nothing is expanded.
         failure: the internal error that prevents a check; `None` if there was none.
     """
@@ -82,7 +82,7 @@ class FileInSystem(Record, Generic[E], frozen=True, eq=False):
     kind: FileKind
     system_path: str | None
     system: System | None = None
-    key: object = None
+    findings: tuple[Finding, ...] = ()
     expanded: E | None = None
     failure: Exception | None = None
 
@@ -111,6 +111,18 @@ class Contexts(Record, frozen=True, eq=False):
     file: FileContext
     own: OwnContext = None
     failure: Exception | None = None
+
+
+class Inspection(Record, frozen=True, eq=False):
+    """How files are checked.
+
+    Attributes:
+        limits: the greatest sizes of systems, which the rules report.
+        found: the rules: a path and the contexts of its file -> the findings.
+    """
+
+    limits: Limits
+    found: Callable[[str, Contexts], tuple[Finding, ...]]
 
 
 class Rooms(Record, frozen=True, eq=False):
@@ -154,45 +166,53 @@ class Subjects(Generic[E]):
         files.update((path, None) for path in paths if path not in files and sources.kind(path) not in unchecked)
         return tuple(path for path in files if sources.source(path) is not None)
 
-    def checked_file(self, path: str) -> CheckedFile[E] | None:
-        """A file in all of its systems; `None` if it cannot be read."""
+    def checked_file(self, path: str, inspection: Inspection) -> CheckedFile[E] | None:
+        """A file with its findings in all of its systems; `None` if it cannot be read."""
         source = self._rooms.sources.source(path)
         if source is None:
             return None
-        subjects = (self.subject(path, system) for system in self._rooms.systems.systems_of(path))
+        subjects = (self.subject(path, system, inspection) for system in self._rooms.systems.systems_of(path))
         is_xml = self._rooms.sources.kind(path) in _XML_KINDS
         document = self._rooms.sources.document(path) if is_xml else None
         return CheckedFile(source, document, tuple(subject for subject in subjects if subject is not None))
 
-    def subject(self, path: str, system: str | None) -> FileInSystem[E] | None:
-        """A file as a part of a system; `None` if it cannot be read."""
+    def subject(self, path: str, system: str | None, inspection: Inspection) -> FileInSystem[E] | None:
+        """A file with its findings as a part of a system; `None` if it cannot be read."""
         rooms, source = self._rooms, self._rooms.sources.source(path)
         if source is None:
             return None
-        if len(source.text) > MAX_CHARACTERS:
-            return FileInSystem(
-                path, source, FileKind.UNKNOWN, system, rooms.linking.system(system) if system else None
-            )
-        expanded = self._expanded_file(path) if system is None else self._expanded(system)
         linked = rooms.linking.system(system) if system else None
+        if len(source.text) > MAX_CHARACTERS:
+            return FileInSystem(path, source, FileKind.UNKNOWN, system, linked)
+        expanded = self._expanded_file(path) if system is None else self._expanded(system)
         if expanded is not None:
             return FileInSystem(path, source, FileKind.UNKNOWN, system, linked, expanded=expanded)
         kind = rooms.systems.kind_in(path, system)
+        reader = _Reader(rooms, path, source, kind, system, linked)
         try:
-            key = _Reader(rooms, path, source, kind, system, linked).key()
+            findings = rooms.sources.memo.get(
+                *("findings", (path, system), reader.key()),
+                lambda: inspection.found(path, reader.contexts(inspection.limits)),
+            )
         except Exception as error:  # an internal error in one file must not prevent the check of the others
             return FileInSystem(path, source, kind, system, linked, failure=error)
-        return FileInSystem(path, source, kind, system, linked, key)
+        return FileInSystem(path, source, kind, system, linked, findings)
 
     def contexts(self, subject: FileInSystem[E], limits: Limits) -> Contexts:
         """The contexts in which the rules check a file."""
         path, source, kind = subject.path, subject.source, subject.kind
-        reader = _Reader(self._rooms, path, source, kind, subject.system_path, subject.system)
-        file = reader.file_context()
-        try:
-            return Contexts(file, reader.own_context(limits))
-        except Exception as error:  # after an internal error, the findings of the parsers are still useful
-            return Contexts(file, failure=error)
+        return _Reader(self._rooms, path, source, kind, subject.system_path, subject.system).contexts(limits)
+
+    def places(self, symbols: Iterable[Symbol]) -> Mapping[Symbol, tuple[Location, SourceFile]]:
+        """The positions where symbols are defined, with the texts of their files. Symbols that no longer exist are left
+        out."""
+        sources = self._rooms.sources
+        found = {symbol: (symbol_name(sources, symbol), sources.source(symbol.path)) for symbol in symbols}
+        return {
+            symbol: (Location(symbol.path, name.span), source)
+            for symbol, (name, source) in found.items()
+            if name is not None and source is not None
+        }
 
 
 class _Reader:
@@ -260,6 +280,14 @@ class _Reader:
         return parts
 
     # -------------------------------------------------------------- contexts
+
+    def contexts(self, limits: Limits) -> Contexts:
+        """The contexts in which the rules check the file."""
+        file = self.file_context()
+        try:
+            return Contexts(file, self.own_context(limits))
+        except Exception as error:  # after an internal error, the findings of the parsers are still useful
+            return Contexts(file, failure=error)
 
     def file_context(self) -> FileContext:
         """The context of the rules about files of any kind."""

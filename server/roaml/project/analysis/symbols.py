@@ -1,28 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Finds the current position of a symbol."""
+"""Finds the names where symbols are defined."""
 
 from __future__ import annotations
 
 from roaml.diagnostics import Symbol
 from roaml.model.machine import Send
 from roaml.model.syntax import Name
-from roaml.project.analysis import Analysis
+from roaml.project.analysis.sources import SourceFiles
 from roaml.roles import SymbolKind
-from roaml.text import Location
 
 
-def locate(analysis: Analysis, symbol: Symbol) -> Location | None:
-    """The position where a symbol is defined; for an event, that of its first `<send>` in the file. `None` if the
-    symbol no longer exists."""
-    name = _find(analysis, symbol)
-    return None if name is None else Location(symbol.path, name.span)
-
-
-def _find(analysis: Analysis, symbol: Symbol) -> Name | None:
+def symbol_name(sources: SourceFiles, symbol: Symbol) -> Name | None:
+    """The name where a symbol is defined; for an event, that of its first `<send>` in the file. `None` if the symbol no
+    longer exists."""
     if symbol.kind is SymbolKind.TREE:
-        tree = analysis.tree(symbol.path)
+        tree = sources.tree(symbol.path)
         return next((t.id for t in tree.trees if t.id and t.id.value == symbol.name), None) if tree else None
-    machine = analysis.machine(symbol.path)
+    machine = sources.machine(symbol.path)
     if machine is None:
         return None
     match symbol.kind:
