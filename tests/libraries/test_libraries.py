@@ -51,7 +51,8 @@ def test_defaults_are_of_ports_that_are_read() -> None:
 
 def test_other_names_lead_to_nodes() -> None:
     assert all(name.now in CPP.nodes for name in CPP.renamed.values())
-    assert all(not absent.instead or absent.instead in CPP.nodes for absent in CPP.absent.values())
+    instead = {absent.instead: absent.reason for absent in CPP.absent.values() if absent.instead}
+    assert all(name in CPP.nodes and f"`{name}`" in reason for name, reason in instead.items())
     assert not CPP.nodes.keys() & (CPP.absent.keys() | CPP.renamed.keys())
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
@@ -16,13 +17,14 @@ from roaml.libraries.programs.assembly import programs
 from roaml.libraries.programs.effects import Situation, effects
 from roaml.libraries.programs.statuses import FAILURE, RUNNING, SUCCESS
 from roaml.libraries.scripts import AFTERWARDS, CONDITIONS
-from roaml.model.system import builtin_plugins
+from roaml.model.system import ANY_TYPE, builtin_plugins
 from roaml.model.tree import build_tree_file
-from roaml.roles import UNBOUNDED, ValueRole
+from roaml.roles import ValueRole
 from roaml.rules.support.node_calls import WITHOUT_RESETS
 from roaml.rules.trees import tree_semantics
 from roaml.xml_syntax import parse
 
+SWITCHES = [f"Switch{cases}" for cases in range(2, 7)]
 MACHINES = Path(__file__).parents[2] / "server" / "roaml" / "lower" / "nodes"
 ENDED = frozenset((SUCCESS, FAILURE))
 RUNNING_FOR_OTHER_REASONS = {
@@ -101,31 +103,37 @@ def test_attributes_with_scripts_are_those_of_the_schema() -> None:
     assert {each.name for each in attributes if each.value is ValueRole.SCRIPT} == {*CONDITIONS, *AFTERWARDS}
 
 
-CPP = library(BEHAVIORTREE_CPP)
+def test_nodes_of_as2fm_have_machines() -> None:
+    nodes = library(BEHAVIORTREE_CPP).nodes.values()
+    assert {node.name for node in nodes if not node.program_only} == {path.stem for path in MACHINES.glob("*.ascxml")}
 
 
-def test_declarations_do_not_change_unnoticed() -> None:
-    """Defaults, numbers of children and useful numbers, written a second time: a change must be made in both places."""
-    ports = [(node.name, port) for node in CPP.nodes.values() for port in node.ports]
-    assert {(name, port.name): port.default for name, port in ports if port.default is not None} == {
-        ("Parallel", "success_count"): "-1",
-        ("Parallel", "failure_count"): "1",
-        ("ParallelAll", "max_failures"): "1",
-        ("TryCatch", "catch_on_halt"): "false",
-        ("RunOnce", "then_skip"): "true",
-        ("Precondition", "else"): "FAILURE",
-        **{(f"Loop{type_}", "if_empty"): "SUCCESS" for type_ in ("Int", "Bool", "Double", "String")},
-    }
-    assert {node.name: node.children for node in CPP.nodes.values() if node.children != node.kind.children} == {
-        **dict.fromkeys(("IfThenElse", "WhileDoElse"), (2, 3)),
-        **{f"Switch{cases}": (cases + 1, cases + 1) for cases in range(2, 7)},
-        "TryCatch": (2, UNBOUNDED),
-    }
-    limits = [(name, port.name, port.limits) for name, port in ports if port.limits is not None]
-    assert {(name, port): each.minimum for name, port, each in limits if each.minimum is not None} == {
-        ("Repeat", "num_cycles"): 1,
-        ("RetryUntilSuccessful", "num_attempts"): 1,
-    }
-    assert [(name, port.name) for name, port in ports if port.system_constant] == [
-        (f"BlackboardCheck{type_}", "return_on_mismatch") for type_ in ("Int", "Bool", "Double", "String")
-    ]
+def test_ports_are_those_of_the_machines() -> None:
+    """The machines that execute nodes with the meaning of AS2FM declare the types and directions in systems."""
+    for name in (path.stem for path in MACHINES.glob("*.ascxml")):
+        root = ElementTree.parse(MACHINES / f"{name}.ascxml").getroot()
+        declared = {
+            each.get("key"): (each.tag.rpartition("_")[2], each.get("type"))
+            for each in root
+            if each.tag.startswith("bt_declare_port_") and each.get("key") != "CHILDREN_COUNT"
+        }
+        ports = builtin_plugins()[name].ports
+        own = {port.key: (port.direction.value, port.type) for port in ports if not port.key.endswith("_threshold")}
+        assert own == declared, name
+
+
+def test_the_checks_of_entries_compare_values_of_the_type_in_their_names() -> None:
+    integers = library_node("BlackboardCheckInt")
+    assert integers is not None
+    for type_ in ("Int", "Bool", "Double", "String"):
+        node = library_node(f"BlackboardCheck{type_}")
+        assert node is not None
+        compared = [port for port in node.ports if port.type == type_.lower()]
+        assert [port.name for port in compared] == ["value_A", "value_B"]
+        assert [port for port in node.ports if port not in compared] == [integers.port("return_on_mismatch")]
+
+
+def test_switches_compare_values_of_any_type() -> None:
+    """In the trees of systems, entries have the types of the state machines."""
+    ports = [port for name in SWITCHES for port in BEHAVIOR_TREE.elements[name].ports]
+    assert {port.port.type for port in ports if port.port} == {ANY_TYPE}

@@ -51,6 +51,24 @@ def test_each_node_does_what_the_library_does(name: str) -> None:
         compare(Drawn(name, ports, tuple(leaves)), number, happens=number % 2 == 1)
 
 
+DEFAULTS = {
+    node.name: {port.name for port in node.ports if port.default is not None}
+    for node in filter(None, map(library_node, sorted(NODES)))
+    if any(port.default is not None for port in node.ports)
+}
+
+
+@pytest.mark.parametrize("name", DEFAULTS)
+def test_each_node_has_the_defaults_of_the_library(name: str) -> None:
+    """Each node without the ports that have a default, when it ends, and when it is halted while it is RUNNING."""
+    ports = tuple((key, values[0]) for key, values in NODES[name].items() if key not in DEFAULTS[name])
+    count = 1 if name in DECORATED else COUNTS.get(name, (3, 3))[1]
+    node = Drawn(name, ports, tuple(Drawn(f"Act{2 - number % 3}") for number in range(count)))
+    tree = Drawn("KeepRunningUntilFailure", (), (Drawn("ReactiveFallback", (), (Drawn("Check"), node)),))
+    for seed in range(4):
+        compare(tree, seed)
+
+
 CHOICES = [
     (node.name, port.name)
     for node in filter(None, map(library_node, sorted(NODES)))

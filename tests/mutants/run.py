@@ -28,7 +28,8 @@ ROOT = Path(__file__).resolve().parents[2]
 SERVER = Path("server", "roaml")
 
 TESTS = (
-    ("tests/libraries", "tests/forest"),
+    ("tests/libraries",),
+    ("tests/forest",),
     ("tests/mocks/test_node_effects.py", "tests/mocks/test_trees_in_systems.py"),
     ("tests/mocks/test_mock_library.py",),
     ("tests/rules", "tests/findings/test_valid_trees.py"),
@@ -60,10 +61,24 @@ _DECLARED = (
     (re.compile(r'(?<=min=")-?[0-9]+(?=")'), "+1"),
     (re.compile(r'(?<=above=")-?[0-9]+(?=")'), "+1"),
     (re.compile(r'(?<=children=")[0-9]+'), "+1"),
-    (re.compile(r"(?<=<)in(?= name[^>]*/>)"), "out"),
-    (re.compile(r"(?<=<)out(?= name[^>]*/>)"), "in"),
+    (re.compile(r' (?:names-entry|program-only|needs-ports)="true"'), ""),
+    (re.compile(r' special="[^"]*"'), ""),
+    (re.compile(r' system-direction="[^"]*"'), ""),
+    (re.compile(r'(?<=running=")true(?=")'), "false"),
+    (re.compile(r'(?<=running=")false(?=")'), "true"),
+    (re.compile(r'(?<=[ -]type=")(?!bool")[^"]*(?=")'), "bool"),
+    (re.compile(r'(?<=[ -]type=")bool(?=")'), "int"),
+    (re.compile(r'(?<= to=")\w+(?=")'), "Inverter"),
+    (re.compile(r'(?<= instead=")\w+(?=")'), "Inverter"),
 )
-"""Part of a declaration -> what replaces it. `+1` is the number plus one."""
+"""Part of a tag in a declaration -> what replaces it. `+1` is the number plus one."""
+
+_DIRECTIONS = (
+    (re.compile(r"^<in (.*)</in>", re.DOTALL), r"<out \1</out>"),
+    (re.compile(r"^<out (.*)</out>", re.DOTALL), r"<in \1</in>"),
+    (re.compile(r"^<inout (.*)</inout>", re.DOTALL), r"<in \1</in>"),
+)
+"""The declaration of a port -> a declaration with another direction."""
 
 _STATEMENTS = (
     (re.compile(r"\bSUCCESS\b"), "FAILURE"),
@@ -99,6 +114,9 @@ def mutants() -> Iterator[Mutant]:
     """All mutants."""
     folder = SERVER / "libraries"
     yield from _replaced(folder / "behaviortree_cpp.xml", _DECLARED, re.compile(r"<[^!>]*>"))
+    yield from _replaced(
+        folder / "behaviortree_cpp.xml", _DIRECTIONS, re.compile(r"<(in|out|inout) [^<]*</\1>", re.DOTALL)
+    )
     for path in sorted((ROOT / folder / "programs" / "definitions").glob("*.txt")):
         yield from _replaced(path.relative_to(ROOT), _STATEMENTS, re.compile(r"^(?!#).*$", re.MULTILINE))
     for name, tables in PYTHON.items():
@@ -110,7 +128,8 @@ def _replaced(path: Path, rules: tuple[tuple[re.Pattern[str], str], ...], part: 
     for place in part.finditer(text):
         for pattern, new in rules:
             for match in pattern.finditer(text, place.start(), place.end()):
-                yield Mutant(path, match.start(), match.end(), str(int(match[0]) + 1) if new == "+1" else new)
+                other = str(int(match[0]) + 1) if new == "+1" else match.expand(new)
+                yield Mutant(path, match.start(), match.end(), other)
 
 
 def _entries(path: Path, tables: tuple[str, ...]) -> Iterator[Mutant]:
