@@ -69,6 +69,24 @@ def test_each_node_has_the_defaults_of_the_library(name: str) -> None:
         compare(tree, seed)
 
 
+SKIPPED = Drawn("Act1", (("_skipIf", "x != 1"),))
+HELD = Drawn("Sequence", (), (SKIPPED, SKIPPED))
+"""A node that stays RUNNING when all its children are skipped."""
+
+
+@pytest.mark.parametrize("child", [SKIPPED, HELD], ids=["skipped", "held"])
+@pytest.mark.parametrize("name", sorted(NODES))
+def test_each_node_does_what_the_library_does_with_skipped_children(name: str, child: Drawn) -> None:
+    """The children are not skipped at the second tick."""
+    ports = tuple((key, values[0]) for key, values in NODES[name].items())
+    count = 1 if name in DECORATED else COUNTS.get(name, (3, 3))[1]
+    node = Drawn(name, ports, (child,) * count)
+    again = Drawn("KeepRunningUntilFailure", (), (Drawn("ForceSuccess", (), (node,)),))
+    change = Drawn("Repeat", (("num_cycles", "4"),), (Drawn("Script", (("code", "x += 1"),)),))
+    tree = Drawn("Parallel", (("failure_count", "2"),), (again, change))
+    assert difference_with_mocks(tree, 6, 1, happens=True) == "", as_xml(tree)
+
+
 CHOICES = [
     (node.name, port.name)
     for node in filter(None, map(library_node, sorted(NODES)))
