@@ -10,7 +10,7 @@ from roaml.model.gaps import InterfaceAct
 from roaml.model.syntax import Name
 from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule, did_you_mean
-from roaml.rules.support.interfaces import close_channels, declared, is_intended, name_span, other_kind, renamings
+from roaml.rules.support.interfaces import close_channels, declared, intended_channels, name_span, other_kind, renamings
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -23,8 +23,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
     ):
         unused = [(declaration, channel) for declaration, _, channel in declared(context, kind) if not channel.users]
         unserved = [c.name for c in channels.values() if c.users and not c.sources] if unused else []
+        intended = intended_channels(system, other_kind(kind)) if unused else frozenset()
         for declaration, channel in unused:
-            if is_intended(system, channel, other_kind(kind)):
+            if channel.name in intended:
                 continue  # misleading-handle reports the client
             if not system.may(InterfaceAct(other_kind(kind)), channel.name):
                 close = close_channels(channel.name, unserved)

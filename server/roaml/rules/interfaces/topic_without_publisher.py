@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Severity
 from roaml.model.gaps import InterfaceAct
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule, TreeContext, did_you_mean
-from roaml.rules.support.interfaces import close_channels, has_publisher, is_intended, named_here, renamings
+from roaml.rules.support.interfaces import close_channels, has_publisher, intended_channels, named_here, renamings
 
 _PUBLISHES = InterfaceAct(SymbolKind.PUBLISHER, ProtocolPart.MESSAGE)
 
@@ -19,12 +19,13 @@ def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
     if system is None:
         return
     unpublished = [n for n in named_here(context, SymbolKind.SUBSCRIBER) if not has_publisher(system, n.channel)]
+    intended = intended_channels(system, SymbolKind.PUBLISHER) if unpublished else frozenset()
     published = [t.name for t in system.topics.values() if t.sources] if unpublished else []
     for naming in unpublished:
         topic = naming.channel
         if not naming.use.receives or system.may(_PUBLISHES, topic.name):
             continue
-        if is_intended(system, topic, SymbolKind.PUBLISHER):
+        if topic.name in intended:
             continue  # misleading-handle reports the publisher
         # A topic that is declared on both sides is unlikely to be misspelled.
         close = close_channels(topic.name, () if topic.sources else published)

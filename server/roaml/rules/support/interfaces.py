@@ -181,14 +181,17 @@ def _machines(ends: Iterable[ChannelEndpoint]) -> set[str]:
     return {end.automaton.path for end in ends}
 
 
-def is_intended(system: System, channel: Channel, kind: SymbolKind) -> bool:
-    """Whether a declaration of the kind `kind` probably means a topic, service or action that has none of this kind."""
+def intended_channels(system: System, kind: SymbolKind) -> frozenset[str]:
+    """The names of the topics, services or actions that have no declaration of the kind `kind`, and that such a
+    declaration probably means."""
+    names = set()
     for automaton in system.automata:
         for use in automaton.outline.interfaces:
             current = system.channel(automaton, use) if use.kind is kind else None
-            if current is not None and intended(system, use, current) is channel:
-                return True
-    return False
+            channel = intended(system, use, current) if current is not None else None
+            if channel is not None:
+                names.add(channel.name)
+    return frozenset(names)
 
 
 def _parts(name: str) -> list[str]:
