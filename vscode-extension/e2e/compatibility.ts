@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import * as fs from "node:fs";
 import * as path from "node:path";
 import { VERSION } from "./support/paths";
-import { MEND, sample, type Stage } from "./support/stage";
+import { MEND, sample, SharedFolder, type Stage } from "./support/stage";
 import { fakeExtension, temporaryFolder, write } from "./support/workbench";
 
 /** Replaces the XML extension: the used part of its interface, and its diagnostics for ill-formed files. */
@@ -108,11 +108,11 @@ export function compatibility(stage: Stage): void {
         },
     );
 
-    const withPython = () => {
+    const withPython = new SharedFolder(() => {
         const folder = sample();
         write(path.join(folder, ".python"), privatePython(stage.workbench.home));
         return folder;
-    };
+    });
     stage.test("the server of the active Python environment is used", withPython, async (window) => {
         await window.openFile("battery.ascxml");
         await window.squiggles.first().waitFor();
