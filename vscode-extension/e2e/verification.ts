@@ -202,6 +202,25 @@ export function verification(stage: Stage): void {
         await window.run("AS2FM: Verify");
         await icon(row(window, "never_empty"), "failed").waitFor();
         await icon(row(window, "all_delivered"), "skipped").waitFor();
+
+        // The nearest passing trace parts from a counterexample. Both sides lead to their lines, states, and stages.
+        await window.openFile("properties.xml");
+        await window.repeat(() => lens(window, "Show counterexample").last().click(), selected(window));
+        await window.page.locator(".panel").getByRole("button", { name: "Where the Traces Part" }).click();
+        await selected(window)
+            .filter({ hasText: /^here: / })
+            .waitFor();
+        await step(window, /^trace \d+ passed: the first \d+ turns are the same/).waitFor();
+        const there = step(window, /^there: /);
+        await there.click();
+        await state(window, /success: true/)
+            .first()
+            .waitFor();
+        await window.screenshot("parting");
+        await there.hover();
+        await there.getByRole("button", { name: "Show on Stage" }).click();
+        const stage = await window.picture(".pane-timeline .drawing > svg");
+        await stage.locator('body[data-step]:not([data-step="0"])').waitFor();
     });
 
     stage.test("an expectation is set from a result and judges it at once", late, async (window) => {

@@ -309,6 +309,18 @@ export interface Counterexample {
     readonly steps: readonly Step[];
 }
 
+/**
+ * The first difference between a trace and the nearest one with the opposite verdict: what an automaton does in each.
+ * `there` is null if it does nothing more; `trace` is the number of the other trace, null if it has none.
+ */
+export interface Parting {
+    readonly heading: string;
+    readonly here: Step;
+    readonly there: Step | null;
+    readonly seed: number;
+    readonly trace: number | null;
+}
+
 export interface PropertyParams extends DocumentParams {
     readonly property: string;
 }
@@ -398,4 +410,6 @@ export const setExpectation = new RequestType<SetExpectationParams, ExpectationS
 export const counterexample = new RequestType<CounterexampleParams, Counterexample | null, void>(
     "as2fm/counterexample",
 );
+/** Where the trace of `as2fm/counterexample` parts from the nearest one with the opposite verdict; null if nowhere. */
+export const parting = new RequestType<CounterexampleParams, Parting | null, void>("as2fm/parting");
 export const traceState = new RequestType<TraceStateParams, readonly StateRow[] | null, void>("as2fm/traceState");

@@ -97,7 +97,7 @@ def register(context: Context) -> None:
             "trace": why.trace,
             "expected": missed(result),
             "stale": current.is_stale(known),
-            "steps": [_step(context, known, path, line) for line in why.lines],
+            "steps": [line_row(context, known, path, line) for line in why.lines],
         }
 
     @context.feature(TRACE_STATE)
@@ -257,7 +257,8 @@ def _property(current: CurrentResults, property_: Verifiable) -> Json:
     return values
 
 
-def _step(context: Context, known: KnownResult, system: str, line: StoryLine) -> Json:
+def line_row(context: Context, known: KnownResult, system: str, line: StoryLine) -> Json:
+    """A line of the explanation of a trace, with its place and what pictures highlight."""
     origin = line.origin
     nodes = highlights(known.analysis, system, line.automaton, origin, line.location) if origin is not None else ()
     convert = context.session.convert

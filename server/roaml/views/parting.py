@@ -94,15 +94,18 @@ def parting_text(difference: Parting, other: Story, place_of: PlaceOf) -> str:
         other: the second trace.
         place_of: file and line of an origin.
     """
+    there = "takes no further turn" if difference.there is None else _turn(difference.there, place_of)
+    return (
+        f"  {parting_heading(difference, other)}\n    here   {_turn(difference.here, place_of)}\n    there  {there}\n"
+    )
+
+
+def parting_heading(difference: Parting, other: Story) -> str:
+    """The verdict of the second trace, what both traces have in common, and the automaton that then differs."""
     turn, count = difference.here, difference.common
     at = "" if turn.time is None else f" at {turn.time:.3f} s"
     same = f"the first {count:,} {'turn is' if count == 1 else 'turns are'} the same"
-    there = "takes no further turn" if difference.there is None else _turn(difference.there, place_of)
-    return (
-        f"  {trace_name(other)} {VERDICTS[other.recording.verdict].value}: {same}, then {turn.who}{at}\n"
-        f"    here   {_turn(turn, place_of)}\n"
-        f"    there  {there}\n"
-    )
+    return f"{trace_name(other)} {VERDICTS[other.recording.verdict].value}: {same}, then {turn.who}{at}"
 
 
 def _turn(turn: Turn, place_of: PlaceOf) -> str:

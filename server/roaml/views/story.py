@@ -58,7 +58,7 @@ def lines(story: Story, place_of: PlaceOf) -> list[StoryLine]:
 def _turn_lines(story: Story, place_of: PlaceOf) -> list[StoryLine]:
     shown_turns = _without_idle_halts(story, turns(story))
     return [
-        _line(shown_turns[shown], place_of) if isinstance(shown, int) else _folded_line(shown, shown_turns)
+        turn_line(shown_turns[shown], place_of) if isinstance(shown, int) else _folded_line(shown, shown_turns)
         for shown in _folded(story, shown_turns)
     ]
 
@@ -91,7 +91,8 @@ def waits_of(story: Story) -> tuple[Wait, ...]:
     return () if story.standstill is None else waits(story.standstill, story.clock[-1] if story.clock else None)
 
 
-def _line(turn: Turn, place_of: PlaceOf) -> StoryLine:
+def turn_line(turn: Turn, place_of: PlaceOf) -> StoryLine:
+    """The line of one turn."""
     return StoryLine(
         turn.number,
         "" if turn.time is None else f"{turn.time:.3f} s",

@@ -12,6 +12,9 @@ export const DEBUG_TYPE = "as2fm";
 /** The attribute of a run that opens the stage. */
 export const ON_STAGE = "onStage";
 
+/** The attribute of a run with the step at which it is shown first. */
+export const AT_STEP = "atStep";
+
 /** A trace of `verify`. */
 export interface Trace {
     readonly seed: number;

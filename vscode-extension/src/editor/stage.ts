@@ -17,7 +17,7 @@ import {
     type ToStage,
     type Verdict,
 } from "../stage/contract";
-import { ON_STAGE } from "./debugging";
+import { AT_STEP, ON_STAGE } from "./debugging";
 import type { DebugSessions } from "./debugSessions";
 import { activeNodes, type Answer } from "./pictureActivity";
 import type { PicturePanels } from "./picturePanels";
@@ -61,7 +61,7 @@ export class Stage implements vscode.Disposable {
             sessions.onStopped((session) => {
                 if (session.configuration[ON_STAGE] !== true || this.opened.has(session.id)) return;
                 this.opened.add(session.id);
-                void this.open();
+                void this.begin(session);
             }),
         ];
     }
@@ -69,6 +69,12 @@ export class Stage implements vscode.Disposable {
     dispose(): void {
         this.panel?.dispose();
         for (const part of this.subscriptions) part.dispose();
+    }
+
+    private async begin(session: vscode.DebugSession): Promise<void> {
+        await this.open();
+        const step: unknown = session.configuration[AT_STEP];
+        if (typeof step === "number") await session.customRequest("goToStep", { step });
     }
 
     /** Show the run that is debugged. */
