@@ -9,12 +9,13 @@ from collections.abc import Iterable, Iterator
 
 import pytest
 
+from as2fm_lsp.server import create
 from fuzz import limits, runner
 from fuzz.checked import problems_of_check
 from fuzz.corpus import snippets, systems
 from fuzz.damage import JSON, XML
 from fuzz.runner import run, run_all
-from fuzz.strategies import plan, strategies
+from fuzz.strategies import frames, plan, strategies
 from fuzz.strategies.files import make
 from fuzz.strategy import Failure, Strategy
 from roaml.diagnostics import Severity
@@ -37,6 +38,11 @@ def test_a_seed_makes_one_case(name: str) -> None:
         one, same = strategies()[name].make(seed), strategies()[name].make(seed)
         assert one.files() == same.files()
         assert list(one.description()) == list(same.description())
+
+
+def test_every_request_of_the_project_is_sent() -> None:
+    features = {name for name in create().endpoint.protocol.fm.features if name.startswith("as2fm/")}
+    assert features - {"as2fm/didChangeTrust"} <= {*frames.REQUESTS, *frames.OTHERS}
 
 
 def test_cases_damage_something() -> None:

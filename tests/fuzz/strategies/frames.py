@@ -66,6 +66,18 @@ REQUESTS = (
     "as2fm/pictureEdit",
     "as2fm/migrate",
     "as2fm/counterexample",
+    "as2fm/parting",
+    "as2fm/traceState",
+    "as2fm/coverage",
+    "as2fm/expectations",
+    "as2fm/setExpectation",
+    "as2fm/experiment",
+    "as2fm/newParameter",
+    "as2fm/propertySentences",
+    "as2fm/newProperty",
+    "as2fm/mocks",
+    "as2fm/setMock",
+    "as2fm/janiView",
 )
 OTHERS = (
     "workspace/symbol",
@@ -226,7 +238,14 @@ def _params(random: Random, uri: str, text: str) -> Json:
         "ch": random.choice(["\n", ">"]),
         "options": {"tabSize": 2, "insertSpaces": True},
         "kind": random.choice(["machine", "tree", "ros"]),
-        "property": "p",
+        "property": random.choice(["p", "never_empty", ""]),
+        "expected": random.choice([">= 0.9", "", "= P"]),
+        "witness": random.random() < 0.5,
+        **{name: random.randrange(3) for name in ("trace", "step", "earlier", "offset")},
+        "pattern": random.choice(["", "<leaf>"]),
+        "within": random.choice(["", "1 s"]),
+        "sentence": random.choice(["existence", "absence", ""]),
+        "events": random.choice([["a"], [""], []]),
     }
 
 
