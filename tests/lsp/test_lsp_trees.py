@@ -129,6 +129,21 @@ async def test_the_lenses_of_a_tree_in_a_system(tmp_path: Path) -> None:
         assert await ask(client, MOCKS, document(robot / "tree.xml")) is None
 
 
+async def test_subtrees_have_lenses_of_the_tree_that_uses_them(tree: Path) -> None:
+    subtree = '<BehaviorTree ID="Approach"><AlwaysSuccess/></BehaviorTree>'
+    unused = '<BehaviorTree ID="Unused"><AlwaysSuccess/></BehaviorTree>'
+    text = TREE.replace("<Fallback>", '<Fallback><SubTree ID="Approach"/>').replace(
+        "</root>", f"{subtree}{unused}</root>"
+    )
+    tree.write_text(text.replace("<root", '<root main_tree_to_execute="Main"'), encoding="utf-8")
+    async with connect(tree.parent, options=COMMANDS) as client:
+        client.open(tree, language="xml")
+        in_main = ["Run in Main", "Debug in Main", "Verify in Main"]
+        assert await lenses(client, tree) == ["Run", "Debug", "Verify", "Mocks", *in_main]
+        await verify(client, tree, [], SILENT)
+        assert (await lenses(client, tree))[-1].startswith("Verify in Main · 1, exact")
+
+
 async def test_a_tree_with_errors_cannot_be_run(tree: Path) -> None:
     tree.write_text(TREE.replace("</Fallback>", "<Inverter/></Fallback>"), encoding="utf-8")
     async with connect(tree.parent, options=COMMANDS) as client:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lenses above each behavior tree: run, debug and verify it, alone with mocks or in its systems.
+"""Lenses above each behavior tree: run, debug and verify it, alone with mocks, in the tree that uses it, or in its
+systems.
 
 The protocol has no commands that debug or edit mocks. A client that has these commands names them in its
 initialization options: `debugModel` is called with the URI of a system or tree and attributes of `launch`, `editMocks`
@@ -19,8 +20,10 @@ from roaml.diagnostics import Severity
 from roaml.ide.system_names import system_names
 from roaml.ide.verifiable import verifiable
 from roaml.model.kinds import FileKind
+from roaml.model.tree import Tree
 from roaml.project.mock_files import executed_tree
 from roaml.project.paths import is_on_disk
+from roaml.text import Span
 
 RUN, DEBUG, MOCKS = "Run", "Debug", "Mocks"
 
@@ -35,11 +38,13 @@ def lenses(context: Context, on: RequestedDocument, broken: Collection[str]) -> 
         return
     if on.analysis.memberships.get(on.path):
         yield from _in_systems(context, on, broken)
-    elif executed_tree(on.analysis, on.path) is not None:
-        yield from _alone(context, on)
+    else:
+        executed = executed_tree(on.analysis, on.path)
+        if executed is not None:
+            yield from _alone(context, on, executed)
 
 
-def _alone(context: Context, on: RequestedDocument) -> Iterator[types.CodeLens]:
+def _alone(context: Context, on: RequestedDocument, executed: Tree) -> Iterator[types.CodeLens]:
     (property_,) = verifiable(on.analysis, on.path)
     place, uri = on.range(property_.name_span), on.convert.uri(on.path)
     errors = [d for d in on.snapshot.checker.diagnostics(on.path) if d.severity is Severity.ERROR]
@@ -49,13 +54,31 @@ def _alone(context: Context, on: RequestedDocument) -> Iterator[types.CodeLens]:
         return
     current = CurrentResults(context, on.snapshot, on.path)
     known = current.get(property_.name)
-    title = TITLE if known is None else f"{TITLE} · {result_words(current, known)}"
-    commands = [*_debug(context, uri, ""), types.Command(title, VERIFY, arguments=[uri, [property_.name]])]
+
+    def runs(where: str) -> list[types.Command]:
+        title = f"{TITLE}{where}" if known is None else f"{TITLE}{where} · {result_words(current, known)}"
+        return [*_debug(context, uri, where), types.Command(title, VERIFY, arguments=[uri, [property_.name]])]
+
+    commands = runs("")
     commands += [] if known is None else result_commands(context, uri, property_.name, known.result)
     if context.client.edit_mocks:
         commands.append(types.Command(MOCKS, context.client.edit_mocks, arguments=[uri]))
     for command in commands:
         yield types.CodeLens(place, command)
+    for subtree in _subtrees(on, executed):
+        for command in runs(f" in {executed.id.value}" if executed.id is not None else ""):
+            yield types.CodeLens(on.range(subtree), command)
+
+
+def _subtrees(on: RequestedDocument, executed: Tree) -> Iterator[Span]:
+    """The places of the names of the trees in a file that the executed tree contains as subtrees."""
+    forest = on.analysis.forest(on.path)
+    if forest is None or executed.id is None:
+        return
+    reached = forest.reached(executed.id.value)
+    for tree in forest.file.trees:
+        if tree.id is not None and tree is not executed and tree.id.value in reached:
+            yield tree.id.span
 
 
 def _in_systems(context: Context, on: RequestedDocument, broken: Collection[str]) -> Iterator[types.CodeLens]:
