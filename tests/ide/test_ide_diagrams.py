@@ -23,6 +23,7 @@ from roaml.ide.diagrams import (
     machine_picture,
     matching,
     ros_picture,
+    system_picture,
     tree_picture,
 )
 from roaml.ide.picture_edits import PictureAction
@@ -323,6 +324,20 @@ def test_ros(tmp_path: Path) -> None:
     assert picture is not None
     assert text_at(analysis, picture.nodes[3].place).startswith('<ros_topic_publisher name="pub"')
     assert ros_picture(analysis, str(tmp_path / "a.ascxml")) is None
+
+
+def test_copies_of_a_machine_are_one_frame_with_their_number(tmp_path: Path) -> None:
+    def frames(copies: int) -> list[str]:
+        files = robot_with('<ascxml name="B" initial="s"><state id="s"/></ascxml>')
+        listed = "".join(f'<input type="node-ascxml" src="b.ascxml" name="b{n}"/>' for n in range(copies))
+        files["main.xml"] = re.sub(r'<input type="node-ascxml" src="b.ascxml" ?/>', listed, files["main.xml"])
+        folder = tmp_path / str(copies)
+        picture = system_picture(load(folder, files), str(folder / "main.xml"))
+        return [shown for shown in _nodes(picture) if shown.startswith("machine")] if picture else []
+
+    assert frames(1)[:2] == ["machine | A", "machine | B"]
+    assert frames(2)[1] == "machine | B | 2 nodes: b0, b1"
+    assert frames(7)[1] == "machine | B | 7 nodes: b0, b1, b2, b3, b4, and 2 more"
 
 
 def test_a_part_of_a_ros_graph(tmp_path: Path) -> None:

@@ -11,11 +11,12 @@ from roaml.figures.geometry import Box, Extent
 from roaml.figures.layout import LayoutDirection
 from roaml.figures.layout.packing import shelves
 from roaml.ide.diagrams.diagram import DiagramNode, DiagramNodeKind, Picture
-from roaml.ide.diagrams.drawings.cards import Card, Row, title
+from roaml.ide.diagrams.drawings.cards import Card, Row, paragraph, title
 from roaml.ide.diagrams.drawings.machine import draw_machine
 from roaml.record import replace
 
 _MARGIN = 18.0
+_TITLE_WIDTH = 400.0
 _ASPECT = {LayoutDirection.RIGHT: 1.8, LayoutDirection.DOWN: 0.8}
 
 
@@ -42,7 +43,8 @@ def _framed(picture: Picture, frame: int, direction: LayoutDirection) -> Drawing
     ids = {node.id for node in own}
     edges = [index for index, edge in enumerate(picture.edges) if edge.source in ids]
     drawn = draw_machine(Picture(name.label, tuple(own), tuple(picture.edges[index] for index in edges)), direction)
-    heading = Card((Row(title(name.label, 400.0)),))
+    counts = (Row(paragraph(detail.text, _TITLE_WIDTH, "muted"), is_joined=True) for detail in name.details)
+    heading = Card((Row(title(name.label, _TITLE_WIDTH)), *counts))
     top = heading.size.height
     size = Extent(max(drawn.size.width + 2 * _MARGIN, heading.size.width), drawn.size.height + top + _MARGIN)
     box = Box(0, 0, *size)
