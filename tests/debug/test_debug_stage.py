@@ -129,6 +129,12 @@ def test_a_violation_is_marked_and_said(client: Client) -> None:
     assert client.ask("properties")["properties"] != list(properties.values())
 
 
+def test_properties_are_sentences_as_in_the_editor(client: Client) -> None:
+    client.begin(DELIVERY, stopOnEntry=True)
+    properties = {property_["name"]: property_["text"] for property_ in client.ask("properties")["properties"]}
+    assert properties["never_delivers_when_empty"] == "hands_over && battery <= 10 never holds."
+
+
 def test_lanes_have_the_nodes_of_pictures(client: Client) -> None:
     client.begin(BUG, seed=3)
     timeline = client.ask("timeline", axis="steps", width=800, names=True)

@@ -235,6 +235,8 @@ export function debugging(stage: Stage): void {
             assert.ok(from < stopped && stopped < end, `${from} < ${stopped} < ${end}`);
             await page.locator('.pane-ros .node[data-label="/arm/command"]').click({ modifiers: ["Alt"] });
             await page.locator(".pane-ros circle.breakpoint").waitFor({ state: "detached" });
+            // Playing goes on when the timeline asks for its next part.
+            for (let times = 0; times < 6; times++) await page.locator(".pane-timeline .rows").press("+");
             await page.getByRole("button", { name: "Play" }).click();
             await window.until(async () => (await stepOf(page)) === end);
             await choicesOf(window).getByText(`step ${end},`).first().waitFor();

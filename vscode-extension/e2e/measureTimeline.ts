@@ -53,6 +53,8 @@ await timeline.getByLabel("Speed").selectOption({ label: "64 steps/s" });
 await timeline.locator(".play").click();
 await timeline.locator(`body:not([data-step="${STEPS}"])`).waitFor();
 console.log(`stage, playing: ${await withCpu(() => frames(timeline))}`);
+// Still playing: frames of a run that stands still would say nothing.
+await timeline.getByRole("button", { name: "Pause" }).waitFor();
 await workbench.stop();
 
 /** The whole run becomes visible, then a hundredth of it. */

@@ -9,6 +9,7 @@ from typing import Any
 from as2fm_lsp.debug.arguments import Arguments, RequestError
 from as2fm_lsp.debug.session import Body, DebugSession, Handler
 from roaml.debugging.debugger import Debugger
+from roaml.ide.describe import markdown
 from roaml.simulation.choices import Choice
 from roaml.smc.fault import FaultError
 
@@ -54,7 +55,7 @@ class ChoiceRequests:
             "properties": [
                 {
                     "name": name,
-                    "text": sources.comments.get(name, ""),
+                    "text": markdown.plain(sources.comments.get(name, "")),
                     "verdict": verdict.value,
                     **self._session.where(sources.property_origins.get(name)),
                 }

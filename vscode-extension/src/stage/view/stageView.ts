@@ -64,7 +64,8 @@ export class StageView {
         }
         this.addPane("properties").append(this.properties);
         this.timeline = new TimelineView(this.addPane("timeline"), (message) => {
-            this.stop(false);
+            // To ask for the next part of a long run does not end playing.
+            if (message.type === "goTo" || message.type === "goToStep") this.stop(false);
             post({ from: "timeline", message });
         });
         root.addEventListener("keydown", (event) => {
