@@ -99,6 +99,7 @@ export class TimelineView {
             case "tile":
                 this.pending = false;
                 if (message.tile) this.show(message.asked, message.tile);
+                else if (this.hasChanged) this.refresh(); // asked while the run moved, which has stopped since then
                 break;
         }
     }
