@@ -75,15 +75,37 @@ export function walkthroughPictures(stage: Stage): void {
             await page.locator(".workbench-hover").first().waitFor({ state: "detached" });
             await window.screenshot(`translate-${theme}`, { x: 0, y: 35, width: 1280, height: 700 });
             await page.locator('.tab[data-resource-name="main (laid out).jani"] .codicon-close').click();
-            await window.openFile("properties.jani");
+            await window.openFile("properties.xml");
             await window.run("AS2FM: Verify");
             const row = page.locator(".test-explorer-tree .monaco-list-row", { hasText: "never_empty" });
             await row.locator(".codicon-testing-failed-icon").waitFor();
+            await window.run("View: Focus Problems");
+            await page.locator(".panel .composite-bar .action-label", { hasText: "Properties" }).click();
+            const sentences = page.locator(".panel .monaco-list-row", { hasText: /never_empty: 0, exact/ });
+            await sentences.first().waitFor();
             await page
-                .locator(".view-line", { hasText: /never_empty.*✗/ })
+                .locator(".view-line", { hasText: /docks_only_when_low.*exact/ })
                 .first()
                 .waitFor();
-            await window.screenshot(`verify-${theme}`, { x: 0, y: 35, width: 800, height: 500 });
+            await page.mouse.move(640, 400); // the hover of the tab would cover the text
+            await page.locator(".workbench-hover").first().waitFor({ state: "detached" });
+            await window.screenshot(`verify-${theme}`, { x: 348, y: 35, width: 932, height: 703 });
+            // The run goes on to the violation.
+            await window.run("View: Toggle Panel Visibility");
+            await window.openFile("main.xml");
+            const toolbar = page.locator(".debug-toolbar");
+            await window.repeat(() => window.press("F5"), toolbar);
+            await page
+                .getByText(/step \d+, /)
+                .first()
+                .waitFor();
+            await window.run("AS2FM: Open Stage");
+            const stage = await window.picture(".pane-timeline .drawing > svg");
+            await window.run("View: Toggle Primary Side Bar Visibility");
+            await window.run("Debug: Continue");
+            await stage.locator(".pane-properties .verdict-failed").first().waitFor();
+            await stage.locator(".pane-timeline .mark").first().waitFor({ state: "attached" });
+            await window.screenshot(`debug-${theme}`, { x: 48, y: 35, width: 1232, height: 703 });
         });
     }
 }

@@ -70,7 +70,7 @@ export function loneTrees(stage: Stage): void {
         write(path.join(folder, ".vscode/settings.json"), JSON.stringify({ "workbench.colorTheme": theme }));
         return folder;
     };
-    for (const [look, theme] of themes("hc-dark", "light", "dark", "hc-dark")) {
+    for (const [look, theme] of themes("hc-dark", "light", "dark", "hc-light", "hc-dark")) {
         const themed = () => example(theme);
         stage.test(`mocks are edited beside the picture, and verified again, ${look}`, themed, async (window) => {
             const { page } = window;
@@ -101,7 +101,7 @@ export function loneTrees(stage: Stage): void {
             await sentence.click();
             await page.keyboard.press("ArrowRight");
             await page.locator(".panel .monaco-list-row", { hasText: "no expectation set" }).last().waitFor();
-            await window.screenshot(`mocks-edited-${look}`);
+            await window.screenshot(`tree-${look}`, { x: 348, y: 35, width: 932, height: 703 });
         });
     }
 

@@ -63,7 +63,7 @@ test("each step is completed by an event of the extension, and the last one is t
     const source = ["steps.ts", "documents.ts", "server.ts"].map((name) =>
         fs.readFileSync(`src/editor/${name}`, "utf8"),
     );
-    const contexts = ["running", "inSystem", "fixed", "translated", "verified"];
+    const contexts = ["running", "inSystem", "fixed", "mocked", "translated", "verified"];
     for (const { id, completionEvents } of steps) {
         assert.ok(completionEvents.length > 0, id);
         for (const event of completionEvents) {

@@ -25,6 +25,7 @@ import { newProperty } from "./newProperty";
 import type { PicturePanels } from "./picturePanels";
 import type { PlainScxmlPreview } from "./plainScxml";
 import { untrustedFolders, type LanguageServer } from "./server";
+import { done } from "./steps";
 import type { StatusItem } from "./statusItem";
 import { Tasks } from "./tasks";
 import type { Asked, PropertyTests } from "./tests";
@@ -134,6 +135,7 @@ export function registerCommands(parts: Parts): void {
         }),
         vscode.commands.registerCommand(EDIT_MOCKS, (tree: string) => {
             const uri = server.client?.protocol2CodeConverter.asUri(tree);
+            done("mocked");
             return uri && pictures.editMocks(uri);
         }),
     );

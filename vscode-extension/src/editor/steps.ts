@@ -3,7 +3,7 @@
 
 import * as vscode from "vscode";
 
-export type Step = "fixed" | "translated" | "verified";
+export type Step = "fixed" | "mocked" | "translated" | "verified";
 
 /** Set the context key of a step, to which the `completionEvents` of the walkthrough refer. */
 export function done(step: Step): void {
