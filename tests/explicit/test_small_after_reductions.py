@@ -209,6 +209,21 @@ def test_equal_extremes_are_the_value_for_all_schedulers(capsys: pytest.CaptureF
     assert f"\n{closing}; reductions" in uniform
 
 
+def test_a_property_gets_what_others_have_left(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """Its own share does not suffice: a search for one property alone needs more than a quarter of the limit."""
+    written = counters(count_to(500_001), 1)
+    written["variables"].append(variable("n"))
+    properties = {f"q{i}": probability(op("F", op("=", "n", i))) for i in range(1, 4)}
+    # The last one asks about the same paths as the first one, so it is explored with it.
+    properties["r"] = probability(op("F", op("=", "x", 1)), "Pmax")
+    written["properties"] += document(properties=properties)["properties"]
+    file = write(tmp_path, written)
+    outcome = json.loads(text_of(capsys, file, "--max-transitions", "2400000", "--format", "json"))
+    assert [row["method"] for row in outcome["results"]] == ["exact"] * 5
+    outcome = json.loads(text_of(capsys, file, "--max-transitions", "1000000", "--format", "json"))
+    assert [row["method"] for row in outcome["results"]] == ["adaptive", *["exact"] * 3, "adaptive"]
+
+
 def test_uniform_values_beside_values_for_all_schedulers(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     """The last line fits both: the value of `p` is only that under uniform choices."""
     choice = automaton("a", "s t u", [edge("s", way("t", x=1)), edge("s", way("u"))])

@@ -100,7 +100,7 @@ def parser() -> ArgumentParser:
     add("--exhaustive", "--exact", action="store_true", help="only exact values, however many states there are")
     add("--max-states", type=positive, metavar="N", help="explore at most N states for each property")
     add("--max-transitions", type=positive, metavar="N", help="without --exhaustive: explore at most N transitions for "
-        "each property (6000000)")  # fmt: skip
+        "each property (8000000)")  # fmt: skip
     add_sampling(result, has_jobs=False)
     add_model_arguments(result, reads_input=False)
     add("--fail-on", action=WordAction, words=FailOn, default=FailOn.VALUE, help="the differences with exit status 1: "

@@ -101,7 +101,7 @@ def parser() -> ArgumentParser:
         "with several values, if only probabilities depend on these")  # fmt: skip
     add("--max-states", type=positive, metavar="N", help="explore at most N states for each point")
     add("--max-transitions", type=positive, metavar="N", help="without --exhaustive: explore at most N transitions for "
-        "each point (6000000 divided by the number of points, but at least 200000)")  # fmt: skip
+        "each point (8000000 divided by the number of points, but at least 200000)")  # fmt: skip
     add_sampling(result)
     add("--dask", metavar="ADDRESS", help="run on the Dask cluster with the scheduler at this address (needs the "
         "Python package distributed)")  # fmt: skip

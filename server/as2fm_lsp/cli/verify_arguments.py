@@ -109,7 +109,7 @@ def _add_search(parser: ArgumentParser) -> None:
         "--exhaustive: no limit). Without --exhaustive, a property with more states is estimated from traces, with it, "
         "the property is undecided")  # fmt: skip
     add("--max-transitions", type=positive, metavar="N", help="without --exhaustive: explore at most N transitions for "
-        "all properties together (6000000, which takes 5 to 10 s)")  # fmt: skip
+        "all properties together (8000000, which takes about 10 s)")  # fmt: skip
     add("--max-memory", type=size, metavar="SIZE", help="stop when the states occupy this much memory, for example 4G "
         "or 500M (1G; with --exhaustive: half of the free memory)")  # fmt: skip
     add("--no-reductions", action="store_true", help="with --exhaustive: explore all states even if there are many; "

@@ -71,12 +71,14 @@ class LimitError(Exception):
     Attributes:
         states: the number of states that were reached.
         search: the search; `None` if it has not begun.
+        is_of_transitions: whether the limit was that of transitions.
     """
 
-    def __init__(self, message: str, states: int, search: Any = None) -> None:
+    def __init__(self, message: str, states: int, search: Any = None, *, is_of_transitions: bool = False) -> None:
         super().__init__(message)
         self.states = states
         self.search = search
+        self.is_of_transitions = is_of_transitions
 
 
 class SearchInterruptedError(KeyboardInterrupt):
@@ -216,7 +218,8 @@ def _searched(
             watch(ExplorationProgress(search.count, search.expanded, search.memory_used()))
         match status:
             case codes.PART if limits.transitions is not None and transitions > limits.transitions:
-                raise _stopped(search, f", with more than {limits.transitions:,} transitions")
+                why = f", with more than {limits.transitions:,} transitions"
+                raise _stopped(search, why, is_of_transitions=True)
             case codes.PART:
                 continue
             case codes.COMPLETE:
@@ -238,9 +241,9 @@ def _size(many: int) -> str:
     return f"{many / (1 << 30):.1f} GiB" if many >= 1 << 30 else f"{-(-many // (1 << 20)):,} MiB"
 
 
-def _stopped(search: Any, why: str) -> LimitError:
+def _stopped(search: Any, why: str, *, is_of_transitions: bool = False) -> LimitError:
     many = f"{search.count:,} {'state' if search.count == 1 else 'states'}"
-    return LimitError(f"stopped at {many}{why}", search.count, search)
+    return LimitError(f"stopped at {many}{why}", search.count, search, is_of_transitions=is_of_transitions)
 
 
 def search_tables(checker: ModelChecker, property_: CompiledProperty, limits: StateLimits) -> Tables:

@@ -25,9 +25,9 @@ MAX_SMALL_STATES = 20_000
 LIMITS = StateLimits(states=MAX_SMALL_STATES, bytes=4 << 30, combinations=4_096, transitions=200_000, work=100_000_000)
 """The limits of a first search, and the least that each of several properties gets."""
 SHARED_LIMITS = StateLimits(
-    states=2_000_000, bytes=1 << 30, combinations=4_096, transitions=6_000_000, work=100_000_000
+    states=2_000_000, bytes=1 << 30, combinations=4_096, transitions=8_000_000, work=100_000_000
 )
-"""The limits of all properties of one verification together. A search that reaches them takes 5 to 10 s."""
+"""The limits of all properties of one verification together. A search that reaches them takes about 10 s."""
 REDUCED_SHARE = 2
 """A search that leaves out choices may have this fraction of the transitions, each of which takes about three times as
 long."""
@@ -54,12 +54,14 @@ class Attempt(Record, frozen=True):
         transitions: the part of the limit on transitions that was used.
         reason: why there are no values, for users; "" if only traces can answer the property.
         space: the states from which the values were computed.
+        is_cut: whether there are no values because there are too many transitions.
     """
 
     exact: Exact | None
     transitions: int = 0
     reason: str = ""
     space: Space | None = None
+    is_cut: bool = False
 
 
 def attempt(
@@ -70,6 +72,7 @@ def attempt(
     *,
     leaves_out: bool = True,
     only_uniform: bool = False,
+    is_repeated: bool = False,
 ) -> Attempt:
     """The exact values of a property, if the model is not too large, no undefined operation is executed, and not only
     traces can answer the property.
@@ -78,14 +81,15 @@ def attempt(
         watch: see `roaml.explicit.space.explore`.
         leaves_out: whether choices may be left out if there are too many states.
         only_uniform: whether the value under uniform choices is sufficient for a property with a condition.
+        is_repeated: whether a search with narrower limits was cut before, so that a short one is not tried again.
     """
     if property_.question.is_conditional:
         return _conditional(checker, property_, limits, watch, only_uniform=only_uniform)
-    cost, reason = setup_cost(checker), ""
+    cost, reason, is_cut = setup_cost(checker), "", False
     checker, property_ = alone(checker, property_)
     tables = search_tables(checker, property_, limits)
     reduces = leaves_out and can_be_reduced(checker.program, property_.goal)
-    for most, is_reduced in _searches(limits, reduces=reduces):
+    for most, is_reduced in _searches(limits, reduces=reduces, is_repeated=is_repeated):
         search: Any = None
         space, exact = None, None
         try:
@@ -94,8 +98,9 @@ def attempt(
             exact, reason = values_from(space, most), ""
         except LimitError as error:
             search, reason = error.search, str(error)
+            is_cut = error.is_of_transitions
         except UndecidedError as error:
-            reason = str(error)
+            reason, is_cut = str(error), False
         except FaultError:
             return Attempt(None, cost)
         if search is not None:
@@ -103,10 +108,10 @@ def attempt(
             cost += weight * (search.transitions + search.passed) // _COST_OF_BOTH
         if exact is not None:
             return Attempt(exact if exact.is_precise else None, cost, space=space)
-    return Attempt(None, cost, reason)
+    return Attempt(None, cost, reason, is_cut=is_cut)
 
 
-def _searches(limits: StateLimits, *, reduces: bool) -> Iterator[tuple[StateLimits, bool]]:
+def _searches(limits: StateLimits, *, reduces: bool, is_repeated: bool) -> Iterator[tuple[StateLimits, bool]]:
     """The limits of the searches that follow each other, and whether each leaves out choices. The search that leaves
     out choices comes before the one through all states within wide limits, which takes much longer and answers less
     often."""
@@ -114,7 +119,8 @@ def _searches(limits: StateLimits, *, reduces: bool) -> Iterator[tuple[StateLimi
     least = LIMITS.transitions
     is_wide = least is not None and (most is None or most > least)
     if reduces and is_wide:
-        yield replace(limits, states=min(LIMITS.states, limits.states), transitions=least), False
+        if not is_repeated:
+            yield replace(limits, states=min(LIMITS.states, limits.states), transitions=least), False
     else:
         yield limits, False
     if reduces:
@@ -173,12 +179,13 @@ def limits_beside(steps: int, setup: int) -> StateLimits | None:
 class Budget:
     """What is left of limits that several properties share. Each gets an equal share of what those before it have left,
     but at least `LIMITS`. If nothing is left, a model whose preparation alone takes longer than that is not searched
-    again."""
+    again. Properties whose share did not suffice can be searched again with what all have left (`rest`)."""
 
     def __init__(self, limits: StateLimits = SHARED_LIMITS) -> None:
         self._limits = limits
         self._left = limits.transitions or 0
         self._asked = 0
+        self._waiting = 0
 
     def share(self, properties: int, setup: int = 0) -> StateLimits | None:
         """The limits of the next property of this number; `None` if it should not be searched.
@@ -188,10 +195,23 @@ class Budget:
         """
         others = max(1, properties - self._asked)
         self._asked += 1
+        self._waiting = others - 1
         least = min(LIMITS.transitions or 0, self._limits.transitions or 0)
         if self._left == 0 and setup > least:
             return None
         return replace(self._limits, transitions=max(self._left // others, least))
+
+    def rest(self, properties: int, before: StateLimits, setup: int = 0) -> StateLimits | None:
+        """The limits of another search for one of some properties whose first search was cut; `None` if it would not be
+        longer than the first one.
+
+        Args:
+            properties: the number of these properties. Those that were not searched yet keep their share.
+            before: the limits of the first search.
+            setup: the duration of the preparation of the search, in transitions.
+        """
+        most = self._left // (properties + self._waiting) - setup
+        return replace(before, transitions=most) if most > (before.transitions or 0) else None
 
     def spend(self, transitions: int) -> None:
         self._left = max(0, self._left - transitions)

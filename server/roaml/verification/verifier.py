@@ -44,6 +44,7 @@ from roaml.verification.searches import Searches
 from roaml.verification.small import (
     MAX_EXAMPLE_STEPS,
     SHARED_LIMITS,
+    Attempt,
     Budget,
     attempt,
     choices_of,
@@ -347,7 +348,7 @@ class Verifier(Record, frozen=True):
             seconds[property_.question.name] = time.monotonic() - began
             watch(property_, tally)
 
-        small = [self._small(property_, pulse) for property_ in properties]
+        small = self._all_small(properties, pulse)
         groups: dict[Options, list[int]] = {}
         for i, exact in enumerate(small):
             groups.setdefault(self._trace_options(self._shown(exact)), []).append(i)
@@ -371,14 +372,56 @@ class Verifier(Record, frozen=True):
                 results.append(self.refused(name, fault))
         return results
 
-    def _small(self, property_: CompiledProperty, pulse: Pulse | None) -> Exact | None:
+    def _small(
+        self, property_: CompiledProperty, pulse: Pulse | None, cut: dict[Hashable, StateLimits] | None = None
+    ) -> Exact | None:
         """The exact values of a property, for its result; `None` if they are not requested, or if the model is too
-        large."""
+        large.
+
+        Args:
+            cut: the limits of the search are added if they did not suffice; with the key of the property (`_subject`).
+        """
         if not self.exact_if_small:
             return None
-        return self.explorations.exact(
-            self.checker, property_, "shared limits", lambda: self._within_budget(property_, pulse)
-        )
+
+        def computed() -> Exact | None:
+            subjects = {self._subject(other) for other in self.checker.compiled_properties}
+            limits = self.budget.share(len(subjects), setup_cost(self.checker))
+            if limits is None:
+                return None
+            attempted = self._attempted(property_, limits, pulse)
+            if attempted.is_cut and cut is not None:
+                cut[self._subject(property_)] = limits
+            return attempted.exact
+
+        return self.explorations.exact(self.checker, property_, "shared limits", computed)
+
+    def _all_small(self, properties: Sequence[CompiledProperty], pulse: Pulse | None) -> list[Exact | None]:
+        """The exact values of several properties, as `_small`. Those whose share of the limits did not suffice are
+        searched again with what the others have left."""
+        cut: dict[Hashable, StateLimits] = {}
+        small = [self._small(property_, pulse, cut) for property_ in properties]
+        subjects = set(cut)
+        for i, property_ in enumerate(properties):
+            if self._subject(property_) in subjects:
+                small[i] = self._small_again(property_, cut, pulse)
+        return small
+
+    def _small_again(
+        self, property_: CompiledProperty, cut: dict[Hashable, StateLimits], pulse: Pulse | None
+    ) -> Exact | None:
+        """The exact values of a property whose first search was cut; `None` if not enough is left of the limits."""
+
+        def computed() -> Exact | None:
+            before = cut.pop(self._subject(property_))
+            limits = self.budget.rest(len(cut) + 1, before, setup_cost(self.checker))
+            return None if limits is None else self._attempted(property_, limits, pulse, is_repeated=True).exact
+
+        return self.explorations.exact(self.checker, property_, "rest of the limits", computed)
+
+    def _subject(self, property_: CompiledProperty) -> Hashable:
+        """What one search is about: several properties may have the same."""
+        return subject_of(self.checker, property_) or property_.question.name
 
     def _beside(self, property_: CompiledProperty, answer: Answer) -> Exact | None:
         """The exact values of a property, to compare schedulers beside traces that were requested; `None` if the model
@@ -390,8 +433,10 @@ class Verifier(Record, frozen=True):
             self.checker, property_, limits, lambda: attempt(self.checker, property_, limits, leaves_out=False).exact
         )
 
-    def _within_budget(self, property_: CompiledProperty, pulse: Pulse | None) -> Exact | None:
-        """The exact values of a property; `None` if the budget does not suffice."""
+    def _attempted(
+        self, property_: CompiledProperty, limits: StateLimits, pulse: Pulse | None, *, is_repeated: bool = False
+    ) -> Attempt:
+        """A search for the exact values of a property, which is a part of the budget."""
         pulsed = time.monotonic()
 
         def watch(_: ExplorationProgress) -> None:
@@ -400,12 +445,9 @@ class Verifier(Record, frozen=True):
                 pulsed = time.monotonic()
                 pulse(0, 0)
 
-        limits = self.budget.share(len(self.checker.compiled_properties), setup_cost(self.checker))
-        if limits is None:
-            return None
-        attempted = attempt(self.checker, property_, limits, watch)
+        attempted = attempt(self.checker, property_, limits, watch, is_repeated=is_repeated)
         self.budget.spend(attempted.transitions)
-        return attempted.exact
+        return attempted
 
     def _shown(self, small: Exact | None) -> Exact | None:
         """The exact values that the result contains. If traces can get stuck, the result contains them only as the
@@ -525,7 +567,7 @@ class Verifier(Record, frozen=True):
         properties: dict[Hashable, CompiledProperty] = {}
         for property_ in self.checker.compiled_properties:
             if not property_.question.is_conditional:
-                properties.setdefault(subject_of(self.checker, property_) or property_.question.name, property_)
+                properties.setdefault(self._subject(property_), property_)
         return Searches(self.checker, properties.values(), limits, jobs)
 
     def exhaustive(
