@@ -44,12 +44,12 @@ def test_a_stuck_system_is_reported_prominently(command: Command, ward: Path) ->
     assert re.fullmatch(
         r"  warning: [\d,]+ of [\d,]+ traces got stuck and say nothing about the property, so its value is doubtful; "
         r"for example trace \d+ after 46 steps at 2 s:",
-        lines[1],
+        lines[2],
     )
-    assert lines[2].startswith("    the clock waits at 2 s for the tree")
-    assert lines[6].startswith("    help: a tick must end before the next one is due")
-    assert lines[6].endswith(" [answer-needs-time]")
-    assert re.fullmatch(r"  ends: goal decided [\d,]+, stuck [\d,]+", lines[7])
+    assert lines[3].startswith("    the clock waits at 2 s for the tree")
+    assert lines[7].startswith("    help: a tick must end before the next one is due")
+    assert lines[7].endswith(" [answer-needs-time]")
+    assert re.fullmatch(r"  ends: goal decided [\d,]+, stuck [\d,]+", lines[8])
     assert done.out.count("the clock waits") == 1
     assert re.search(
         r"\nprobability of getting stuck: 0\.\d+ in \[0\.\d+, 0\.\d+\] from 100 traces to their end\n"
@@ -157,8 +157,8 @@ def test_junit(command: Command, ward: Path, level: str) -> None:
     beneath = cases["delivered"].findtext("skipped") or ""
     assert f"  {level}: " in beneath
     assert "    the clock waits at 2 s" in beneath
-    (about,) = cases["delivered"].iter("property")
-    assert about.get("name") == "warning"
+    requirement, about = cases["delivered"].iter("property")
+    assert (requirement.get("name"), about.get("name")) == ("requirement", "warning")
     assert "traces got stuck" in (about.get("value") or "")
 
 

@@ -89,19 +89,21 @@ def test_a_small_model_is_answered_exactly(command: Command, tmp_path: Path) -> 
     first, *others = done.out.splitlines()
     assert first.startswith("p: minimum 0, ")
     assert others == [
+        "  `done` holds at some time.",
         "  it fails, for example, if `worker` is delayed for ever while `busy` repeats 50 steps",
         "  expected ≤ 0.1: met",
     ]
     lines = command("verify", name, "--expect", "p <= 0.1", "--verbose").out.splitlines()
     assert re.fullmatch(r"p: minimum 0, maximum 1, 1 under uniform choices, exact, 100 states, \d\.\d s", lines[0])
-    assert lines[1:5] == [
-        "  shortest traces: it holds after 1 step",
+    assert lines[1:6] == [
         others[0],
+        "  shortest traces: it holds after 1 step",
+        others[1],
         "  ends of 200 random traces: goal decided 200",
         "  expected ≤ 0.1: met",
     ]
-    assert lines[5].startswith("exact values, computed from all reachable states: minimum and maximum over all ")
-    assert len(lines) == 6
+    assert lines[6].startswith("exact values, computed from all reachable states: minimum and maximum over all ")
+    assert len(lines) == 7
     row = rows(command("verify", name, "--format", "json").out)["p"]
     assert [row[key] for key in ("probability", "lower", "upper", "method", "interval")] == [0, 0, 0, "exact", "exact"]
     assert [row["exact"][key] for key in ("least", "greatest", "uniform", "states")] == [0, 1, 1, 100]
@@ -220,10 +222,9 @@ def test_met_under_uniform_choices(command: Command, tmp_path: Path) -> None:
     suites = ET.fromstring(command("verify", name, *options, "--format", "junit").out)
     (case,) = suites.iter("testcase")
     assert case.find("failure") is None
-    expected, about = case.iter("property")
-    assert (expected.get("name"), expected.get("value")) == ("expected ≥ 0.9", "met under uniform choices")
-    assert about.get("name") == "warning"
-    assert "which may differ; " in (about.get("value") or "")
+    properties = {about.get("name"): about.get("value") for about in case.iter("property")}
+    assert properties["expected ≥ 0.9"] == "met under uniform choices"
+    assert "which may differ; " in (properties["warning"] or "")
 
 
 def test_the_note_names_each_property_once(command: Command, tmp_path: Path) -> None:
@@ -309,8 +310,9 @@ def test_schedulers_that_were_looked_for_have_all_that_results_have(command: Com
     name = write(tmp_path, starving(length=3))
     options = ("--scheduler", "lss", "--epsilon", "0.1", "--seed", "7")
     out = command("verify", name, *options, "--verbose").out
-    block = r"p: (least|greatest) probability found .* failed\n  by sampled scheduler \d+, which .*\n  ends: .*\n"
-    assert re.match(rf"{block}{block}  [\d,]+ schedulers were tried, \d+\.\d s\n", out)
+    first, sentence = r"p: (least|greatest) probability found .* failed\n", r"  `done` holds at some time\.\n"
+    rest = r"  by sampled scheduler \d+, which .*\n  ends: .*\n"
+    assert re.match(rf"{first}{sentence}{rest}{first}{rest}  [\d,]+ schedulers were tried, \d+\.\d s\n", out)
     assert "seed 7" in out
     row = rows(command("verify", name, *options, "--format", "json").out)["p"]
     for side in ("least", "greatest"):

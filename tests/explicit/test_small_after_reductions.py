@@ -190,9 +190,10 @@ def test_equal_extremes_are_the_value_for_all_schedulers(capsys: pytest.CaptureF
     file = write(tmp_path, counters(TOSS))
     lines = text_of(capsys, file, "--expect", "p = 0.5", "--verbose").splitlines()
     assert lines[0].startswith("p: = 0.5 for all schedulers, exact, 4 states after reductions, ")
-    assert lines[2].startswith("  ends of 200 random traces: ")
-    assert lines[3] == "  expected = 0.5: met"
-    assert lines[4:] == [
+    assert lines[1] == "  `x = 1` holds at some time."
+    assert lines[3].startswith("  ends of 200 random traces: ")
+    assert lines[4] == "  expected = 0.5: met"
+    assert lines[5:] == [
         "exact values, computed from all reachable states: minimum and maximum over all schedulers, value under "
         "uniform choices; reductions left out choices that do not change these values; use --method adaptive for "
         "estimates from traces"
@@ -245,10 +246,10 @@ def test_traces_estimate_the_uniform_value_between_different_extremes(
     out = text_of(capsys, file, "--expect", "p >= 0.2", "--explain", "--verbose", status=1)
     lines = out.splitlines()
     assert lines[0].startswith("p: minimum 0, maximum 1, exact, 4 states after reductions, ")
-    assert lines[1].startswith("  under uniform choices: 0.50")
-    assert "] from 1" in lines[1]
-    assert lines[3].startswith("  ends: goal decided ")
-    assert lines[4] == "  expected ≥ 0.2: NOT MET by the least value, which is 0"
+    assert lines[2].startswith("  under uniform choices: 0.50")
+    assert "] from 1" in lines[2]
+    assert lines[4].startswith("  ends: goal decided ")
+    assert lines[5] == "  expected ≥ 0.2: NOT MET by the least value, which is 0"
     assert "states: minimum and maximum over all schedulers; reductions left out choices" in out
     assert "\nestimates: 0.95 confidence, seed 0; " in out
     assert "p failed in a trace after " in out

@@ -109,7 +109,7 @@ def _jani_target(
     path: str, texts: Mapping[str, str | bytes] | None, overrides: Overrides, constants: Sequence[str]
 ) -> VerificationTarget:
     from roaml.jani.constants import with_constants  # noqa: PLC0415
-    from roaml.verification.target import target_of  # noqa: PLC0415
+    from roaml.verification.target import target_of, with_sentences  # noqa: PLC0415
 
     if replace(overrides, reaction_time=None) != NO_OVERRIDES:
         raise ConstantError("a JANI model has no parameters to override; only systems have them")
@@ -120,7 +120,7 @@ def _jani_target(
             model = _reacting(model, overrides.reaction_time)
     except ValueError as error:
         raise ConstantError(str(error)) from None
-    return target_of(model, path, (path,), lambda _: source)
+    return target_of(with_sentences(model), path, (path,), lambda _: source)
 
 
 def _reacting(model: Model, time: ReactionTime) -> Model:
@@ -145,17 +145,17 @@ def _expected(settings: Settings | None) -> Mapping[str, Comparison]:
 
 def as_target(subject: VerificationTarget | LoadedSystem | Model) -> VerificationTarget:
     """The verification target of a system, which is translated, or of a JANI model; a target is returned as it is."""
-    from roaml.verification.target import VerificationTarget, target_of  # noqa: PLC0415
+    from roaml.verification.target import VerificationTarget, target_of, with_sentences  # noqa: PLC0415
 
     if isinstance(subject, VerificationTarget):
         return subject
     if isinstance(subject, Model):
-        return target_of(subject)
+        return target_of(with_sentences(subject))
     from roaml.api.systems import to_jani  # noqa: PLC0415 - a JANI model needs no system
     from roaml.model.property_links import clock_step  # noqa: PLC0415
 
     conditional = [property_.name for property_ in subject.observed if property_.assumptions]
-    model = to_jani(subject, has_activity=True)
+    model = with_sentences(to_jani(subject, has_activity=True))
     system = subject.analysis.system(subject.path)
     step = None if system is None else clock_step(system)
     target = target_of(model, subject.path, subject.files, subject.analysis.source, conditional, step)

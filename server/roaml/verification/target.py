@@ -11,6 +11,7 @@ from roaml.jani.model import Model
 from roaml.jani.nesting import is_nested
 from roaml.jani.node import Origin
 from roaml.jani.properties import Property, walk
+from roaml.jani.sentences import sentence
 from roaml.record import Record, field, replace
 from roaml.scxml.names import assumptions_of
 from roaml.text import SourceFile
@@ -103,6 +104,15 @@ def target_of(
     return VerificationTarget(
         path, files, model, source_of, CLOCK_VARIABLES if names.issuperset(CLOCK_VARIABLES) else None, assumptions
     )
+
+
+def with_sentences(model: Model) -> Model:
+    """The model with sentences as the comments of the properties that have none."""
+    return replace(model, properties=tuple(p if p.comment else _commented(p) for p in model.properties))
+
+
+def _commented(property_: Property) -> Property:
+    return replace(property_, comment=sentence(property_.expression) or None)
 
 
 def asking(target: VerificationTarget, names: Iterable[str]) -> VerificationTarget:
