@@ -32,6 +32,7 @@ def value(text: str, **variables: Value) -> Value:
         ("Math.floor(-0.5)", -1),
         ("Math.max(1, 2.5)", 2.5),
         ("Math.min(1, 2.5)", 1.0),
+        ("Math.max(1, 3, 2)", 3),
         ("n + 0", MAX_INT),
         ("n == n + 0.5", True),  # a comparison with a real is one of reals
         ("n >= 9223372036854775807.5", True),

@@ -95,6 +95,8 @@ TYPES = [
     ("Math.abs(f)", "float"),
     ("Math.max(1, 2)", "int"),
     ("Math.min(1, 2.5)", "float"),
+    ("Math.min(1, 2, 3)", "int"),
+    ("Math.max(1, 2, 2.5)", "float"),
     ("Math.floor(f)", "int"),
     ("Math.ceil(f)", "int"),
     ("Math.sin(1)", "float"),
@@ -269,7 +271,8 @@ def test_functions(name: str) -> None:
     for count in range(len(function.parameters) + 2):
         text = f"Math.{name}({', '.join('f' * count)})"
         problems = [type(p).__name__ for p in infer(tree_of(text), SCOPE.get)[1] if type(p).__name__ != "RandomUsed"]
-        fits = len(function.parameters) - function.optional <= count <= len(function.parameters)
+        most = count if name in ("min", "max") else len(function.parameters)
+        fits = len(function.parameters) - function.optional <= count <= most
         assert problems == ([] if fits else ["WrongArgumentCount"])
 
 

@@ -160,18 +160,18 @@ def test_lenses(tmp_path: Path, model: str, name: str, expected: list[str]) -> N
 
 # an expression with the caret, and what is called there: the active parameter in brackets
 SIGNATURES = """
-Math.max(‸a, b)  Math.max([a], b) : int or float
-Math.max(a,‸ b)  Math.max(a, [b]) : int or float
-Math.max(a‸  Math.max([a], b) : int or float
-Math.max(a, ‸  Math.max(a, [b]) : int or float
-Math.max(a, b, ‸  Math.max(a, b) : int or float
+Math.max(‸a, b)  Math.max([a], b, …) : int or float
+Math.max(a,‸ b)  Math.max(a, [b], …) : int or float
+Math.max(a‸  Math.max([a], b, …) : int or float
+Math.max(a, ‸  Math.max(a, [b], …) : int or float
+Math.max(a, b, ‸  Math.max(a, [b], …) : int or float
 Math.max(Math.pow(1, ‸2), b)  Math.pow(x, [y]) : float
-Math.max(Math.pow(1, 2), ‸b)  Math.max(a, [b]) : int or float
-Math.max((1 + ‸  Math.max([a], b) : int or float
-Math.max([1, 2][‸0], 3)  Math.max([a], b) : int or float
-Math.max('(,', ‸  Math.max(a, [b]) : int or float
+Math.max(Math.pow(1, 2), ‸b)  Math.max(a, [b], …) : int or float
+Math.max((1 + ‸  Math.max([a], b, …) : int or float
+Math.max([1, 2][‸0], 3)  Math.max([a], b, …) : int or float
+Math.max('(,', ‸  Math.max(a, [b], …) : int or float
 Math . log (8, ‸  Math.log(x, [base]?) : float
-1 &lt; Math.min(a &amp;&amp; b, ‸  Math.min(a, [b]) : int or float
+1 &lt; Math.min(a &amp;&amp; b, ‸  Math.min(a, [b], …) : int or float
 Math.random(‸)  Math.random() : float
 Math.max(1, 2)‸
 ‸Math.max(1, 2)

@@ -159,7 +159,7 @@ class _Evaluation:
         if name == "random":
             raise WatchError("`Math.random()` has no value here, because each execution draws a new number")
         given = len(expr.arguments)
-        if not len(function.parameters) - function.optional <= given <= len(function.parameters):
+        if not function.takes(given):
             raise WatchError(f"`{function.signature}` does not take {given} arguments")
         symbol = f"Math.{name}"
         arguments = [_number(self.value(argument), symbol) for argument in expr.arguments]

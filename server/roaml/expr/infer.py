@@ -402,8 +402,7 @@ class _Inference:
         if function is None:
             self.problems.append(UnknownFunction(expr.function.span, name, called=True))
             return UNKNOWN
-        most, least = len(function.parameters), len(function.parameters) - function.optional
-        if not least <= len(arguments) <= most:
+        if not function.takes(len(arguments)):
             self.problems.append(WrongArgumentCount(expr.span, function.name, len(arguments)))
         if function.name == "random":
             self.problems.append(RandomUsed(expr.span))

@@ -97,6 +97,7 @@ class Function(Record, frozen=True):
         parameters: the names of the parameters, in order.
         documentation: a description of the result.
         optional: the number of parameters at the end that may be omitted.
+        repeats: whether more arguments than parameters can be given.
     """
 
     name: str
@@ -104,10 +105,17 @@ class Function(Record, frozen=True):
     result: FunctionResult
     documentation: str
     optional: int = 0
+    repeats: bool = False
 
     @property
     def signature(self) -> str:
-        return f"Math.{self.name}({', '.join(self.parameters)})"
+        more = ("…",) if self.repeats else ()
+        return f"Math.{self.name}({', '.join((*self.parameters, *more))})"
+
+    def takes(self, count: int) -> bool:
+        """Whether the function can be called with `count` arguments."""
+        needed = len(self.parameters) - self.optional
+        return needed <= count and (self.repeats or count <= len(self.parameters))
 
 
 FUNCTIONS = {
@@ -124,8 +132,8 @@ FUNCTIONS = {
             "The logarithm of x to a base; the default is the natural logarithm.",
             1,
         ),
-        Function("max", ("a", "b"), FunctionResult.AS_ARGUMENTS, "The greater of a and b."),
-        Function("min", ("a", "b"), FunctionResult.AS_ARGUMENTS, "The lesser of a and b."),
+        Function("max", ("a", "b"), FunctionResult.AS_ARGUMENTS, "The greatest of the arguments.", repeats=True),
+        Function("min", ("a", "b"), FunctionResult.AS_ARGUMENTS, "The least of the arguments.", repeats=True),
         Function("pow", ("x", "y"), FunctionResult.REAL, "x to the power of y."),
         Function(
             "random",

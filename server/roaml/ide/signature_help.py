@@ -56,10 +56,10 @@ def signature_help(analysis: Analysis, path: str, offset: int) -> SignatureHelp 
     if name in LAWS:
         law = LAWS[name]
         label, parameters, documentation = law.signature, law.value_parameters, law.documentation
-        commas = commas % len(parameters) if law.repeats else commas
+        commas, repeats = commas % len(parameters) if law.repeats else commas, False
     elif (function := FUNCTIONS.get(name.removeprefix("Math."))) is not None and name.startswith("Math."):
         label, parameters = describe_language.signature(function), function.parameters
-        documentation = function.documentation
+        documentation, repeats = function.documentation, function.repeats
     else:
         return None
     at, spans = label.index("(") + 1, []
@@ -67,7 +67,7 @@ def signature_help(analysis: Analysis, path: str, offset: int) -> SignatureHelp 
         start = label.index(parameter, at)
         at = start + len(parameter)
         spans.append((start, at))
-    active = commas if commas < len(spans) else None
+    active = commas if commas < len(spans) else len(spans) - 1 if repeats else None
     return SignatureHelp(label, tuple(spans), active, documentation)
 
 

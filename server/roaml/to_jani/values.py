@@ -341,7 +341,15 @@ class JaniScope(Record, frozen=True):
             return jani.Unary(_UNARY_FUNCTIONS[function], arguments[0])
         if function == "log" and len(arguments) == 1:
             arguments.append(jani.NamedNumber(NumberConstant.E))
-        return jani.Binary(_BINARY_FUNCTIONS[function], arguments[0], arguments[1])
+        return _joined(_BINARY_FUNCTIONS[function], arguments)
+
+
+def _joined(operator: BinaryOperator, operands: Sequence[Expression]) -> Expression:
+    """The operands of an associative operator of two operands, as a balanced tree like that of `all_of`."""
+    if len(operands) == 1:
+        return operands[0]
+    middle = (len(operands) + 1) // 2
+    return jani.Binary(operator, _joined(operator, operands[:middle]), _joined(operator, operands[middle:]))
 
 
 # --------------------------------------------------------------- comparisons

@@ -262,7 +262,7 @@ def _function(function: Function, prefix: str, rank: Rank) -> CompletionItem:
     for number, parameter in enumerate(needed):
         snippet.text(", " if number else "").stop([parameter])
     snippet.text(")")
-    detail = f"({', '.join(function.parameters)}) → {function.result}"
+    detail = f"{function.signature.removeprefix(f'Math.{function.name}')} → {function.result}"
     label = f"{prefix}{function.name}"
     return CompletionItem(
         label, ItemKind.FUNCTION, str(snippet), detail, Symbol("", SymbolKind.FUNCTION, function.name), rank

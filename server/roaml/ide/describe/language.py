@@ -112,9 +112,11 @@ def function(math_function: Function) -> str:
 
 
 def signature(math_function: Function) -> str:
-    """The signature of a function of `Math`: its parameters, with `?` after the optional ones, and its result."""
+    """The signature of a function of `Math`: its parameters, with `?` after the optional ones and `…` if more
+    can be given, and its result."""
     needed = len(math_function.parameters) - math_function.optional
-    parameters = (f"{parameter}{'?' if i >= needed else ''}" for i, parameter in enumerate(math_function.parameters))
+    parameters = [f"{parameter}{'?' if i >= needed else ''}" for i, parameter in enumerate(math_function.parameters)]
+    parameters += ["…"] if math_function.repeats else []
     return f"Math.{math_function.name}({', '.join(parameters)}) : {math_function.result}"
 
 

@@ -8,6 +8,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
 from collections.abc import Callable, Iterator
@@ -211,8 +212,8 @@ class Evaluator(Record, eq=False):
                     return listed(function(v) for v in value.only if not isinstance(v, str))
                 low, high = (function(bound) if math.isfinite(bound) else bound for bound in (value.low, value.high))
                 return between(low, high, value.low_from, value.high_from)
-            case "min" | "max", [first, second]:
-                return _extreme(name == "min", first, second)
+            case "min" | "max", [first, *others]:
+                return functools.reduce(functools.partial(_extreme, name == "min"), others, first)
             case "sin" | "cos", [_]:
                 return between(-1, 1, Origin.ASSUMED, Origin.ASSUMED)
         return ANYTHING

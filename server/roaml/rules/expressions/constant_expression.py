@@ -114,7 +114,8 @@ def _why(chart: ChartValues, node: Expr) -> str:
     """The values of the operands, as a clause."""
     operands = (node.left, node.right) if isinstance(node, Binary) else node.arguments if isinstance(node, Call) else ()
     known = [(operand, values) for operand in operands if (values := chart.at(operand)) is not None]
-    texts = [f"one side is {text}" for _, values in known if (text := described(values))]
+    part = "side" if len(operands) == 2 else "argument"
+    texts = [f"one {part} is {text}" for _, values in known if (text := described(values))]
     return " and ".join(texts).replace("and one side is", "and the other one is") or "its operands do not decide it"
 
 
