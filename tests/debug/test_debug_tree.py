@@ -161,7 +161,8 @@ def test_wrong_declarations_are_refused(client: Client, tree: Path) -> None:
     missing = refusal(entries={"load": 5}, mocks=["Drive: 1"])
     assert missing == f'{tree}: these leaves need mocks: Grasp; for example `"mocks": ["*: 0.9 in 1 s"]`'
     assert "`Drive 1` is not a mock" in refusal(mocks=["Drive 1"])
-    assert "nothing sets the entry `load`" in refusal(mocks=["*: 1"])
+    unset = "nothing sets the entry `load`; give it a value at the start, with `entries` in the launch configuration"
+    assert unset in refusal(mocks=["*: 1"])
     assert refusal(mocksFile="none.mocks") == f"{tree.parent / 'none.mocks'}: there is no such file"
     assert refusal(mocksFile="a\0b") == "`mocksFile` is not a path"
     assert "`tickRate` must be a number of Hz" in refusal(tickRate=0)

@@ -112,7 +112,14 @@ def test_mocks_that_are_not_valid(mock: str, reason: str, tmp_path: Path, capsys
     ("content", "reason"),
     [
         ("<Mine><Drive/></Mine>", "its behaviour is not known"),
-        ("<ScriptCondition code='level &gt; 3'/>", "nothing sets the entry `level`"),
+        (
+            "<ScriptCondition code='level &gt; 3'/>",
+            "nothing sets the entry `level`; give it a value at the start, with `--entry level=VALUE`",
+        ),
+        (
+            "<Switch2 variable='{way}' case_1='a' case_2='b'><Drive/><Drive/><Drive/></Switch2>",
+            "with `--entry way=VALUE`",
+        ),
         ("<Script code='x := 1 &amp; 2'/>", "works on bits"),
         ("<Script code=\"t := 'a'; t := t .. 'b'\"/>", "texts cannot be joined"),
         (

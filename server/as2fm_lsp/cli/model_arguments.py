@@ -124,7 +124,12 @@ def with_reaction_time(settings: Settings, options: argparse.Namespace) -> Setti
 def error_report(error: api.ModelError | api.JaniError) -> CheckReport:
     """The diagnostics of a model with errors, for standard error."""
     if isinstance(error, api.ModelError):
-        return report_of(error.result.diagnostics, error.result.source, len(error.result.files))
+        diagnostics = error.result.diagnostics
+        if error.unset:
+            diagnostics = tuple(
+                replace(d, message=f"{d.message}, with `--entry {error.unset}=VALUE`") for d in diagnostics
+            )
+        return report_of(diagnostics, error.result.source, len(error.result.files))
     source = error.source
     return report_of(error.diagnostics, lambda _: source, 1)
 

@@ -169,7 +169,8 @@ def load(launch: Launch, log: Log, watch: Watch) -> Debugger:
     try:
         return start(_sources(launch, log), launch.start, log, watch)
     except api.ModelError as error:
-        raise RequestError(_first(error.result.diagnostics, error.result.source)) from None
+        hint = ", with `entries` in the launch configuration" if error.unset else ""
+        raise RequestError(f"{_first(error.result.diagnostics, error.result.source)}{hint}") from None
     except api.JaniError as error:
         source = error.source
         raise RequestError(_first(error.diagnostics, lambda _: source)) from None

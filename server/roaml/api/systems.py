@@ -32,14 +32,20 @@ if TYPE_CHECKING:
 
 
 class ModelError(ValueError):
-    """Raised if a system, or a tree without a system, has errors or cannot be translated. `result` contains only these
-    errors."""
+    """Raised if a system, or a tree without a system, has errors or cannot be translated.
 
-    def __init__(self, result: CheckResult) -> None:
+    Attributes:
+        result: only these errors.
+        unset: the entry of the blackboard of a tree without a system that needs a value at the start, if this is the
+            reason; otherwise "".
+    """
+
+    def __init__(self, result: CheckResult, unset: str = "") -> None:
         first = result.diagnostics[0]
         more = f", and {len(result.diagnostics) - 1} more" if len(result.diagnostics) > 1 else ""
         super().__init__(f"{first.path}: {first.message}{more}")
         self.result = result
+        self.unset = unset
 
 
 class ParameterError(ValueError):

@@ -125,4 +125,4 @@ def _untranslatable(snapshot: Snapshot, path: str, refusal: TreeRefusal) -> Mode
     origin = refusal.origin
     source = snapshot.analysis.source(origin.path)
     reason = Diagnostic(origin.path, UNTRANSLATABLE, Severity.ERROR, origin.span, refusal.reason, source=source)
-    return ModelError(CheckResult((reason,), (path,), (), snapshot))
+    return ModelError(CheckResult((reason,), (path,), (), snapshot), refusal.unset)

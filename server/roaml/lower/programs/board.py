@@ -61,7 +61,7 @@ class Board(Record, frozen=True, eq=False):
         """A message that states why the entry `name`, which nothing sets, cannot be read."""
         if self.in_system:
             return f"nothing sets the entry `{name}`; a script, a port or a `<SubTree>` of the tree must set it"
-        return f"nothing sets the entry `{name}`; give it a value at the start, as the entry `{name}=VALUE`"
+        return f"nothing sets the entry `{name}`; give it a value at the start"
 
 
 def node_scripts(node: ExecutedNode, version: Version) -> Iterator[tuple[str, Script, bool]]:

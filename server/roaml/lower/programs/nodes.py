@@ -200,7 +200,9 @@ class _Reader(Record, eq=False):
                 elif port.name in program.needed_ports:
                     # In systems, the rule blackboard-never-written reports it.
                     is_reported = board.in_system and not any(entry in library(name).entries for name in LIBRARIES)
-                    raise TreeRefusal(Location(node.origin.path, span), board.unset(entry), is_reported=is_reported)
+                    unset = "" if board.in_system else entry
+                    at = Location(node.origin.path, span)
+                    raise TreeRefusal(at, board.unset(entry), is_reported=is_reported, unset=unset)
                 continue
             if text is None:
                 continue

@@ -15,7 +15,8 @@ class TreeRefusal(Exception):  # noqa: N818 - the tree may be correct
     Attributes:
         origin: the position of the cause.
         is_reported: whether the rules for nodes, ports and scripts also report the reason.
-        unset: the name of the entry that a script reads and nothing sets, if this is the reason; otherwise "".
+        unset: the name of the entry that a script, or a port of a tree without a system, reads and nothing sets, if
+            this is the reason; otherwise "".
     """
 
     def __init__(self, origin: Location, reason: str, *, is_reported: bool = False, unset: str = "") -> None:
