@@ -104,6 +104,23 @@ SAFE = f'<BehaviorTree ID="Safe"><IsCalm/></BehaviorTree>{MODELS}'
         ),
         ("<ReactiveFallback><There/><Clear/><Go/></ReactiveFallback>", {"There": "0.001", "Clear": "0.001"}),
         ("<WhileDoElse><Ask/><Then/><Else/></WhileDoElse>", {"Ask": "0.999", "Then": "0.9 in 1 s"}),
+        (
+            "<ReactiveSequence><Sequence><Ready/><Inverter><Blocked/></Inverter></Sequence><Go/></ReactiveSequence>",
+            {"Ready": "0.999", "Blocked": "0.001", "Go": "0.9 in 1 s"},
+        ),
+        (
+            "<ReactiveSequence><Fallback><Charged/><Charge/></Fallback><Go/></ReactiveSequence>",
+            {"Charged": "0.999", "Charge": "0.9 in 1 s"},
+        ),
+        (
+            "<ReactiveFallback><Sequence><Fallback><Low/><Inverter><Linked/></Inverter></Fallback><Land/></Sequence><Go/>"
+            "</ReactiveFallback>",
+            {"Low": "0.001", "Linked": "0.999", "Land": "0.9 in 1 s"},
+        ),
+        (
+            "<ReactiveSequence><ReactiveSequence><A/><B/></ReactiveSequence><Go/></ReactiveSequence>",
+            {"A": "0.999", "B": "0.999"},
+        ),
         ("<Sequence><First/><Second/></Sequence>", {"First": "0.9 in 1 s"}),
         ("<Parallel><First/><Second/></Parallel>", {"First": "0.9 in 1 s"}),
     ],

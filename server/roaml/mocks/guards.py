@@ -4,41 +4,42 @@ first child of a ReactiveSequence. If such a leaf took time, it would interrupt 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from roaml.libraries.programs.effects import effects_on
 from roaml.libraries.programs.linked import ANY, LinkedNode, Possible, linked
 from roaml.libraries.programs.statuses import FAILURE, RUNNING, SUCCESS
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree
-from roaml.roles import NodeKind
 
 _ENDS = (SUCCESS, FAILURE)
 _RUNNING = Possible(frozenset((RUNNING,)), frozenset((RUNNING,)))
 
 
 def guards_of(tree: ExecutedTree) -> dict[int, frozenset[int]]:
-    """The number of each node that guards others, also below decorators -> the statuses with which it lets them run."""
+    """The number of each node that guards others, also inside other nodes -> the statuses with which it lets them
+    run."""
     found: dict[int, frozenset[int]] = {}
     for node in tree.nodes:  # parents before their children
-        bound = _bound(node, tree)
-        if bound.program is None and not node.is_subtree:
+        wanted = found.get(node.number)
+        if node.is_subtree:
+            if wanted is not None:
+                found[node.children[0]] = wanted
             continue
-        if node.number in found and (node.is_subtree or _is_decorator(node)):
-            wanted = found[node.number]
-            found[node.children[0]] = wanted if node.is_subtree else _passed_on(bound, wanted)
-        elif bound.program is not None:
-            for index, number in enumerate(node.children[:-1]):
-                continuing = frozenset(end for end in _ENDS if _is_guard(bound, len(node.children), index, end))
-                if continuing:
-                    found[number] = continuing
+        bound = _bound(node, tree)
+        if bound.program is None:
+            continue
+        for index, number in enumerate(node.children[:-1]):
+            continuing = frozenset(end for end in _ENDS if _is_guard(bound, len(node.children), index, end))
+            if continuing:
+                found[number] = continuing
+        if wanted is not None:
+            found.update((node.children[index], ends) for index, ends in _passed_on(bound, len(node.children), wanted))
     return found
 
 
 def _bound(node: ExecutedNode, tree: ExecutedTree) -> LinkedNode:
     settings = {port: text if entry is None else None for port, entry, text, _ in node.ports()}
     return linked(node.known, settings, (), len(node.children), ANY, tree.version)
-
-
-def _is_decorator(node: ExecutedNode) -> bool:
-    return node.known is not None and node.known.kind is NodeKind.DECORATOR and len(node.children) == 1
 
 
 def _ended(status: int) -> Possible:
@@ -53,6 +54,11 @@ def _is_guard(bound: LinkedNode, count: int, index: int, end: int) -> bool:
     return effects.ticks_ended or effects.restarts
 
 
-def _passed_on(bound: LinkedNode, wanted: frozenset[int]) -> frozenset[int]:
-    """The statuses of the child of a decorator with which the decorator returns a wanted status."""
-    return frozenset(end for end in _ENDS if bound.effects([_ended(end)]).answers & wanted)
+def _passed_on(bound: LinkedNode, count: int, wanted: frozenset[int]) -> Iterator[tuple[int, frozenset[int]]]:
+    """The children with which a node decides that it returns a wanted status, if all of them end alike: all children of
+    a Sequence that is to succeed, the first one of a Fallback. Each comes with the statuses with which it does so."""
+    results = [(end, bound.effects([_ended(end)] * count)) for end in _ENDS]
+    for index in range(count):
+        ends = frozenset(end for end, effects in results if effects.answers & wanted and index in effects.ticked)
+        if ends:
+            yield index, ends
