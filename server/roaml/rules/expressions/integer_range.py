@@ -72,6 +72,8 @@ def _computed(context: MachineContext, value: TypedValue) -> Iterator[Finding]:
         if origin is Origin.WIDENED:
             early = _early(context, value, tree)
             reached = None if early is None else early.high if above else early.low
+        if _is_related(chart, tree):
+            reached = None
         range_ = f"`{type_}`, whose range is {low} to {high}"
         if reached is not None and not low <= reached <= high:
             wider = wide_enough(int(reached), type_)
@@ -93,6 +95,15 @@ def _limited(tree: Expr, *, above: bool) -> Iterator[Fix]:
         return
     if tree.function.name == wrong and any(constant(argument) is not None for argument in tree.arguments):
         yield Fix(f"Change to `Math.{right}`", (TextEdit(tree.function.name_span, right),))
+
+
+def _is_related(chart: ChartValues, tree: Expr) -> bool:
+    """Whether an expression combines several values that vary. They may be related, as in `total - left`, and the
+    analysis of values does not know which of them occur together."""
+    places = [n for n in walk(tree) if place_of(n) is not None]
+    inner = [part for n in places for part in walk(n) if part is not n]
+    outer = (n for n in places if not any(n is part for part in inner))
+    return sum((known := chart.at(n)) is None or known.value is None for n in outer) > 1
 
 
 def _is_consequence(chart: ChartValues, tree: Expr, low: int, high: int) -> bool:
