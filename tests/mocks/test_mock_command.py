@@ -111,7 +111,8 @@ def test_mocks_that_are_not_valid(mock: str, reason: str, tmp_path: Path, capsys
 @pytest.mark.parametrize(
     ("content", "reason"),
     [
-        ("<Mine><Drive/></Mine>", "its behaviour is not known"),
+        ("<Mine><Drive/></Mine>", "such as `Inverter`, `ForceSuccess` or `Precondition`, or write `Mine` as a plugin"),
+        ("<Mine><Drive/><Drive/></Mine>", "its behaviour is not known; in a copy of the tree, write the node"),
         (
             "<ScriptCondition code='level &gt; 3'/>",
             "nothing sets the entry `level`; give it a value at the start, with `--entry level=VALUE`",

@@ -43,9 +43,11 @@ def program_of(node: ExecutedNode, version: Version = NEWEST_VERSION) -> NodePro
         _check_children(node)
         return known_programs[node.type]
     if node.children:
+        like = "`Inverter`, `ForceSuccess` or `Precondition`" if len(node.children) == 1 else "`Sequence` or `Fallback`"
         reason = (
-            f"`{node.type}` has children, but its behaviour is not known; replace it by nodes of BehaviorTree.CPP, or "
-            "write it as a plugin of a system"
+            f"`{node.type}` has children, but its behaviour is not known; in a copy of the tree, write the node "
+            f"of BehaviorTree.CPP that behaves most like it, such as {like}, or write `{node.type}` as a plugin of a "
+            "system"
         )
         raise TreeRefusal(node.origin, reason)
     if node.known is not None and node.known.kind in (NodeKind.CONTROL, NodeKind.DECORATOR):
