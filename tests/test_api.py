@@ -96,8 +96,8 @@ def names_of(annotation: str) -> Iterator[str]:
 
 def imported_by(*arguments: str) -> set[str]:
     """The modules that a command has imported at its end."""
-    code = "import atexit, sys; atexit.register(lambda: print(*sorted(sys.modules)));" + (
-        f"sys.argv[1:] = {arguments!r}; from as2fm_lsp.__main__ import main; main()"
+    code = f"import sys\nsys.argv[1:] = {arguments!r}\nfrom as2fm_lsp.__main__ import main\n" + (
+        "try:\n    main()\nfinally:\n    print(*sorted(sys.modules))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode in (0, 1), done.stderr

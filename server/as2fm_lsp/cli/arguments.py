@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import functools
 import os
 import sys
 from collections.abc import Iterable, Sequence
@@ -21,15 +22,13 @@ argparse._ = str  # type: ignore[attr-defined]
 reads folders for each message, which takes 3 ms at each start."""
 
 
-class _HelpFormatter(argparse.RawDescriptionHelpFormatter):
-    """Formats help in the width of the terminal.
+def _help_formatter() -> functools.partial[argparse.RawDescriptionHelpFormatter]:
+    """A class for `formatter_class` that formats help in the width of the terminal.
 
     `argparse` creates a formatter for each option that is declared. Its own formatter imports `shutil` to measure the
     terminal, which takes 5 ms at each start.
     """
-
-    def __init__(self, prog: str) -> None:
-        super().__init__(prog, width=_columns() - 2)
+    return functools.partial(argparse.RawDescriptionHelpFormatter, width=_columns() - 2)
 
 
 def _columns() -> int:
@@ -48,7 +47,9 @@ class ArgumentParser(argparse.ArgumentParser):
     lines. Every command has the options `--quiet` and `--verbose`."""
 
     def __init__(self, *, prog: str, description: str, epilog: str, usage: str | None = None) -> None:
-        super().__init__(prog=prog, description=description, epilog=epilog, usage=usage, formatter_class=_HelpFormatter)
+        super().__init__(
+            prog=prog, description=description, epilog=epilog, usage=usage, formatter_class=_help_formatter()
+        )
         amount = self.add_mutually_exclusive_group()
         for short, name, verbosity, help_ in (
             ("-q", "--quiet", Verbosity.QUIET, "write only results and errors: no notes, summary and progress"),
