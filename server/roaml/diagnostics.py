@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Callable
-from typing import NamedTuple
 
 from roaml.facts import Facts
 from roaml.record import PartlyCompared, Record
@@ -55,7 +54,7 @@ class Tag(enum.Enum):
     DEPRECATED = "deprecated"
 
 
-class Symbol(NamedTuple):
+class Symbol(Record, frozen=True):
     """A definition in a file, identified by its name instead of its position. `kind` is the kind of the
     symbol.
 

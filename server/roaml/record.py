@@ -16,9 +16,9 @@ from typing import Any, ClassVar, TypeVar
 
 from msgspec import Struct as Record
 from msgspec import field, json
-from msgspec.structs import replace
+from msgspec.structs import astuple, replace
 
-__all__ = ["PartlyCompared", "Record", "decoded", "encoded", "field", "replace"]
+__all__ = ["PartlyCompared", "Record", "astuple", "decoded", "encoded", "field", "replace"]
 
 _Decoded = TypeVar("_Decoded")
 

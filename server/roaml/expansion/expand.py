@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator, Mapping
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from roaml.diagnostics import Finding, Fix, Severity, Symbol, Tag
 from roaml.distributions import calls_distribution
@@ -69,7 +69,7 @@ class UserFiles(Protocol):
         """The properties in a file of JANI properties."""
 
 
-class NamedPlace(NamedTuple):
+class NamedPlace(Record, frozen=True):
     """A place that defines or uses the name of a parameter or instance."""
 
     symbol: Symbol

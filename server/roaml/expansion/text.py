@@ -6,13 +6,12 @@ from __future__ import annotations
 import bisect
 from collections.abc import Iterable
 from functools import cached_property
-from typing import NamedTuple
 
 from roaml.record import Record
 from roaml.text import Span, TextEdit, apply_edits
 
 
-class CopiedText(NamedTuple):
+class CopiedText(Record, frozen=True):
     """A part of an expanded text that comes from another place than where the edit is that inserts it.
 
     Attributes:

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Iterable
-from typing import NamedTuple
 
 from roaml.explicit.uses import VariableUses, bits
 from roaml.record import Record
@@ -90,7 +89,7 @@ def _can_idle(program: Program) -> bool:
     )
 
 
-class _Group(NamedTuple):
+class _Group(Record, frozen=True):
     """The variables that the edges of a group use. `fragile` are those in guards that can be undefined."""
 
     reads: int

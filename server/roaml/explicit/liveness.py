@@ -321,7 +321,7 @@ class _Flow(NamedTuple):
     copied: tuple[tuple[int, int], ...]
 
 
-class _OwnedPart(NamedTuple):
+class _OwnedPart(Record, frozen=True):
     """A part, restricted to the variables of an instance. `always` contains those on which other variables depend;
     `copied` is as in `_Flow`."""
 

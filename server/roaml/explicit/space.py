@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, TypeAlias
 
 from roaml.explicit import ample, codes
 from roaml.explicit import search as engine
@@ -19,7 +19,7 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.program import AT_END, Goal
 
 
-class ExplorationProgress(NamedTuple):
+class ExplorationProgress(Record, frozen=True):
     """The progress of a search: the number of states, the number of those that have been expanded, and the memory in
     use, in bytes."""
 

@@ -13,7 +13,6 @@ import math
 import re
 import sys
 from functools import lru_cache
-from typing import NamedTuple
 
 from roaml.diagnostics import Finding, Fix
 from roaml.exhaustive import Vocabulary
@@ -37,7 +36,7 @@ from roaml.expr.tree import (
     placed,
 )
 from roaml.expr.words import PREFIXES, STATEMENTS
-from roaml.record import replace
+from roaml.record import Record, replace
 from roaml.regex import regex
 from roaml.text import Decoded, Span, TextEdit
 
@@ -62,7 +61,7 @@ class ExpressionTokenKind(Vocabulary):
     JUNK = "junk"
 
 
-class ExpressionToken(NamedTuple):
+class ExpressionToken(Record, frozen=True):
     """A token of an expression. `start` and `end` are offsets in the decoded text."""
 
     kind: ExpressionTokenKind

@@ -13,8 +13,6 @@ Source of the syntax: the ROS 2 documentation, "About ROS 2 interfaces", and `ro
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.interfaces.names import CONSTANT_NAME, FIELD_NAME, keyword_of, lower_snake, upper_snake
 from roaml.interfaces.report import FileFindings, shorten
@@ -48,7 +46,7 @@ def parse(text: str, package: str, name: str, kind: Kind) -> tuple[Definition, t
     return Definition(package, name, kind, sections, is_complete=is_complete), report.findings()
 
 
-class _Head(NamedTuple):
+class _Head(Record, frozen=True):
     """The part before the value of a field or constant. `type_is_known` is true if the type is primitive or was read
     without errors."""
 

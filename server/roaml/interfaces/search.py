@@ -17,11 +17,12 @@ import os
 import re
 from collections.abc import Iterable, Mapping
 from functools import cache
-from typing import NamedTuple, Protocol, TypeAlias
+from typing import Protocol, TypeAlias
 
 from roaml.disk import path_of_resource, read
 from roaml.interfaces.names import PACKAGE_NAME, TYPE_NAME
 from roaml.interfaces.types import KINDS, Kind
+from roaml.record import Record
 from roaml.regex import regex
 
 MAX_DEPTH = 6
@@ -202,7 +203,7 @@ class _Tree:
         return self._known
 
 
-class _Listing(NamedTuple):
+class _Listing(Record, frozen=True):
     """The packages of a place; the files that are not used because another file of the place defines the same type; and
     whether there are more folders than were searched."""
 

@@ -8,8 +8,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from roaml.diagnostics import Severity
 from roaml.jani.node import Origin
 from roaml.jani.notes import SYNTAX, Notes
@@ -24,13 +22,14 @@ from roaml.json_syntax import (
     Member,
     kind,
 )
+from roaml.record import Record
 from roaml.text import Span, location_of, span_of
 
 HARMLESS = frozenset(("comment", "metadata"))
 """The names of members that never change the meaning of a model."""
 
 
-class ObjectShape(NamedTuple):
+class ObjectShape(Record, frozen=True):
     """The shape of an object.
 
     Attributes:

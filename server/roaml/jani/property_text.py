@@ -14,8 +14,9 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, TypeAlias
 
+from roaml.record import Record, replace
 from roaml.regex import regex
 
 Json: TypeAlias = Any
@@ -48,13 +49,13 @@ class PropertyTextError(ValueError):
     """Raised for a text that is not a property. The message contains the reason and the place."""
 
 
-class _Token(NamedTuple):
+class _Token(Record, frozen=True):
     kind: str
     text: str
     start: int
 
 
-class _Bound(NamedTuple):
+class _Bound(Record, frozen=True):
     """A bound of a path operator: of the number of steps, or of the time in ns."""
 
     lower: Json | None
@@ -69,7 +70,7 @@ def is_property_text(text: str) -> bool:
     return "[" in text and _HEAD.match(text.strip()) is not None
 
 
-class ReadProperty(NamedTuple):
+class ReadProperty(Record, frozen=True):
     """A property as a value for JSON.
 
     Attributes:
@@ -432,7 +433,7 @@ def _tokens(text: str) -> list[_Token]:
         place = match.end()
     tokens.append(_Token("end", "", len(text)))
     return [
-        token._replace(text=_GIVEN) if _is_given(text, token, after) else token
+        replace(token, text=_GIVEN) if _is_given(text, token, after) else token
         for token, after in zip(tokens, [*tokens[1:], tokens[-1]], strict=True)
     ]
 

@@ -15,14 +15,14 @@ from __future__ import annotations
 import itertools
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 from roaml.durations import ReactionTime
 from roaml.jani.expressions import Binary, Boolean, Conditional, Expression, Integer, Name, Unary
 from roaml.jani.model import Action, Assignment, Automaton, Clause, Clock, Destination, Edge, Model, Sync, Variable
 from roaml.jani.operators import BinaryOperator, UnaryOperator
 from roaml.jani.types import BasicType, BoundedType
-from roaml.record import replace
+from roaml.record import Record, replace
 
 PREFIX, VARIABLES = "__as2fm__", "as2fm__"
 """The beginnings of the names of actions and of variables. Storm rejects variables that begin with `__`."""
@@ -82,7 +82,7 @@ def owner_of(result: str, elements: Mapping[int, str], clock: str) -> int | None
     return next((element for element in elements if element not in buffers), None)
 
 
-class _Step(NamedTuple):
+class _Step(Record, frozen=True):
     """A step of the model: its parts; and the number of its synchronisation, -1 for an edge without action."""
 
     parts: tuple[Part, ...]

@@ -12,7 +12,7 @@ from __future__ import annotations
 import enum
 import math
 from collections.abc import Callable, Iterable
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
 from roaml.diagnostics import Finding, Fix
 from roaml.jani.deep import Steps, run
@@ -72,6 +72,7 @@ from roaml.jani.properties import (
     UnaryPathOperator,
 )
 from roaml.json_syntax import JsonBool, JsonNumber, JsonObject, JsonString, JsonValue
+from roaml.record import Record
 from roaml.suggest import did_you_mean
 from roaml.text import Span, TextEdit
 
@@ -433,7 +434,7 @@ def _root(target: LValue) -> Expression:
                 return inner
 
 
-class _Form(NamedTuple):
+class _Form(Record, frozen=True):
     """The shape of the objects with a certain `op`, and the function that creates the node from them."""
 
     shape: ObjectShape

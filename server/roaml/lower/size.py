@@ -10,7 +10,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import NamedTuple
 
 from roaml.diagnostics import Symbol
 from roaml.expr.infer import infer
@@ -186,7 +185,7 @@ def _machine_symbol(automaton: SystemAutomaton) -> Symbol | None:
     return Symbol(automaton.path, SymbolKind.MACHINE, automaton.outline.name) if automaton.path else None
 
 
-class _Query(NamedTuple):
+class _Query(Record, frozen=True):
     """An expression and its type; a count depends on this type."""
 
     tree: Expr
@@ -195,7 +194,7 @@ class _Query(NamedTuple):
     type: Type
 
 
-class _Counted(NamedTuple):
+class _Counted(Record, frozen=True):
     """The numbers of parts and actions of a chart, with the types that other files declare and on which they depend."""
 
     parts: int

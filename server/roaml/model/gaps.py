@@ -11,7 +11,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 from roaml.exhaustive import Vocabulary
 from roaml.expr.types import UNKNOWN
@@ -22,7 +22,7 @@ from roaml.model.machine import Declaration, Handler, Machine, RosSend, Send, Se
 from roaml.model.spelling import meant
 from roaml.model.syntax import Expression, Name, PortRead, name_of, port_read
 from roaml.model.value_types import INTERFACE_KINDS, TypedMachine, ValueUse, find_handle
-from roaml.record import Record
+from roaml.record import Record, replace
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.suggest import close_names
 from roaml.text import Span
@@ -52,7 +52,7 @@ class GapAct(Vocabulary):
     """Is the name of the machine."""
 
 
-class InterfaceAct(NamedTuple):
+class InterfaceAct(Record, frozen=True):
     """An act of an unreadable part that uses a ROS interface.
 
     Attributes:
@@ -90,7 +90,7 @@ def answers(act: Act, missing: Act) -> bool:
         return True
     if isinstance(act, GapAct) or isinstance(missing, GapAct):
         return act is GapAct.SENDS and missing is GapAct.PARAMETER
-    return act.kind is missing.kind and (act.part is None or act == missing._replace(is_of_field=False))
+    return act.kind is missing.kind and (act.part is None or act == replace(missing, is_of_field=False))
 
 
 class PlacedGap(Record, frozen=True):

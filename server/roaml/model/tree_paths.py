@@ -5,13 +5,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import NamedTuple
 
 from roaml.model.expand import Instance
 from roaml.model.system import System
+from roaml.record import Record
 
 
-class Part(NamedTuple):
+class Part(Record, frozen=True):
     """A part of a path: a node, or the use of a tree. The first of its names is the preferred one."""
 
     names: tuple[str, ...]

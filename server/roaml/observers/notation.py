@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from typing import NamedTuple
 
 from roaml.exhaustive import Vocabulary
 from roaml.observers.properties import And, Atom, Constant, Formula, Not, Or, Since, Window, historically, implies, once
@@ -74,7 +73,7 @@ class _TokenKind(Vocabulary):
     END = "end"
 
 
-class _Token(NamedTuple):
+class _Token(Record, frozen=True):
     kind: _TokenKind
     text: str
     span: Span

@@ -50,7 +50,7 @@ class Expanded(Record, Generic[A], frozen=True, eq=False):
 
     def symbol(self, symbol: Symbol) -> Symbol:
         """The symbol in the files of the user. A machine keeps the name of its instance."""
-        return symbol._replace(path=self.expansion.source(symbol.path))
+        return replace(symbol, path=self.expansion.source(symbol.path))
 
     def finding(self, path: str, finding: Finding) -> Finding:
         """A finding in the expanded text of `path` as a finding in its file. Fixes that would change an expanded part

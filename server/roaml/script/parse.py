@@ -10,10 +10,9 @@ from __future__ import annotations
 
 import enum
 import re
-from typing import NamedTuple
 
 from roaml.exhaustive import Vocabulary
-from roaml.record import Record
+from roaml.record import Record, replace
 from roaml.regex import regex
 from roaml.script.tree import (
     Assignment,
@@ -112,7 +111,7 @@ class _TokenKind(Vocabulary):
 _KINDS = {**{kind.value: kind for kind in _TokenKind}, "strange": _TokenKind.JUNK}
 
 
-class _Token(NamedTuple):
+class _Token(Record, frozen=True):
     """A token of a script. `start` and `end` are offsets in the decoded text."""
 
     kind: _TokenKind
@@ -407,7 +406,7 @@ class _Parser:
             and follows.kind in (_TokenKind.NAME, _TokenKind.NUMBER, _TokenKind.JUNK)
             and follows.text[0] != '"'
         ):
-            word = token._replace(text=token.text + follows.text, end=follows.end)
+            word = replace(token, text=token.text + follows.text, end=follows.end)
             self.at += 1
             raise _ScriptError(word, f"`{word.text}` is neither a number nor a name")
         text = token.text

@@ -13,6 +13,7 @@ from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
 from roaml.exhaustive import Vocabulary, assert_never
+from roaml.record import Record
 from roaml.regex import regex
 from roaml.scxml.events import EventRole, Role, ScxmlEvent
 
@@ -219,7 +220,7 @@ class InterfaceEventKind(Vocabulary):
     THREAD_FREE = "thread free"
 
 
-class InterfaceEvent(NamedTuple):
+class InterfaceEvent(Record, frozen=True):
     """An event that represents a part of a ROS interface. `name` is the name of the topic, service or action, in the
     form of `sanitise`."""
 

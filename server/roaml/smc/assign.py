@@ -8,10 +8,10 @@ A value that is stored in an array of a larger shape is padded with zeros.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 from roaml.jani.expressions import ArrayAccess, ArrayConstructor, ArrayValue, Conditional, Expression, Name
 from roaml.jani.node import Origin
+from roaml.record import Record
 from roaml.smc.assemble import ExpressionAssembler
 from roaml.smc.fault import FaultError
 from roaml.smc.names import Storage, StorageNames, unsupported
@@ -20,7 +20,7 @@ from roaml.smc.operations import MAX_INT64
 from roaml.smc.registers import INT, REAL, Number, Operand, Region, product
 
 
-class Later(NamedTuple):
+class Later(Record, frozen=True):
     """An assignment whose value is computed and not stored yet: its target, the first register of the value, and the
     number of the variable that changes (-1 if its changes are not tracked)."""
 

@@ -10,7 +10,7 @@ import time
 from array import array
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from roaml.record import Record
 from roaml.smc.counts import count
@@ -75,7 +75,7 @@ class Payload:
         self._compiled = None
 
 
-class TraceProblem(NamedTuple):
+class TraceProblem(Record, frozen=True):
     """An undefined operation in a trace: the number of the trace, and the numbers that `Kernel.problem` returns."""
 
     trace: int
@@ -86,7 +86,7 @@ class TraceProblem(NamedTuple):
     real: float
 
 
-class Counting(NamedTuple):
+class Counting(Record, frozen=True):
     """What is counted for a question.
 
     Attributes:
@@ -103,7 +103,7 @@ class Counting(NamedTuple):
     is_ordered: bool = False
 
 
-class Task(NamedTuple):
+class Task(Record, frozen=True):
     """A batch: the traces `first` to `first + size - 1`, each with at most `max_steps` steps, under the scheduler
     `scheduler` (0: uniform choices).
 
@@ -329,7 +329,7 @@ def _end_with(sentinel: int) -> None:
     signal.raise_signal(signal.SIGTERM)
 
 
-class Bundle(NamedTuple):
+class Bundle(Record, frozen=True):
     """The outcomes of some batches, in their order, and the elapsed time in s."""
 
     outcomes: list[BatchOutcome]

@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from roaml.explicit.path import Path
 from roaml.explicit.space import ExplorationProgress, ExplorationWatch, StateLimits
-from roaml.record import replace
+from roaml.record import Record, replace
 from roaml.smc.batch import follow_main_process
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 _REPORT_INTERVAL_S = 0.1
 
 
-class _Found(NamedTuple):
+class _Found(Record, frozen=True):
     """The exact values that a process has computed, without traces; and the paths of the traces."""
 
     exact: Exact

@@ -6,7 +6,6 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import NamedTuple
 
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.project.paths import slashed
@@ -18,7 +17,7 @@ _CONTEXT_CHARACTERS = 200
 have everything on one line."""
 
 
-class LineRange(NamedTuple):
+class LineRange(Record, frozen=True):
     """Lines and columns from 1, in code points; the end is exclusive."""
 
     line: int
@@ -27,7 +26,7 @@ class LineRange(NamedTuple):
     end_column: int
 
 
-class RelatedEntry(NamedTuple):
+class RelatedEntry(Record, frozen=True):
     """A further place that explains a diagnostic."""
 
     file: str

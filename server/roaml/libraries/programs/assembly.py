@@ -11,12 +11,12 @@ import ast
 import functools
 import re
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 from roaml.disk import path_of_resource, resource
 from roaml.libraries import BEHAVIORTREE_CPP, library
 from roaml.libraries.version import NEWEST_VERSION, Version, first_patch
-from roaml.record import Record, field
+from roaml.record import Record, astuple, field
 from roaml.regex import regex
 from roaml.text import Location, Span
 
@@ -54,7 +54,7 @@ class CodeLabel:
     index = -1
 
 
-class SetVariable(NamedTuple):
+class SetVariable(Record, frozen=True):
     """Assigns `value` to the variable `target`; if `element` is not `None`, to the variable for the child with this
     number."""
 
@@ -63,38 +63,38 @@ class SetVariable(NamedTuple):
     value: ast.expr
 
 
-class Jump(NamedTuple):
+class Jump(Record, frozen=True):
     label: CodeLabel
 
 
-class Test(NamedTuple):
+class Test(Record, frozen=True):
     """Jumps to `otherwise` if the condition does not hold."""
 
     condition: ast.expr
     otherwise: CodeLabel
 
 
-class Choose(NamedTuple):
+class Choose(Record, frozen=True):
     """Continues with the probability `probability`; otherwise jumps to `otherwise`."""
 
     probability: ast.expr
     otherwise: CodeLabel
 
 
-class TickChild(NamedTuple):
+class TickChild(Record, frozen=True):
     """Ticks a child, and assigns the code of its answer to `target`."""
 
     child: ast.expr
     target: str
 
 
-class Reset(NamedTuple):
+class Reset(Record, frozen=True):
     """Halts a child if it is running, and makes it IDLE."""
 
     child: ast.expr
 
 
-class ResetAll(NamedTuple):
+class ResetAll(Record, frozen=True):
     """Precedes the instructions up to `end`, which reset all children; all except the child `but` if that is not
     `None`."""
 
@@ -102,11 +102,11 @@ class ResetAll(NamedTuple):
     end: CodeLabel
 
 
-class Return(NamedTuple):
+class Return(Record, frozen=True):
     status: ast.expr
 
 
-class Evaluate(NamedTuple):
+class Evaluate(Record, frozen=True):
     """Executes a script of the node, and jumps to `otherwise` if this is not `None` and the value of the script is
     false."""
 
@@ -114,40 +114,40 @@ class Evaluate(NamedTuple):
     otherwise: CodeLabel | None
 
 
-class Updated(NamedTuple):
+class Updated(Record, frozen=True):
     """Jumps to `otherwise` if the observed entry was not written since the last execution of this instruction."""
 
     otherwise: CodeLabel
 
 
-class WriteOutputs(NamedTuple):
+class WriteOutputs(Record, frozen=True):
     """Writes the outputs of a mock."""
 
 
-class HaltSelf(NamedTuple):
+class HaltSelf(Record, frozen=True):
     """Halts the node itself. Its tick is answered with SKIPPED."""
 
 
-class Read(NamedTuple):
+class Read(Record, frozen=True):
     """Reads the entries to which `ports` are bound."""
 
     ports: tuple[str, ...]
 
 
-class Write(NamedTuple):
+class Write(Record, frozen=True):
     """Writes `value` to the entry to which a port is bound."""
 
     port: str
     value: ast.expr
 
 
-class Count(NamedTuple):
+class Count(Record, frozen=True):
     """Increments a counter that only measurements use."""
 
     counter: str
 
 
-class Throw(NamedTuple):
+class Throw(Record, frozen=True):
     """The library throws an exception."""
 
     reason: str
@@ -210,7 +210,7 @@ class NodeProgram(Record, frozen=True, eq=False, dict=True):
     @functools.cached_property
     def timed_ports(self) -> frozenset[str]:
         """The ports that contain times in ms, which the program converts to ticks."""
-        values = (value for part in self.tick for value in part if isinstance(value, ast.expr))
+        values = (value for part in self.tick for value in astuple(part) if isinstance(value, ast.expr))
         calls = (call for value in values for call in ast.walk(value) if isinstance(call, ast.Call))
         ports = (call.args[0] for call in calls if isinstance(call.func, ast.Name) and call.func.id == "ticks")
         return frozenset(port.id for port in ports if isinstance(port, ast.Name))

@@ -8,7 +8,6 @@ A node is bound to a program of a library, or it is a machine, a leaf without a 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import NamedTuple
 
 from roaml.libraries.node import Node, Port
 from roaml.libraries.programs.assembly import NodeProgram, programs
@@ -18,7 +17,7 @@ from roaml.libraries.version import NEWEST_VERSION, Version
 from roaml.record import Record
 
 
-class Possible(NamedTuple):
+class Possible(Record, frozen=True):
     """The statuses that a node can return: at any tick, and at its first tick."""
 
     ever: Answers

@@ -9,7 +9,7 @@ blackboard, or decides by the values of its variables how it continues.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 from roaml.expr.operators import Operator
 from roaml.expr.tree import Expr
@@ -84,13 +84,13 @@ _SKIPS = "*skips"
 _ENDED = "*ended"
 
 
-class _Rest(NamedTuple):
+class _Rest(Record, frozen=True):
     """The node waits for its parent."""
 
     fixed: Fixed
 
 
-class _Ticking(NamedTuple):
+class _Ticking(Record, frozen=True):
     """The node waits for the answer of a child to a tick."""
 
     place: Place
@@ -99,7 +99,7 @@ class _Ticking(NamedTuple):
     target: str
 
 
-class _Halting(NamedTuple):
+class _Halting(Record, frozen=True):
     """The node waits for the answer of a child to a halt."""
 
     place: Place
@@ -107,7 +107,7 @@ class _Halting(NamedTuple):
     child: int
 
 
-class _Asking(NamedTuple):
+class _Asking(Record, frozen=True):
     """The node waits for the blackboard."""
 
     place: Place
@@ -115,18 +115,18 @@ class _Asking(NamedTuple):
     entries: tuple[BoardEntry, ...]
 
 
-class _Deciding(NamedTuple):
+class _Deciding(Record, frozen=True):
     """The node decides by the values of variables how it continues."""
 
     place: Place
     fixed: Fixed
 
 
-class _Exception(NamedTuple):
+class _Exception(Record, frozen=True):
     """The library has thrown an exception."""
 
 
-class _Decision(NamedTuple):
+class _Decision(Record, frozen=True):
     """The execution continues at `yes` if a condition on variables holds, otherwise at `no`."""
 
     condition: Expr

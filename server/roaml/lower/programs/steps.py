@@ -5,7 +5,7 @@ entries."""
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 from roaml.expr.tree import Expr
 from roaml.libraries.programs.statuses import Known
@@ -13,6 +13,7 @@ from roaml.lower.build import equal, floor, integer, name
 from roaml.lower.programs.entries import BoardEntry
 from roaml.lower.programs.scripts import CompiledScript
 from roaml.lower.programs.values import expr
+from roaml.record import Record
 
 Place: TypeAlias = "tuple[str, int]"
 """The name of a segment of the code, and the index of an instruction in it."""
@@ -21,20 +22,20 @@ EXCEPTION: Place = ("exception", 0)
 """The place at which the execution continues after an exception of the library."""
 
 
-class ReadEntries(NamedTuple):
+class ReadEntries(Record, frozen=True):
     """Reads the entries `entries` at once."""
 
     entries: tuple[BoardEntry, ...]
 
 
-class Update(NamedTuple):
+class Update(Record, frozen=True):
     """Assigns variables of the automaton, and writes entries."""
 
     assignments: tuple[tuple[str, Expr], ...]
     writes: tuple[BoardEntry, ...]
 
 
-class Decide(NamedTuple):
+class Decide(Record, frozen=True):
     """Continues at `yes` if the condition holds, otherwise at `no`."""
 
     condition: Expr | bool
@@ -42,7 +43,7 @@ class Decide(NamedTuple):
     no: Place
 
 
-class Draw(NamedTuple):
+class Draw(Record, frozen=True):
     """Continues at `yes` with the probability `probability`, otherwise at `no`."""
 
     probability: float

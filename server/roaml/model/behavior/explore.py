@@ -17,7 +17,6 @@ from __future__ import annotations
 import weakref
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping
-from typing import NamedTuple
 
 from roaml.exhaustive import Vocabulary, assert_never
 from roaml.expr.format import format_expr
@@ -239,7 +238,7 @@ def explore(machine: Machine, chart: Chart, *, fine: bool = False) -> Behavior |
     return known[fine]
 
 
-class _Path(NamedTuple):
+class _Path(Record, frozen=True):
     """One path through the statements that a step executes."""
 
     phases: Phases
@@ -262,10 +261,10 @@ class _Path(NamedTuple):
         if phase is not None:
             phases.append((key, phase))
             phases.sort()
-        return self._replace(phases=tuple(phases))
+        return replace(self, phases=tuple(phases))
 
     def wrong(self, kind: FaultKind, duty: Duty, statement: Statement, source: str = "") -> _Path:
-        return self._replace(faults=(*self.faults, Fault(kind, duty, statement, self.certain, source)))
+        return replace(self, faults=(*self.faults, Fault(kind, duty, statement, self.certain, source)))
 
     def held(self, variable: str) -> HeldId | None:
         """The goal whose id `variable` holds; `None` if no id was stored in it."""
@@ -276,7 +275,7 @@ class _Path(NamedTuple):
         if held is not None:
             ids.append((variable, held))
             ids.sort()
-        return self._replace(ids=tuple(ids))
+        return replace(self, ids=tuple(ids))
 
     def variable_with(self, held: HeldId) -> str:
         """A variable that holds the id `held`; "" if there is none."""
@@ -286,7 +285,7 @@ class _Path(NamedTuple):
         """A copy of this path in which the goals of the server `handle` with the status `before` have the status
         `after`."""
         old, new = HeldId(before, handle), HeldId(after, handle)
-        return self._replace(ids=tuple((variable, new if held == old else held) for variable, held in self.ids))
+        return replace(self, ids=tuple((variable, new if held == old else held) for variable, held in self.ids))
 
 
 def _kinds(chart: Chart) -> tuple[Mapping[str, str], frozenset[str], frozenset[str]]:
@@ -314,7 +313,7 @@ EVENT_VARIABLES = frozenset(
 """Variables that hold the data of the current event. They are not available after the step that handles it."""
 
 
-class _Group(NamedTuple):
+class _Group(Record, frozen=True):
     """The handlers of a state for one event. `touched` contains the subjects, each with a handle, whose phases the
     steps of the group may read or change."""
 
@@ -667,7 +666,7 @@ class _Explorer(Record, eq=False, dict=True):
         key = (group.state, group.event, inside, taken.ids, taken.knowledge)
         if key not in self.reactions:
             self.group_reactions = self.reactions[key] = []
-            self._decide(group, taken._replace(phases=inside))
+            self._decide(group, replace(taken, phases=inside))
         outside = tuple(entry for entry in taken.phases if entry[0] not in group.touched)
         for state, path, handler, choice, ignored in self.reactions[key]:
             phases = tuple(sorted((*outside, *path.phases))) if outside else path.phases
@@ -703,21 +702,21 @@ class _Explorer(Record, eq=False, dict=True):
                 ways = [facts.know(taken.knowledge, "_bt.status", Domain(frozenset(STATUSES.values())))]
         for handler in handlers:
             if handler.cond is None:
-                self._execute(group, handler, [taken._replace(knowledge=way) for way in ways])
+                self._execute(group, handler, [replace(taken, knowledge=way) for way in ways])
                 return
             if not (self.fine or matters):
                 self._execute(group, handler, [taken])
                 continue
             tree = handler.cond.tree
             holding = [known for way in ways for known in facts.assume(way, tree, True)]
-            self._execute(group, handler, [taken._replace(knowledge=way) for way in holding])
+            self._execute(group, handler, [replace(taken, knowledge=way) for way in holding])
             ways = [known for way in ways for known in facts.assume(way, tree, False)]
         if matters or (self.fine and event is None):
             assert group.state.id is not None
             for way in ways:
                 # If the conditions enumerate values, no other value is ever sent, and the event is not discarded.
                 if not way.enumerates(taken.knowledge):
-                    path = taken._replace(knowledge=self._kept(way))
+                    path = replace(taken, knowledge=self._kept(way))
                     self.group_reactions.append((group.state.id.value, path, handlers[-1], 0, True))
 
     def _answered(self, group: _Group, handler: Handler, taken: _Path) -> None:
@@ -741,7 +740,7 @@ class _Explorer(Record, eq=False, dict=True):
             for path in self._bodies([leave, target.body, enter], paths):
                 known = self._kept(path.knowledge) if entered else NOTHING
                 after = name if entered else UNKNOWN_STATE
-                done = path._replace(knowledge=known)
+                done = replace(path, knowledge=known)
                 # After the decision on a later goal, the earlier goal is an accepted goal again.
                 if event is not None and event.part is ProtocolPart.GOAL:
                     done = done.with_ids(event.name, GoalStatus.EARLIER, GoalStatus.ACCEPTED)
@@ -824,7 +823,7 @@ class _Explorer(Record, eq=False, dict=True):
         return (path,)
 
     def _sent(self, path: _Path, event: ProtocolEvent) -> _Path:
-        return path._replace(sent=(*path.sent, event))
+        return replace(path, sent=(*path.sent, event))
 
     def _assign(self, statement: Assign, path: _Path) -> Iterable[_Path]:
         if statement.location is None:
@@ -836,7 +835,7 @@ class _Explorer(Record, eq=False, dict=True):
             path = path.holding(root, self._stored(location, value, path))
         if root not in self.relevant:
             return (path,)
-        return [path._replace(knowledge=k) for k in self.facts.assign(path.knowledge, location, value)]
+        return [replace(path, knowledge=k) for k in self.facts.assign(path.knowledge, location, value)]
 
     def _stored(self, location: Expr, value: Expr | None, path: _Path) -> HeldId | None:
         """The goal whose id the variable holds after an assignment of `value`; `None` if `value` is a constant, or a
@@ -872,13 +871,13 @@ class _Explorer(Record, eq=False, dict=True):
         certain = path.certain and len(possible) == 1
         paths: list[_Path] = []
         for known, body in possible:
-            paths += self._bodies([body], [path._replace(knowledge=k, certain=certain) for k in dict.fromkeys(known)])
+            paths += self._bodies([body], [replace(path, knowledge=k, certain=certain) for k in dict.fromkeys(known)])
         return paths
 
     def _any_part(self, statement: If, path: _Path) -> Iterable[_Path]:
         paths = [after for branch in statement.branches for after in self._bodies([branch.body], [path])]
         paths += self._bodies([statement.otherwise.body], [path]) if statement.otherwise else [path]
-        return [after._replace(certain=False) for after in paths]
+        return [replace(after, certain=False) for after in paths]
 
     def _status(self, statement: ReturnStatus, path: _Path) -> Iterable[_Path]:
         word = statement.status.value if statement.status else ""

@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import NamedTuple, TypeAlias
 
 from roaml.exhaustive import Vocabulary
+from roaml.record import Record
 from roaml.roles import ProtocolPart
 
 
@@ -102,7 +103,7 @@ class GoalStatus(Vocabulary):
     """The content of the variable is not known."""
 
 
-class HeldId(NamedTuple):
+class HeldId(Record, frozen=True):
     """The id of a goal in a variable. `of` is the handle of the server to which the goal was sent; for a foreign value,
     it is the text of the assigned expression."""
 

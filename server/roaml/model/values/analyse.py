@@ -11,7 +11,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 from roaml.expr.tree import ArrayLiteral, Expr, Index, Member, Number, ObjectLiteral, access_path, walk
 from roaml.expr.types import INTEGER_RANGES, Array, Scalar, ScalarKind, Type, is_kind, leaves
@@ -67,7 +67,7 @@ Fields: TypeAlias = "Mapping[str, ValueSet]"
 contained may have any value."""
 
 
-class DataChannel(NamedTuple):
+class DataChannel(Record, frozen=True):
     """What arrives or is sent: a part of a ROS interface, with the handle; or an event or a port, with its name."""
 
     part: ProtocolPart
@@ -230,7 +230,7 @@ def data_place(part: ProtocolPart) -> str | None:
     return _DATA_OF.get(part)
 
 
-class _Group(NamedTuple):
+class _Group(Record, frozen=True):
     """Handlers of a state that are tested in order, and the values of the data of their event."""
 
     handlers: tuple[Handler, ...]

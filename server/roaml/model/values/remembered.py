@@ -12,18 +12,19 @@ from __future__ import annotations
 import functools
 import re
 from collections.abc import Callable, Hashable, Iterable, Iterator
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, TypeAlias
 
 from roaml.expr.tree import Name, walk
 from roaml.model.machine import Assign, If, Statement
 from roaml.model.syntax import Expression, Value
 from roaml.model.values.evaluate import Valuation
+from roaml.record import Record
 
 Transitions: TypeAlias = "list[tuple[str, Valuation]]"
 """The states that follow a state, each with the values with which it is entered."""
 
 
-class RememberedPart(NamedTuple):
+class RememberedPart(Record, frozen=True):
     """A part of a machine that can be remembered.
 
     Attributes:

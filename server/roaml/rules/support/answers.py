@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
 from roaml.diagnostics import Fix, Related, Severity
 from roaml.edit.elements import after, first_in, last_in, without_tags
@@ -419,7 +418,7 @@ def _may_answer(machine: Machine, statement: Statement, duty: Duty) -> bool:
 # ------------------------------------------------------------ ticks and halts
 
 
-class UnhandledState(NamedTuple):
+class UnhandledState(Record, frozen=True):
     """A state in which a tick or halt may arrive and is not handled.
 
     Attributes:

@@ -5,17 +5,17 @@ the handler or branch. So a condition has no effect if an earlier one holds when
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
 
 from roaml.expr.tree import Expr, is_draw, walk
 from roaml.model.behavior.knowledge import MAX_CONJUNCTIONS, NOTHING, ConditionFacts, Knowledge
 from roaml.model.syntax import Expression
+from roaml.record import Record
 
 MAX_CONDITIONS = 2000
 """The maximum number of conditions in a row that are compared with each other."""
 
 
-class Covered(NamedTuple):
+class Covered(Record, frozen=True):
     """A condition that holds only where an earlier one holds.
 
     Attributes:
