@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 from roaml.disk import UnreadableReason, read, required
 from roaml.exact_number import exact_fraction
 from roaml.mocks.mock import Mock, MockError, read_mock, read_mocks, unused
-from roaml.model.kinds import FileKind, kind_of
 from roaml.project.settings import Settings, ament_prefixes
 from roaml.record import Record, field, replace
 from roaml.text import decode
@@ -100,6 +99,8 @@ def names_tree(path: str, texts: Mapping[str, bytes] = NO_TEXTS) -> bool:
     data = texts.get(os.path.abspath(path)) or read(path)
     if isinstance(data, UnreadableReason):
         return False  # reported where the file is read
+    from roaml.model.kinds import FileKind, kind_of  # noqa: PLC0415 - a JANI model does not need the grammars
+
     return kind_of(path, decode(path, data).text) is FileKind.TREE
 
 

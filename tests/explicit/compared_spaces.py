@@ -6,7 +6,8 @@ from __future__ import annotations
 from typing import Any
 
 from roaml.explicit.independence import can_be_reduced
-from roaml.explicit.path import PathRecorder, shortest
+from roaml.explicit.path import shortest
+from roaml.explicit.path_recorder import PathRecorder
 from roaml.explicit.space import Space, StateLimits, explore
 from roaml.explicit.values import values_of
 from roaml.smc.goal import CompiledProperty

@@ -14,7 +14,8 @@ from smc_models import Json, at, automaton, document, edge, model, op, probabili
 from smc_random import networks
 
 import kept_strategies as st
-from roaml.explicit.path import PathRecorder, shortest
+from roaml.explicit.path import shortest
+from roaml.explicit.path_recorder import PathRecorder
 from roaml.explicit.plain import plain_kernel, plain_search
 from roaml.explicit.preparation import preparation_of
 from roaml.explicit.space import Space, StateLimits, _bounds, explore

@@ -16,7 +16,8 @@ from smc_random import networks
 from explorer import Explorer, StateFaultError
 from roaml import explicit
 from roaml.explicit import codes, solver
-from roaml.explicit.path import PathRecorder, shortest
+from roaml.explicit.path import shortest
+from roaml.explicit.path_recorder import PathRecorder
 from roaml.explicit.plain import plain_kernel, plain_search, plain_solver
 from roaml.explicit.space import LimitError, Space, StateLimits, explore
 from roaml.explicit.values import NoValueError, values_of

@@ -52,26 +52,20 @@ from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.durations import ANY, ANY_TIME, AT_ONCE, INSTANT
 from roaml.explicit.space import MAX_STATES, StateLimits
-from roaml.figures.themes import AUTOMATIC
-from roaml.jani.property_text import PropertyTextError
-from roaml.mocks.mock import MockError
 from roaml.record import replace
 from roaml.scxml.names import SUCCEEDS
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
-from roaml.smc.lss import Search
 from roaml.smc.pool import Pool, WorkersLostError
 from roaml.smc.program import FALSE
 from roaml.smc.run import EstimationMethod, Options
 from roaml.smc.tally import Tally
 from roaml.text import Location, SourceFile, Span
 from roaml.verification import stuck
-from roaml.verification.counterexample import unwanted_trace, unwanted_verdict
 from roaml.verification.exhaustive import ExplorationInterruptedError
-from roaml.verification.expectations import Expectation, RangeError
+from roaml.verification.expectations import Expectation
 from roaml.verification.refusal import fault_message
 from roaml.verification.results import Computed, CutShort, Exact, Refused, Result, Sampled
-from roaml.verification.searches import Searches
 from roaml.verification.small import EXAMPLE_TRACES
 from roaml.verification.target import VerificationTarget
 from roaml.verification.verifier import NoThresholdError, Verifier
@@ -80,6 +74,7 @@ if TYPE_CHECKING:
     from roaml.mocks.network import MockedTree
     from roaml.project.settings import Settings
     from roaml.smc.story import Story
+    from roaml.verification.searches import Searches
     from roaml.verification.tree_outcome import TreeOutcome
 
 WIDTH_OF_TREES = 0.05
@@ -105,7 +100,7 @@ def run(arguments: Sequence[str]) -> int:
 def _checked(options: argparse.Namespace, interrupts: Interrupts) -> int:
     try:
         return _run(options, interrupts)
-    except (UsageError, RangeError, PropertyTextError, api.ConstantError, StateError) as error:
+    except (UsageError, api.RangeError, api.ConstantError, StateError) as error:
         return _fail(str(error))
     except (api.ParameterError, api.PathError, api.PropertyError, WorkersLostError) as error:
         return _fail(str(error))
@@ -198,7 +193,7 @@ def _run_tree(
             if outcome is None and not options.exhaustive:
                 status.stage("making traces")
                 outcome = measure(tree.mocked, tree.target, limits)
-    except MockError as error:
+    except api.MockError as error:
         raise UsageError(str(error)) from None
     except api.ModelError as error:
         return _errors(options, error_report(error))
@@ -291,6 +286,7 @@ class _Verification:
     def _write_plots(self) -> None:
         from as2fm_lsp.cli.plot_files import write_plots  # noqa: PLC0415 - most verifications draw nothing
         from as2fm_lsp.verification.curve_files import curve_plots  # noqa: PLC0415
+        from roaml.figures.themes import AUTOMATIC  # noqa: PLC0415
 
         with StatusLine() as status:
             status.stage("making traces for the plot")
@@ -392,7 +388,7 @@ class _Verification:
 
     def _search(self, property_: CompiledProperty, pool: Pool, bar: ProgressBar, began: float) -> Result:
         """The minimum and the maximum probability over sampled schedulers; a partial result if it is interrupted."""
-        search, interrupted = Search(), False
+        search, interrupted = api.Search(), False
         try:
             self.verifier.checker.search(property_, self.limits, pool, search, bar.search, bar.pulse)
         except KeyboardInterrupt:
@@ -501,6 +497,8 @@ class _Verification:
     def _unwanted_story(self, result: Result) -> Story | None:
         """The explanation of a trace that contradicts an expectation: the shortest one that the search through all
         states has found, otherwise the shortest random one."""
+        from roaml.verification.counterexample import unwanted_trace, unwanted_verdict  # noqa: PLC0415
+
         found = None if result.exact is None else result.exact.shortest(unwanted_verdict(result))
         if found is not None:
             return found.story(self.target.clock)
@@ -644,6 +642,8 @@ class _Verification:
                 folder, limit = self.options.traces, self.options.traces_limit
                 write_traces(self.outputs, folder, self.target, recorder, result.answer, limit)
             if self.options.explain:
+                from roaml.verification.counterexample import unwanted_trace  # noqa: PLC0415
+
                 seen = unwanted_trace(result)
                 if seen is None:
                     print_text(f"{result.name}: {self._no_trace(result)}\n", stream=sys.stderr)
@@ -655,6 +655,8 @@ class _Verification:
 
     def _no_trace(self, result: Result) -> str:
         """Why no random trace is explained, and what to do if a sampled scheduler has other traces, in one sentence."""
+        from roaml.verification.counterexample import unwanted_verdict  # noqa: PLC0415
+
         fails = unwanted_verdict(result) == FALSE
         traces = 0 if result.answer is None else result.answer.tally.traces
         text = f"none of the {traces:,} random traces {'failed' if fails else 'held'}"
@@ -682,6 +684,8 @@ class _Verification:
         """The explanation of the shortest trace that contradicts an expectation."""
         if self.options.traces is not None:
             complain(f"{result.name}: --traces writes random traces only, not those of --exhaustive")
+        from roaml.verification.counterexample import unwanted_verdict  # noqa: PLC0415
+
         verdict = unwanted_verdict(result)
         trace = exact.shortest(verdict)
         if trace is not None:

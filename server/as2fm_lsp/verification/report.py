@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -18,7 +17,6 @@ from roaml.smc.goal import Question
 from roaml.smc.lss import Side
 from roaml.smc.run import Answer, ratio_of
 from roaml.verification.expectations import NO_EXPECTATION
-from roaml.verification.growth import GrowingVariable, advice
 from roaml.verification.headline import NO_TRACES, estimate_text, headline
 from roaml.verification.number_text import number
 from roaml.verification.refusal import Refusal
@@ -39,6 +37,7 @@ from roaml.verification.schedulers import may_differ
 from roaml.verification.stuck import Stuck, StuckLevel
 
 if TYPE_CHECKING:
+    from roaml.verification.growth import GrowingVariable
     from roaml.views.story import PlaceOf
 
 
@@ -264,6 +263,8 @@ def _stuck_lines(stuck: Stuck, place_of: PlaceOf, level: StuckLevel, shown: str)
 def _growing_lines(growing: Sequence[GrowingVariable]) -> list[str]:
     if not growing:
         return []
+    from roaml.verification.growth import advice  # noqa: PLC0415 - most searches end before their limits
+
     text = ", ".join(variable.text for variable in growing)
     return [f"  more and more values so far: {text}; {advice(growing)}"]
 
@@ -348,6 +349,8 @@ def as_json(
         value["drawn"] = list(drawn)
     if errors:
         value["errors"] = list(errors)
+    import json  # noqa: PLC0415
+
     return json.dumps(value, indent=1, ensure_ascii=False) + "\n"
 
 

@@ -7,7 +7,6 @@ limits, a higher confidence or more traces; the stored counts stay valid.
 
 from __future__ import annotations
 
-import json
 import os
 import time
 from typing import Any
@@ -16,7 +15,6 @@ from roaml.disk import MEGABYTE, required
 from roaml.smc.batch import Payload
 from roaml.smc.goal import Question
 from roaml.smc.run import Options
-from roaml.smc.stored import tally_from_json
 from roaml.smc.tally import Tally
 
 VERSION = 5
@@ -64,6 +62,8 @@ class SavedState:
                 "--max-steps, or another file"
             )
         try:
+            from roaml.smc.stored import tally_from_json  # noqa: PLC0415
+
             tally = tally_from_json(known.get("tally"), question, self.options)
         except ValueError as error:
             raise StateError(f"{self.path} is damaged: {name}: {error}; remove it to start again") from None
@@ -89,12 +89,17 @@ class SavedState:
             "options": repr(self.options),
             "tally": tally.to_json(),
         }
+        import json  # noqa: PLC0415 - few runs are saved
+
+        from as2fm_lsp.atomic_write import write_file  # noqa: PLC0415
+
         text = json.dumps({"version": VERSION, "properties": self._properties}, indent=1)
-        from as2fm_lsp.atomic_write import write_file  # noqa: PLC0415 - few runs are saved
 
         write_file(self.path, text + "\n")
 
     def _read(self) -> None:
+        import json  # noqa: PLC0415
+
         try:
             value = json.loads(required(self.path, MAX_STATE_BYTES).decode("utf-8"))
         except (ValueError, RecursionError):

@@ -12,7 +12,6 @@ from roaml.api.jani_files import read_jani
 from roaml.disk import MAX_DATA, required
 from roaml.durations import ReactionTime
 from roaml.jani.model import Model
-from roaml.model.kinds import mocks_path
 from roaml.model.parameters import NO_OVERRIDES, Overrides
 from roaml.project.settings import Settings
 from roaml.record import replace
@@ -69,7 +68,7 @@ def target(
         MockError: a mock is not valid.
         MissingMocksError: leaves of the tree have no mock.
     """
-    if mocks is not None or (not path.endswith(".jani") and os.path.exists(mocks_path(path))):
+    if mocks is not None or (not path.endswith(".jani") and _has_mocks(path)):
         assumed = overrides.reaction_time or (None if settings is None else settings.reaction_time)
         options = _mock_options(path, mocks, entries or {}, tick_rate, assumed)
         from roaml.api.trees import load_tree  # noqa: PLC0415
@@ -86,6 +85,13 @@ def target(
     return read.expecting(_expected(settings))
 
 
+def _has_mocks(path: str) -> bool:
+    """Whether a file with mocks is beside a tree."""
+    from roaml.model.kinds import mocks_path  # noqa: PLC0415 - a JANI model does not need the grammars
+
+    return os.path.exists(mocks_path(path))
+
+
 def _mock_options(
     path: str,
     mocks: Mapping[str, str] | None,
@@ -96,6 +102,7 @@ def _mock_options(
     """The options of a tree with mocks, which are read from the file beside the tree if they are not given."""
     from roaml.mocks.mock import named_mocks, read_mocks  # noqa: PLC0415
     from roaml.mocks.network import DEFAULT_RATE, MockOptions  # noqa: PLC0415
+    from roaml.model.kinds import mocks_path  # noqa: PLC0415
 
     if mocks is None:
         declared = read_mocks(required(mocks_path(path), MAX_DATA).decode("utf-8", "replace"))

@@ -1,20 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A trace to a state, as a `Recording`: the shortest one if the search has left nothing out."""
+"""A trace to a state: the shortest one if the search has left nothing out. `path_recorder` records it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from roaml.explicit import codes
 from roaml.explicit.space import Space
 from roaml.record import Record
-from roaml.smc.end import End
-from roaml.smc.goal import CompiledProperty
-from roaml.smc.model import ModelChecker
-from roaml.smc.names import Storage
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
-from roaml.smc.record import Plain, Recorder, Recording, TraceStep
 
 
 class PathStep(NamedTuple):
@@ -101,29 +95,3 @@ def _verdict(label: int, is_stuck: bool) -> int:
     if label & codes.OPEN:
         return UNKNOWN
     return TRUE if label & (codes.LASTS if label & codes.HOLDS else codes.FAILS) else FALSE
-
-
-class PathRecorder(Recorder):
-    """Records the steps of a given path, instead of random ones."""
-
-    def __init__(self, checker: ModelChecker, property_: CompiledProperty, path: Path) -> None:
-        super().__init__(checker, property_, 0, len(path.steps))
-        self._path = path
-
-    def initial(self, storages: Sequence[Storage], trace: int) -> list[Plain]:
-        self._kernel.root(self._path.root)
-        return self.values(storages)
-
-    def walk(self, recording: Recording) -> Iterator[TraceStep]:
-        kernel = self._kernel
-        kernel.root(self._path.root)
-        self._steps.start()
-        for number, (vector, edges, ways) in enumerate(self._path.steps, 1):
-            kernel.go(vector, edges, ways)
-            yield self._steps.read(number)
-        recording.verdict = self._path.verdict
-        recording.end = End(kernel.standstill()) if self._path.is_end else End.DECIDED
-
-    def rush(self, recording: Recording) -> None:
-        for _ in self.walk(recording):
-            pass

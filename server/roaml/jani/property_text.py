@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from typing import Any, TypeAlias
 
+from roaml.jani.selection import PropertyError
 from roaml.record import Record, replace
 from roaml.regex import regex
 
@@ -45,7 +46,7 @@ _RELATIONS = frozenset(("=", "!=", "<", "<=", ">", ">="))
 MAX_DEPTH = 100
 
 
-class PropertyTextError(ValueError):
+class PropertyTextError(PropertyError):
     """Raised for a text that is not a property. The message contains the reason and the place."""
 
 

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import math
 
-from roaml.explicit.reached_reward import reached_reward
 from roaml.explicit.space import Space
 from roaml.jani.operators import BinaryOperator
 from roaml.jani.properties import BinaryFormula, Filter, Probability, Property
@@ -40,6 +39,8 @@ def of_condition(exact: Exact, question: Question, space: Space | None) -> Exact
     from roaml.to_jani.counters import is_counter  # noqa: PLC0415 - JANI models need no translation
 
     counters = [variable.name for variable in space.checker.model.variables if is_counter(variable.name)]
+    from roaml.explicit.reached_reward import reached_reward  # noqa: PLC0415 - most rewards have no condition
+
     reached = reached_reward(space, counters)
     return None if reached is None else _valued(exact, reached.value, is_for_all=reached.is_deterministic)
 

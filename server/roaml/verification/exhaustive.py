@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from roaml.explicit.independence import can_be_reduced
-from roaml.explicit.path import EndlessTrace, shortest
+from roaml.explicit.path import shortest
 from roaml.explicit.space import (
     ExplorationWatch,
     LimitError,
@@ -23,10 +25,14 @@ from roaml.smc.program import AT_END, FALSE, TRUE
 from roaml.smc.statistics import Bounds
 from roaml.verification.conditional import of_condition, parts_of, quotient
 from roaml.verification.expectations import Expectation, Verdict, holds_exactly
-from roaml.verification.growth import GrowingVariable, growing_variables
 from roaml.verification.number_text import distinct
 from roaml.verification.results import Exact, Proof, ShortestTrace, is_close
 from roaml.verification.schedulers import is_minimised
+
+if TYPE_CHECKING:
+    from roaml.explicit.path import EndlessTrace
+    from roaml.explicit.search import StateSearch
+    from roaml.verification.growth import GrowingVariable
 
 MAX_STATES_AT_FIRST = 20_000
 """If there are more states, a second search leaves out choices that change neither the minimum nor the maximum."""
@@ -85,11 +91,17 @@ def exact_values(
             return _partly(checker, property_, limits, watch)
         return values_from(explore(checker, property_, limits, watch), limits)
     except LimitError as error:
-        variables = () if error.search is None else growing_variables(checker, error.search)
+        variables = () if error.search is None else _growing(checker, error.search)
         raise UndecidedError(f"{error}; {_ESTIMATE}", variables) from None
     except SearchInterruptedError as interrupt:
-        variables = growing_variables(checker, interrupt.search)
+        variables = _growing(checker, interrupt.search)
         raise ExplorationInterruptedError(interrupt.search.count, variables) from None
+
+
+def _growing(checker: ModelChecker, search: StateSearch) -> tuple[GrowingVariable, ...]:
+    from roaml.verification.growth import growing_variables  # noqa: PLC0415 - most searches end before their limits
+
+    return growing_variables(checker, search)
 
 
 def _conditional(

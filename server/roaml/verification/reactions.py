@@ -10,7 +10,6 @@ from roaml.durations import AT_ONCE
 from roaml.explicit.independence import can_be_reduced
 from roaml.explicit.space import LimitError, StateLimits, explore
 from roaml.jani.model import Clock
-from roaml.jani.reaction import reacting
 from roaml.record import replace
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
@@ -45,6 +44,8 @@ def at_once(
         return None
     if question.is_reward or question.is_stuck or question.is_conditional:
         return None
+    from roaml.jani.reaction import reacting  # noqa: PLC0415 - only models with a clock have a reaction time
+
     try:
         checker = checker_of(replace(target, model=reacting(target.model, AT_ONCE)))
         subject = next((p for p in checker.compiled_properties if p.question.name == question.name), None)

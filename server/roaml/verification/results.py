@@ -6,10 +6,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from enum import Enum
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from roaml.exhaustive import assert_never
-from roaml.explicit.path import EndlessTrace, Path, PathRecorder
 from roaml.jani.operators import BinaryOperator
 from roaml.record import PartlyCompared, Record, replace
 from roaml.smc.choices import Choices
@@ -18,16 +17,19 @@ from roaml.smc.goal import CompiledProperty, InitialFold, Question, Threshold
 from roaml.smc.lss import Side
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import FALSE
-from roaml.smc.record import SELECTED, SHORTEST, Recorder, Recording, TraceStep
 from roaml.smc.run import Answer, Options
 from roaml.smc.statistics import Bounds
-from roaml.smc.story import Story, build_story
 from roaml.verification.expectations import ROUNDING, Verdict
-from roaml.verification.growth import GrowingVariable
-from roaml.verification.refusal import Refusal
 from roaml.verification.schedulers import is_minimised
 from roaml.verification.stuck import Stuck, shortest
 from roaml.verification.target import VerificationTarget
+
+if TYPE_CHECKING:
+    from roaml.explicit.path import EndlessTrace, Path
+    from roaml.smc.record import Recorder, TraceStep
+    from roaml.smc.story import Story
+    from roaml.verification.growth import GrowingVariable
+    from roaml.verification.refusal import Refusal
 
 
 class ShortestTrace(Record, frozen=True):
@@ -57,6 +59,10 @@ class ShortestTrace(Record, frozen=True):
         Args:
             clock: see `roaml.smc.story.build_story`.
         """
+        from roaml.explicit.path_recorder import PathRecorder  # noqa: PLC0415 - most results are shown without traces
+        from roaml.smc.record import SELECTED, SHORTEST  # noqa: PLC0415
+        from roaml.smc.story import build_story  # noqa: PLC0415
+
         recorder = PathRecorder(self.checker, self.compiled_property, self.path)
         names = {storage.name for storage in recorder.shared}
         number = SELECTED if self.is_reduced else SHORTEST
@@ -212,6 +218,8 @@ class Traces(Record, frozen=True):
 
     def recorder(self) -> Recorder:
         """A recorder that simulates single traces. It must not be used by several threads at a time."""
+        from roaml.smc.record import Recorder  # noqa: PLC0415
+
         return Recorder(self.checker, self.compiled_property, self.options.seed, self.options.max_steps)
 
     def steps(self, trace: int) -> Iterator[TraceStep]:
@@ -220,10 +228,14 @@ class Traces(Record, frozen=True):
         Args:
             trace: its number, from 0; any trace can be simulated, not only those of the answer.
         """
+        from roaml.smc.record import Recording  # noqa: PLC0415
+
         return self.recorder().walk(Recording(trace))
 
     def story(self, trace: int) -> Story:
         """A whole trace, with the steps that are relevant for the property."""
+        from roaml.smc.story import build_story  # noqa: PLC0415
+
         return build_story(self.recorder(), trace, self.target.clock)
 
 

@@ -12,7 +12,6 @@ import time
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from roaml.explicit.path import Path
 from roaml.explicit.space import ExplorationProgress, ExplorationWatch, StateLimits
 from roaml.record import Record, replace
 from roaml.smc.batch import follow_main_process
@@ -27,6 +26,8 @@ from roaml.verification.results import Exact, ShortestTrace
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
     from multiprocessing.process import BaseProcess
+
+    from roaml.explicit.path import Path
 
 _REPORT_INTERVAL_S = 0.1
 

@@ -18,12 +18,12 @@ from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
 from roaml.smc.pool import Alone, Pulse
-from roaml.smc.record import Recorder, Recording
 from roaml.smc.run import Answer, EstimationMethod, Options
 from roaml.smc.tally import StoredTrace, Tally
 from roaml.verification.target import VerificationTarget
 
 if TYPE_CHECKING:
+    from roaml.smc.record import Recorder
     from roaml.views.waiting import Wait
 
 MAX_TRACES = 100
@@ -159,6 +159,7 @@ def stuck_in(
     ended = answer.tally.ends.get(End.STUCK)
     if ended is None:
         return None
+    from roaml.smc.record import Recorder, Recording  # noqa: PLC0415 - few models get stuck
     from roaml.views.waiting import waits  # noqa: PLC0415 - most systems do not get stuck
 
     recorder = Recorder(checker, property_, answer.options.seed, answer.options.max_steps, scheduler)

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING
 
 from roaml.explicit.space import ExplorationProgress, ExplorationWatch, StateLimits
 from roaml.jani.properties import Property
@@ -40,7 +41,6 @@ from roaml.verification.results import (
     Undecided,
 )
 from roaml.verification.schedulers import is_minimised, under_all_schedulers
-from roaml.verification.searches import Searches
 from roaml.verification.small import (
     MAX_EXAMPLE_STEPS,
     SHARED_LIMITS,
@@ -55,6 +55,9 @@ from roaml.verification.stuck import StuckLevel, StuckResult
 from roaml.verification.target import VerificationTarget
 from roaml.views.actors import actors
 from roaml.views.ends import marks, observer_outputs
+
+if TYPE_CHECKING:
+    from roaml.verification.searches import Searches
 
 PULSE_INTERVAL_S = 0.1
 """The interval between two calls of a pulse during an exploration, in s."""
@@ -568,6 +571,8 @@ class Verifier(Record, frozen=True):
         for property_ in self.checker.compiled_properties:
             if not property_.question.is_conditional:
                 properties.setdefault(self._subject(property_), property_)
+        from roaml.verification.searches import Searches  # noqa: PLC0415 - few verifications are exhaustive
+
         return Searches(self.checker, properties.values(), limits, jobs)
 
     def exhaustive(
