@@ -460,11 +460,11 @@ int32 b
     """,
     """srv
 int32 a
-| a service has the sections request and response, separated by lines `---`; missing here: response
+^^^^^^^ a service has the sections request and response, separated by lines `---`; missing here: response
     """,
     """action
 ---
-| an action has the sections goal, result and feedback, separated by lines `---`; missing here: feedback
+^^^ an action has the sections goal, result and feedback, separated by lines `---`; missing here: feedback
     """,
 ]
 

@@ -9,7 +9,7 @@ status.
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from roaml.forest.forest import Forest
 from roaml.forest.names import entry_of
@@ -19,7 +19,7 @@ from roaml.libraries import Node
 from roaml.libraries.programs.assembly import programs
 from roaml.libraries.programs.effects import ANY_ANSWER, effects, effects_on
 from roaml.libraries.programs.linked import ANY, OF_MACHINE, LinkedNode, Possible, linked
-from roaml.libraries.programs.statuses import FAILURE, RUNNING, SKIPPED, SUCCESS
+from roaml.libraries.programs.statuses import FAILURE, RUNNING, SKIPPED, STATUS_CODES, SUCCESS
 from roaml.model.tree import TreeNode
 from roaml.record import replace
 from roaml.roles import UNBOUNDED, NodeKind
@@ -27,6 +27,8 @@ from roaml.roles import UNBOUNDED, NodeKind
 MAX_SUBTREES = 100
 """The maximum nesting depth of subtrees that are analysed. Deeper subtrees are assumed to return any status."""
 
+RETRYING = ("RetryUntilSuccessful",)
+"""The nodes whose only purpose is to tick their child again after a failure."""
 _ENDS = frozenset((SUCCESS, FAILURE))
 _BLAMED = {SUCCESS: "SUCCESS", FAILURE: "FAILURE", RUNNING: "RUNNING"}
 
@@ -35,8 +37,9 @@ class PossibleStatuses:
     """The statuses that the nodes of a forest can return. Each tree is analysed once. A recursive tree is assumed to
     return any status."""
 
-    def __init__(self, forest: Forest) -> None:
+    def __init__(self, forest: Forest, *, exact: bool = False) -> None:
         self.forest = forest
+        self.exact = exact
         self._trees: dict[str, Possible] = {}
         self._known: dict[TreeNode, Possible] = {}
         self._depth = 0
@@ -97,7 +100,7 @@ class PossibleStatuses:
     def _leaf(self, node: TreeNode, known: Node | None) -> Possible:
         """The statuses of a node without a program."""
         if known is not None and self.forest.is_machine(known):
-            return OF_MACHINE
+            return self._of_machine(known)
         if known is None or not known.behaviour:
             return ANY
         if known.is_synchronous:
@@ -107,10 +110,95 @@ class PossibleStatuses:
         ends = ANY_ANSWER - {SKIPPED}
         return Possible(ends, frozenset((RUNNING,)) if known.running and not _may_be_zero(node) else ends)
 
+    def _of_machine(self, known: Node) -> Possible:
+        """The statuses of a plugin. One that always succeeds, or always fails, is usually a simplification of a node
+        that can do both, so unless `self.exact` it may return both."""
+        outline = self.forest.system.plugin(known.name)[1] if self.forest.system is not None else None
+        if outline is None:
+            return OF_MACHINE
+        answers = outline.plugin.statuses
+        return Possible(self._codes(answers.ever), self._codes(answers.first))
+
+    def _codes(self, names: frozenset[str]) -> frozenset[int]:
+        codes = frozenset(STATUS_CODES[name] for name in names)
+        return codes if self.exact or codes.isdisjoint(_ENDS) else codes | _ENDS
+
     def _is_in_order(self, node: TreeNode) -> bool:
         """Whether a node may have any number of children, so that each continues after the ones before it."""
         known = self.forest.known_node(node)
         return known is not None and known.children[1] == UNBOUNDED
+
+    def hidden_failures(self, root: TreeNode) -> Iterator[tuple[TreeNode, TreeNode]]:
+        """The nodes that tick their child again after a failure, which never happens although a node below the child
+        can fail: each with the node that hides these failures."""
+        statuses = self.statuses(root)
+        for node in statuses:
+            if (
+                len(node.children) == 1
+                and node.plugin is not None
+                and node.plugin.value in RETRYING
+                and self._linked(node).program is not None
+            ):
+                hiding: TreeNode | None = node.children[0]
+                if FAILURE in statuses[node.children[0]].ever:
+                    continue
+                while hiding is not None and self._hides(hiding, statuses):
+                    inner = next((child for child in hiding.children if self._hides(child, statuses)), None)
+                    if inner is None:
+                        yield node, hiding
+                    hiding = inner
+
+    def _hides(self, node: TreeNode, statuses: dict[TreeNode, Possible]) -> bool:
+        """Whether a node cannot fail although a node below it can."""
+        below = _from_leaves(node)[:-1]
+        return FAILURE not in statuses[node].ever and any(FAILURE in statuses[inner].ever for inner in below)
+
+    def endless(self, root: TreeNode) -> Iterator[tuple[TreeNode, TreeNode]]:
+        """The plugins that never end, because they always return RUNNING and no node above them halts them: each with
+        the node above it, if this continues with a running child without ticking earlier children again, and if further
+        nodes would follow."""
+        statuses = self.statuses(root)
+        above = {child: node for node in statuses for child in node.children}
+        for node, possible in statuses.items():
+            known = self.forest.known_node(node)
+            is_machine = known is not None and self.forest.is_machine(known)
+            if (
+                is_machine
+                and possible.ever == {RUNNING}
+                and node in above
+                and not self._may_halt(node, above, statuses)
+            ):
+                parent = above[node]
+                before = parent.children[: parent.children.index(node)]
+                if any(SUCCESS in statuses[child].ever for child in before) and self._continues(parent, above):
+                    yield node, parent
+
+    def _may_halt(
+        self, node: TreeNode, above: Mapping[TreeNode, TreeNode], statuses: Mapping[TreeNode, Possible]
+    ) -> bool:
+        """Whether a node above a running node may halt it, or have a condition that does."""
+        child: TreeNode = node
+        while True:
+            if any(name == "_while" for name in (script.name for script in child.scripts)):
+                return True
+            if child not in above:
+                return False
+            parent = above[child]
+            bound = self._linked(parent)
+            below = [statuses[other] for other in parent.children]
+            index = parent.children.index(child)
+            if bound.program is None or RUNNING in effects_on(bound.program, bound.situation(below), index).halts:
+                return True
+            child = parent
+
+    def _continues(self, node: TreeNode, above: Mapping[TreeNode, TreeNode]) -> bool:
+        """Whether a node above `node` ticks further children after it."""
+        while node in above:
+            parent = above[node]
+            if self._is_in_order(parent) and parent.children[-1] is not node:
+                return True
+            node = parent
+        return False
 
     def unreached(self, root: TreeNode) -> Iterator[tuple[TreeNode, TreeNode, str]]:
         """The children that are never ticked.

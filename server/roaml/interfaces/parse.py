@@ -89,6 +89,7 @@ class _Parser:
         self.sections = [_OpenSection()]
         self.opening = True  # whether only comment lines have been read in this section
         self.above: list[str] = []  # comment lines above the next element
+        self.content = Span(len(text), len(text))  # the last line that is neither empty nor a comment
         self.last: _Element | None = None  # the element that an indented comment line continues
 
     def run(self) -> tuple[Section, ...]:
@@ -116,7 +117,7 @@ class _Parser:
         elif self.text[first] == "#":
             self.comment_line(_comment(self.text[first:end]), indented=first > start)
         else:
-            self.opening = False
+            self.opening, self.content = False, Span(first, end)
             if dashes := _DASHES.match(self.text, first, end):
                 self.separator(Span(first, end), dashes.end())
             else:
@@ -154,10 +155,11 @@ class _Parser:
         end = len(self.text)
         new_line = "" if self.text.endswith(("\n", "\r")) or not self.text else "\n"
         self.report.add(
-            Span(end, end),
+            self.content,
             f"{_a(self.kind)} has the sections {_and(SECTION_NAMES[self.kind])}, separated by lines `---`; "
             f"missing here: {_and(names)}",
             instead=new_line + "---\n" * len(names),
+            at_end=end,
         )
 
     # -------------------------------------------------------------- elements

@@ -33,13 +33,16 @@ class FileFindings:
         message: str,
         *,
         instead: str | None = None,
+        at_end: int | None = None,
         severity: Severity | None = None,
         related: tuple[Related, ...] = (),
     ) -> None:
-        """Add a finding with `message` at `span`; `instead` is the correct text for `span`."""
+        """Add a finding with `message` at `span`; `instead` is the correct text for `span`, or the text that is missing
+        at the offset `at_end`."""
         fixes: tuple[Fix, ...] = ()
+        where = span if at_end is None else Span(at_end, at_end)
         if instead is not None:
-            fixes = (Fix(f"Write `{shorten(' '.join(instead.split()))}`", (TextEdit(span, instead),)),)
+            fixes = (Fix(f"Write `{shorten(' '.join(instead.split()))}`", (TextEdit(where, instead),)),)
         self._findings.append(Finding(CODE, span, message, severity, fixes, related))
 
     def findings(self) -> tuple[Finding, ...]:

@@ -15,6 +15,7 @@ from roaml.expr.tree import Expr, Member, walk
 from roaml.expr.tree import Name as NameExpr
 from roaml.expr.types import EMPTY_ARRAY, UNKNOWN, Array, Type
 from roaml.language import HL_SCXML
+from roaml.model.behavior.statuses import ANY_STATUS, TickStatuses, tick_statuses
 from roaml.model.behavior.summary import ChartOutline, summarised
 from roaml.model.gaps import Gap, PlacedGap, reads_of_ports
 from roaml.model.machine import (
@@ -136,6 +137,7 @@ class PluginOutline(Record, frozen=True):
         acts_on_first_halt: whether a halt before its first tick does more than confirm the halt.
         port_waits: the ports that set how long it takes until it can return SUCCESS.
         port_refusals, port_choices: the values of ports that it refuses, and among which it distinguishes.
+        statuses: the statuses that it can return.
     """
 
     ticked: bool
@@ -150,6 +152,7 @@ class PluginOutline(Record, frozen=True):
     port_waits: tuple[PortWait, ...] = ()
     port_refusals: tuple[PortRefusal, ...] = ()
     port_choices: tuple[PortChoice, ...] = ()
+    statuses: TickStatuses = ANY_STATUS
 
 
 class MachineOutline(Record, frozen=True, dict=True):
@@ -202,11 +205,12 @@ def outline(machine: Machine, typed: TypedMachine, gaps: Iterable[PlacedGap]) ->
     """The outline of a machine whose gaps are `gaps`."""
     types = {value.element: value.sent for value in typed.values if value.use in (ValueUse.PARAMETER, ValueUse.FIELD)}
     reads, forwarding = _reads(typed), _forwarding(typed)
+    known_gaps = frozenset(placed.gap for placed in gaps)
     return MachineOutline(
         machine.name.value if machine.name else "",
         machine.root,
         machine.plain,
-        frozenset(placed.gap for placed in gaps),
+        known_gaps,
         _ports(machine, typed),
         _interfaces(machine, typed, types),
         tuple(
@@ -229,7 +233,7 @@ def outline(machine: Machine, typed: TypedMachine, gaps: Iterable[PlacedGap]) ->
         tuple(
             ThreadOutline(thread.server.value if thread.server else "", thread.count or 1) for thread in machine.threads
         ),
-        _plugin(machine, typed),
+        _plugin(machine, typed, ANY_STATUS if known_gaps else tick_statuses(machine)),
         _declares_all_ports(machine),
         tuple(summarised(machine, chart) for chart in machine.charts),
     )
@@ -394,7 +398,7 @@ def _port_key(value: Name | PortRead | None) -> str:
     return value.key.value if isinstance(value, PortRead) and value.key else ""
 
 
-def _plugin(machine: Machine, typed: TypedMachine) -> PluginOutline:
+def _plugin(machine: Machine, typed: TypedMachine, answers: TickStatuses) -> PluginOutline:
     values = (v.value for v in typed.values if v.use is not ValueUse.LOCATION)
     expressions = (value for value in values if isinstance(value, Expression))
     triggers = {handler.trigger for handler in _handlers(machine)}
@@ -416,6 +420,7 @@ def _plugin(machine: Machine, typed: TypedMachine) -> PluginOutline:
         tuple(dict.fromkeys(port_waits(machine))),
         tuple(dict.fromkeys(port_refusals(machine))),
         tuple(port_choices(machine, expressions)),
+        answers,
     )
 
 

@@ -166,6 +166,7 @@ from roaml.rules.trees import (
     blackboard_read,
     blackboard_type_conflict,
     duplicate_model,
+    hidden_failure,
     invalid_port,
     missing_port,
     node_configuration,
@@ -197,6 +198,7 @@ from roaml.rules.trees import (
 )
 from roaml.rules.variables import (
     constant_variable,
+    copied_value,
     duplicate_data,
     invalid_bounds,
     invalid_name,

@@ -6,12 +6,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
+from roaml.edit.elements import rename_tag
+from roaml.forest.statuses import statuses_of
 from roaml.model.behavior.duties import backward, forward
 from roaml.model.behavior.explore import Behavior, BehaviorStep
 from roaml.model.behavior.phases import Phase, ProtocolEvent
 from roaml.roles import ProtocolPart
-from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.rule import MachineContext, Rule, TreeContext
 from roaml.rules.support.answers import behaviors, plugins
+from roaml.rules.support.forest import trees_of
 from roaml.rules.support.node_calls import statuses_at_halt
 
 
@@ -58,6 +61,27 @@ def _endless(behavior: Behavior, halted: bool) -> Iterator[Finding]:
         yield RULE.at(again[0].handler.element.name_span, message, related=related)
 
 
+def in_tree(context: TreeContext) -> Iterator[Finding]:
+    """Report nodes that continue with a child that returns RUNNING for ever, instead of ticking the children before it
+    again."""
+    forest = trees_of(context)
+    if forest is None or context.system is None:
+        return
+    used = {name for names in forest.subtrees.values() for name in names}
+    for tree in context.file.trees:
+        if len(tree.roots) == 1 and (tree.id is None or tree.id.value not in used):
+            for child, node in statuses_of(forest).endless(tree.roots[0]):
+                name, reactive = node.element.name, f"Reactive{node.element.name}"
+                if name not in ("Fallback", "Sequence"):
+                    continue
+                message = (
+                    f"`{child.element.name}` returns RUNNING for ever, and `{name}` does not tick the children before "
+                    f"it again, so no other node is ticked from then on; use `{reactive}`"
+                )
+                related = [Related(child.element.name_span, "never ends")]
+                yield RULE.at(node.element.name_span, message, rename_tag(node.element, reactive), related=related)
+
+
 def _then(step: BehaviorStep, inside: list[BehaviorStep], again: list[BehaviorStep]) -> list[BehaviorStep]:
     """The steps of `again` that can be taken after `step`."""
     reached = forward({step.target}, inside)
@@ -68,4 +92,6 @@ def _returns(behavior: Behavior, step: BehaviorStep, endless: set[int]) -> bool:
     return step.event is not None and step.event.part is ProtocolPart.BT_TICK and step.target in endless
 
 
-RULE = Rule("endless-node", Severity.WARNING, "A plugin returns RUNNING for ever.", machine=check, whole=True)
+RULE = Rule(
+    "endless-node", Severity.WARNING, "A plugin returns RUNNING for ever.", machine=check, tree=in_tree, whole=True
+)

@@ -98,7 +98,13 @@ def _finding(context: MachineContext, behavior: Behavior, step: BehaviorStep, fa
         return RULE.at(step.handler.element.name_span, f"{message} for it; go to another state", related=related[-1:])
     severity = Severity.INFORMATION if shared else None
     message = _message(behavior, step, fault, first)
-    return RULE.at(where, message, *_fixes(context, step, fault, first), severity=severity, related=related)
+    return RULE.at(
+        fault.statement.element.name_span,
+        message,
+        *_fixes(context, step, fault, first),
+        severity=severity,
+        related=related,
+    )
 
 
 def _is_certain(behavior: Behavior, step: BehaviorStep, fault: Fault) -> bool:

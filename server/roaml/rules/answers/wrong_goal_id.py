@@ -79,8 +79,11 @@ def _finding(context: MachineContext, step: BehaviorStep, fault: Fault, statemen
         )
     why = _WHY[fault.kind].format(id=variable, source=fault.source, advice=advice)
     message = f"`<{statement.element.name}>` names the wrong goal: {why}"
-    related = [Related(statement.element.name_span, "used here")]
-    return RULE.at(place(step.handler, statement), message, *_fixes(context, step, fault, statement), related=related)
+    where = statement.element.name_span
+    if fault.kind is FaultKind.UNSTORED:  # the mistake is on the path to the statement
+        where = place(step.handler, statement)
+    related = [Related(step.handler.element.name_span, "executed here")]
+    return RULE.at(where, message, *_fixes(context, step, fault, statement), related=related)
 
 
 def _fixes(context: MachineContext, step: BehaviorStep, fault: Fault, statement: RosSend) -> Iterator[Fix]:

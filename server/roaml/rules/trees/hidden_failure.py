@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The rule `hidden-failure`, which hidden_failure.md describes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.forest.forest import Forest
+from roaml.forest.names import entry_of
+from roaml.forest.ports import ports_of
+from roaml.forest.statuses import PossibleStatuses
+from roaml.libraries import Node
+from roaml.model.tree import TreeNode
+from roaml.roles import NodeKind
+from roaml.rules.rule import Rule, TreeContext
+from roaml.rules.support.forest import trees_of
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    forest = trees_of(context)
+    if forest is None:
+        return
+    reported: set[TreeNode] = set()
+    statuses = PossibleStatuses(forest, exact=True)
+    for tree in context.file.trees:
+        for root in tree.roots:
+            for retrying, hiding in statuses.hidden_failures(root):
+                reported.add(hiding)
+                message = (
+                    f"`{_name(hiding)}` never fails although nodes below it can, so `{_name(retrying)}` above it never "
+                    f"ticks its child again; remove `{_name(hiding)}`, or move it above `{_name(retrying)}`"
+                )
+                related = [Related(retrying.element.name_span, "waits for a failure")]
+                yield RULE.at(hiding.element.name_span, message, related=related)
+    for _, node in forest.own_nodes:
+        if _name(node) in ("ForceSuccess", "ForceFailure") and node not in reported and len(node.children) == 1:
+            condition = _condition(forest, node.children[0])
+            if condition is not None:
+                message = f"`{_name(node)}` hides what the condition `{_name(condition)}` returns, so it has no effect"
+                yield RULE.at(node.element.name_span, f"{message}; remove one of them")
+
+
+def _condition(forest: Forest, node: TreeNode) -> TreeNode | None:
+    """The condition whose result a node returns, unchanged or inverted, if this result is its only effect."""
+    while _name(node) == "Inverter" and len(node.children) == 1:
+        node = node.children[0]
+    known = forest.known_node(node)
+    is_condition = node.element.name == "Condition" or (known is not None and known.kind is NodeKind.CONDITION)
+    return node if is_condition and not node.children and not node.scripts and not _may_write(node, known) else None
+
+
+def _may_write(node: TreeNode, known: Node | None) -> bool:
+    """Whether a node may write to the blackboard, which is another purpose than its result."""
+    for setting in ports_of(node):
+        port = known.port(setting.attribute.name) if known is not None else None
+        if entry_of(setting) is not None and (port is None or port.direction.writes):
+            return True
+    return False
+
+
+def _name(node: TreeNode) -> str:
+    return node.plugin.value if node.plugin else node.element.name
+
+
+RULE = Rule(
+    "hidden-failure",
+    Severity.WARNING,
+    "A node hides the failures that a node above it waits for, or the result of a condition.",
+    tree=check,
+)

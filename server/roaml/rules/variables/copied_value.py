@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The rule `copied-value`, which copied_value.md describes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.expr.tree import Expr, Member, access_path
+from roaml.expr.tree import Name as NameExpr
+from roaml.expr.types import Struct, Type
+from roaml.forest.names import entry_of
+from roaml.forest.ports import ports_of
+from roaml.model.machine import Assign, Chart, Handler, If, Param, RosSend, Send, SetOutput, Statement, bodies
+from roaml.model.ros import InterfaceType
+from roaml.model.syntax import Expression, Value
+from roaml.model.tree import TreeNode
+from roaml.model.value_types import INTERFACE_KINDS, find_handle
+from roaml.regex import regex
+from roaml.roles import ProtocolPart
+from roaml.rules.rule import MachineContext, Rule, TreeContext, replacements
+from roaml.rules.support.forest import trees_of
+from roaml.text import Span, TextEdit
+
+_WORD = regex(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
+
+
+class _Copy(NamedTuple):
+    """A value and where it goes: the name of the variable, field, parameter or port, and the name of the value."""
+
+    target: str
+    value: str
+    span: Span
+
+
+class _Suspicion(NamedTuple):
+    """A value that another target gets, too, and the name of the value that is probably meant."""
+
+    copy: _Copy
+    other: _Copy
+    meant: str
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for chart in context.machine.charts:
+        for _, handler, body in bodies(chart):
+            for group in _groups(body):
+                for copy, other, meant in _suspicions(group):
+                    if _exists(context, chart, handler, meant.split(".")):
+                        yield _finding(copy, other, meant, copy.value, meant)
+
+
+def _finding(copy: _Copy, other: _Copy, meant: str, written: str, fixed: str) -> Finding:
+    message = (
+        f"`{copy.target}` gets `{written}`, as `{other.target}` does, although there is `{meant}`; did you mean that?"
+    )
+    fixes = replacements(copy.span, (fixed,))
+    return RULE.at(copy.span, message, *fixes, related=[Related(other.span, "the same value")])
+
+
+# ------------------------------------------------------------------- machines
+
+
+def _groups(body: Sequence[Statement]) -> Iterator[list[_Copy]]:
+    """The values that are assigned one after the other, and those that one element sends."""
+    assigned: list[_Copy] = []
+    for statement in body:
+        match statement:
+            case Assign(location=Expression() as location, value=value) if access_path(location.tree) is not None:
+                assigned += _copies(location.text.strip(), value)
+            case SetOutput(key=key, value=value) if key is not None:
+                assigned += _copies(key.value, value)
+            case Send(params=params):
+                yield list(_sent(params))
+            case RosSend(fields=fields):
+                yield list(_sent(fields))
+            case If():
+                for branch in (*statement.branches, *((statement.otherwise,) if statement.otherwise else ())):
+                    yield from _groups(branch.body)
+    yield assigned
+
+
+def _sent(params: Sequence[Param]) -> Iterator[_Copy]:
+    for param in params:
+        if param.name is not None:
+            yield from _copies(param.name.value, param.value)
+
+
+def _copies(target: str, value: Value | None) -> Iterator[_Copy]:
+    """The copy of a variable or field that is not in an array."""
+    if isinstance(value, Expression) and not value.broken and _is_plain(value.tree):
+        yield _Copy(target, ".".join(access_path(value.tree) or ()), value.span)
+
+
+def _is_plain(tree: Expr) -> bool:
+    while isinstance(tree, Member):
+        tree = tree.object
+    return isinstance(tree, NameExpr)
+
+
+_ROOTS = {"_msg": 1, "_req": 1, "_res": 1, "_goal": 1, "_feedback": 1, "_wrapped_result": 2, "_event": 2}
+"""An event variable -> the number of names before the name of the field."""
+
+
+def _exists(context: MachineContext, chart: Chart, handler: Handler | None, path: Sequence[str]) -> bool:
+    """Whether there is a variable, or a field of the event that a handler receives, with this path."""
+    root = path[0]
+    if root not in _ROOTS:
+        types: Mapping[str, Type] = context.typed.variables.get(chart.scope, {})
+        return root in types and _has(types[root], path[1:])
+    return handler is not None and _has(_received(context, handler), path[_ROOTS[root] :])
+
+
+def _received(context: MachineContext, handler: Handler) -> Type | None:
+    if handler.trigger is ProtocolPart.EVENT:
+        return context.event_data(handler.event.value) if handler.event else None
+    declaration = find_handle(context.machine, handler)
+    if declaration is None or declaration.type is None or declaration.kind not in INTERFACE_KINDS:
+        return None
+    interface = context.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
+    part = ProtocolPart.GOAL if handler.trigger is ProtocolPart.THREAD_START else handler.trigger
+    if not isinstance(interface, InterfaceType) or part is None:
+        return None
+    return dict(interface.parts).get(part.value)
+
+
+def _has(type_: Type | None, path: Sequence[str]) -> bool:
+    for name in path:
+        type_ = type_.member(name) if isinstance(type_, Struct) else None
+    return type_ is not None
+
+
+# ---------------------------------------------------------------------- trees
+
+
+def in_tree(context: TreeContext) -> Iterator[Finding]:
+    forest = trees_of(context)
+    if forest is None:
+        return
+    entries = {entry for _, _, node in forest.all_nodes for entry in _entries(node).values()}
+    for _, node in forest.own_nodes:
+        bound = _entries(node)
+        if len(bound) < 2 or forest.calls_tree(node):
+            continue
+        spans = {setting.attribute.name: setting.value.span for setting in ports_of(node)}
+        group = [_Copy(port, entry, spans[port]) for port, entry in bound.items()]
+        for copy, other, meant in _suspicions(group):
+            if meant in entries:
+                yield _finding(copy, other, meant, f"{{{copy.value}}}", f"{{{meant}}}")
+        for copy, other in _exchanged(group):
+            message = f"the ports `{copy.target}` and `{other.target}` are bound to each other's entries; exchange them"
+            edits = (TextEdit(copy.span, f"{{{other.value}}}"), TextEdit(other.span, f"{{{copy.value}}}"))
+            related = [Related(other.span, "the other port")]
+            yield RULE.at(copy.span, message, Fix("Exchange the entries", edits), related=related)
+
+
+def _entries(node: TreeNode) -> dict[str, str]:
+    """The entries to which the ports of a node are bound."""
+    bound = {setting.attribute.name: entry_of(setting) for setting in ports_of(node)}
+    return {port: entry for port, entry in bound.items() if entry is not None}
+
+
+def _exchanged(group: Sequence[_Copy]) -> Iterator[tuple[_Copy, _Copy]]:
+    """Two ports for coordinates that get the entries with each other's names. Other names are often exchanged
+    intentionally: the way back leads from the goal to the start."""
+    for copy in group:
+        for other in group:
+            words = _difference(copy.target, other.target)
+            if words is None or copy.value != other.target or other.value != copy.target:
+                continue
+            if all(len(word) == 1 for word in words) and words[0] < words[1]:
+                yield copy, other
+
+
+# ---------------------------------------------------------------------- names
+
+
+def _suspicions(group: Sequence[_Copy]) -> Iterator[_Suspicion]:
+    """The values that two targets get although the names of the targets differ in a word that is also in the name of
+    the value."""
+    values = {copy.value for copy in group}
+    for number, copy in enumerate(group):
+        for other in group:
+            words = _difference(copy.target, other.target) if copy.value == other.value else None
+            meant = None if words is None else _with_word(copy.value, words[1], words[0])
+            if meant is not None and meant not in values and _is_last(group, number, copy.target):
+                yield _Suspicion(copy, other, meant)
+                break
+
+
+def _is_last(group: Sequence[_Copy], number: int, target: str) -> bool:
+    """Whether no later value replaces that of a target."""
+    return all(later.target != target for later in group[number + 1 :])
+
+
+def _difference(name: str, other: str) -> tuple[str, str] | None:
+    """The only words in which two names differ, in lower case; `None` if they differ in more."""
+    words, others = _words(name), _words(other)
+    different = [pair for pair in zip(words, others, strict=False) if pair[0] != pair[1]]
+    return different[0] if len(words) == len(others) and len(different) == 1 else None
+
+
+def _words(name: str) -> list[str]:
+    return [match.group().lower() for match in _WORD.finditer(name)]
+
+
+def _with_word(path: str, old: str, new: str) -> str | None:
+    """A path whose last name contains the word `old`, with `new` in its place."""
+    begin = path.rfind(".") + 1
+    matches = [match for match in _WORD.finditer(path, begin) if match.group().lower() == old]
+    if len(matches) != 1:
+        return None
+    found = matches[0]
+    word = new.capitalize() if found.group()[0].isupper() and len(new) > 1 else new
+    return path[: found.start()] + word + path[found.end() :]
+
+
+RULE = Rule(
+    "copied-value",
+    Severity.WARNING,
+    "Two names get the same value, although there is a value with the name of the second one.",
+    machine=check,
+    tree=in_tree,
+    whole=True,
+)
