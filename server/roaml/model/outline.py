@@ -33,6 +33,7 @@ from roaml.model.machine import (
     Statement,
     statements,
 )
+from roaml.model.message_constants import FieldChoice, SentConstants, field_choices, sent_constants
 from roaml.model.port_checks import PortChoice, PortRefusal, port_choices, port_refusals
 from roaml.model.syntax import Expression, Name, PortRead, Value
 from roaml.model.value_types import TypedMachine, ValueUse, find_handle
@@ -162,6 +163,7 @@ class MachineOutline(Record, frozen=True, dict=True):
         gaps: the facts that its unreadable parts may contain.
         all_ports: whether `ports` is complete: all declarations of ports can be read.
         charts: the outline of the behaviour of each chart; it is empty for a chart that is too large to be analysed.
+        choices, constants: the constants with which it compares fields, and which it sends in fields.
     """
 
     name: str
@@ -177,6 +179,8 @@ class MachineOutline(Record, frozen=True, dict=True):
     plugin: PluginOutline
     all_ports: bool = True
     charts: tuple[ChartOutline, ...] = ()
+    choices: tuple[FieldChoice, ...] = ()
+    constants: tuple[SentConstants, ...] = ()
 
     @property
     def takes_part_in_tree(self) -> bool:
@@ -236,6 +240,8 @@ def outline(machine: Machine, typed: TypedMachine, gaps: Iterable[PlacedGap]) ->
         _plugin(machine, typed, ANY_STATUS if known_gaps else tick_statuses(machine)),
         _declares_all_ports(machine),
         tuple(summarised(machine, chart) for chart in machine.charts),
+        () if known_gaps else field_choices(machine, typed),
+        sent_constants(machine),
     )
 
 

@@ -61,6 +61,7 @@ from roaml.rules.events import (
     handler_without_effect,
     late_event_data,
     removed_bt_event,
+    unexpected_value,
     unhandled_value,
     unknown_event_parameter,
     unsupported_event,
@@ -83,6 +84,7 @@ from roaml.rules.expressions import (
     unknown_function,
     unknown_member,
     unsupported_expression,
+    wrong_limit,
 )
 from roaml.rules.files import (
     file_too_large,

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
-from roaml.diagnostics import Finding, Fix, Severity
+from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.expr.infer import constant
 from roaml.expr.operators import Operator, OperatorKind
 from roaml.expr.tree import Binary, Expr, Member, Name, String, walk
@@ -15,7 +15,7 @@ from roaml.expr.types import INTEGER_RANGES, Scalar
 from roaml.interruption import checkpoint
 from roaml.model.behavior.explore import condition_facts
 from roaml.model.behavior.knowledge import NOTHING, ConditionFacts, variables_in
-from roaml.model.machine import Assign, Chart, Handler, If, State
+from roaml.model.machine import Assign, Chart, Handler, If, State, Statement
 from roaml.model.property_links import LinkedFile
 from roaml.model.syntax import Expression
 from roaml.model.triggers import trigger
@@ -29,6 +29,8 @@ from roaml.observers.properties import Pattern
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule, close_names
 from roaml.rules.support.assignments import is_unchanged
+from roaml.rules.support.message_constants import wrong_fields
+from roaml.rules.support.steps import step_of
 from roaml.text import Span, TextEdit
 
 _FROM_SENDERS = {ProtocolPart.MESSAGE: "_msg.", ProtocolPart.EVENT: "_event.data."}
@@ -39,6 +41,9 @@ _ASKED = {ProtocolPart.REQUEST: "_req.", ProtocolPart.GOAL: "_goal."}
 _CHOSEN = (*_FROM_SENDERS.values(), *_ASKED.values())
 
 _CONDITIONS = (ValueUse.CONDITION, ValueUse.BRANCH)
+
+_TOWARDS = {Operator.LESS: 1, Operator.LESS_EQUAL: 1, Operator.GREATER: -1, Operator.GREATER_EQUAL: -1}
+"""An operator between a variable and a limit -> the sign of the steps that lead to the limit."""
 
 MAX_TRIED = 8
 """The maximum number of conditions that are examined as the cause of the others."""
@@ -52,7 +57,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
     if len(findings) > 1:
         causes = _causes(context, findings)
         findings = {span: finding for span, finding in findings.items() if span in causes}
-    yield from findings.values()
+    for span, finding in findings.items():
+        yield _at_step(context, span) or finding
     yield from _never_sent(context, findings.keys())
     yield from _beyond_type(context, findings.keys())
 
@@ -209,7 +215,7 @@ def _numbers_never_sent(context: MachineContext, reported: Collection[Span]) -> 
                 for field, other in ((node.left, node.right), (node.right, node.left)):
                     sent = _sent(context, value.place.handler, field, _FROM_SENDERS)
                     if sent is not None:
-                        yield from _compared_with_sent(chart, node, field, other, tree, sent)
+                        yield from _compared_with_sent(context, chart, node, field, other, tree, sent)
                         continue
                     chosen, limited = stored[value.place.chart.scope]
                     if node.operator is Operator.EQUAL and value.use in _CONDITIONS:
@@ -217,7 +223,15 @@ def _numbers_never_sent(context: MachineContext, reported: Collection[Span]) -> 
                     elif node.operator.kind is OperatorKind.ORDER and place_of(field) in limited:
                         known = chart.at(field)
                         if known is not None:
-                            yield from _compared_with_sent(chart, node, field, other, tree, known)
+                            yield from _compared_with_sent(context, chart, node, field, other, tree, known)
+
+
+def _is_reported_at_sender(context: MachineContext, number: object) -> bool:
+    """Whether unexpected-value reports that something else is sent instead of `number`."""
+    if context.system is None or not isinstance(number, int | float):
+        return False
+    pairs = (wrong_fields(context.system, automaton).values() for automaton in context.automata)
+    return any(missing == number for of_one in pairs for _, missing in of_one)
 
 
 def _never_chosen(
@@ -238,6 +252,8 @@ def _never_chosen(
     if number is None or number.value is None or known is None or known.only is None or known.value is not None:
         return
     if known.only and not known.includes(number.value) and not isinstance(number.value, str | bool):
+        if _is_reported_at_sender(context, number.value):
+            return
         sent = described(known, most=MAX_LISTED)
         yield RULE.at(node.span, f"this comparison is never true: the values that machines send are {sent}")
 
@@ -284,7 +300,13 @@ def _sent(
 
 
 def _compared_with_sent(
-    chart: ChartValues, node: Binary, field: Expr, constant: Expr, tree: Expr, known: ValueSet
+    context: MachineContext,
+    chart: ChartValues,
+    node: Binary,
+    field: Expr,
+    constant: Expr,
+    tree: Expr,
+    known: ValueSet,
 ) -> Iterator[Finding]:
     number = chart.at(constant)
     if number is None or number.value is None:
@@ -295,7 +317,8 @@ def _compared_with_sent(
     result = compared(node.operator, *sides)
     what = f"the values that machines send are {described(known)}"
     if result == FALSE:
-        yield RULE.at(node.span, f"this comparison is never true: {what}")
+        if not _is_reported_at_sender(context, number.value):
+            yield RULE.at(node.span, f"this comparison is never true: {what}")
     elif result == TRUE and node.operator is not Operator.NOT_EQUAL:
         conditions = chart.conditions.get(tree.span)
         if conditions is None or (node is tree and conditions.alone == TRUE):
@@ -370,6 +393,54 @@ def _first(
             after = "has no effect; later ones are never tested"
             yield RULE.at(cond.span, f"this condition is always true{_because(why)}, so it {after}")
             return
+
+
+def _at_step(context: MachineContext, span: Span) -> Finding | None:
+    """The finding about a condition at `span` that is always true because what it allows leads away from its limit."""
+    for chart in context.machine.charts:
+        values = context.local_values.charts.get(chart.scope)
+        known = values.conditions.get(span) if values is not None else None
+        for cond, body in _guarded(chart) if known is not None and known.alone == TRUE else ():
+            away = _step_away(cond.tree, body) if cond.span == span else None
+            if values is not None and away is not None and _begins_beyond(values, cond.tree):
+                where, name, how = away
+                text = " ".join(cond.text.split())
+                message = f"`{name}` only {how} here, so the condition `{text}` is always true"
+                why = _because(_why(values, cond.tree))
+                return RULE.at(where, f"{message}{why}; change one of them", related=[Related(span, "always true")])
+    return None
+
+
+def _begins_beyond(values: ChartValues, tree: Expr) -> bool:
+    """Whether the variable that `tree` compares with a limit never has the limit itself as a value. If it begins there,
+    the comparison is probably wrong, not the step."""
+    sides = (values.at(tree.left), values.at(tree.right)) if isinstance(tree, Binary) else (None, None)
+    known, limit = sides[0], sides[1].value if sides[1] is not None else None
+    return known is not None and limit is not None and not known.includes(limit)
+
+
+def _guarded(chart: Chart) -> Iterator[tuple[Expression, Sequence[Statement]]]:
+    """The conditions, each with the statements that are executed only if it holds."""
+    for handler in (handler for state in chart.states for handler in state.handlers):
+        if handler.cond is not None:
+            yield handler.cond, [statement for target in handler.targets for statement in target.body]
+    for statement in chart.statements:
+        for branch in statement.branches if isinstance(statement, If) else ():
+            if branch.cond is not None:
+                yield branch.cond, branch.body
+
+
+def _step_away(tree: Expr, body: Sequence[Statement]) -> tuple[Span, str, str] | None:
+    """The place of the only assignment in `body` to the variable that `tree` compares with a limit, its name, and what
+    happens to it, if the assignment leads away from the limit: the step then has the wrong sign."""
+    if not isinstance(tree, Binary) or tree.operator not in _TOWARDS or not isinstance(tree.left, Name):
+        return None
+    name = tree.left.name
+    assigned = [s for s in body if isinstance(s, Assign) and s.location and place_of(s.location.tree) == name]
+    value = assigned[0].value if len(assigned) == 1 else None
+    if not isinstance(value, Expression) or step_of(value.tree, name) != -_TOWARDS[tree.operator]:
+        return None
+    return value.span, name, "grows" if _TOWARDS[tree.operator] < 0 else "falls"
 
 
 def _because(why: str) -> str:

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The rule `wrong-limit`, which wrong_limit.md describes."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from fractions import Fraction
+
+from roaml.diagnostics import Finding, Fix, Severity
+from roaml.expr.infer import constant
+from roaml.expr.tree import Call, Member
+from roaml.expr.types import Scalar
+from roaml.model.machine import Assign
+from roaml.model.syntax import Expression
+from roaml.model.values.evaluate import place_of
+from roaml.model.waits import fixed_variables
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.steps import step_of
+from roaml.text import TextEdit
+
+_LIMITING = {"max": -1, "min": 1}
+"""A function of `Math` -> the sign of the steps that it limits."""
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for chart in context.machine.charts:
+        fixed = {name: value for name, value in fixed_variables(chart).items() if isinstance(value, Fraction)}
+        types = context.typed.variables.get(chart.scope, {})
+        positive = {name for name, value in fixed.items() if value > 0}
+        positive |= {
+            name for name, type_ in types.items() if isinstance(type_, Scalar) and type_.name.startswith("uint")
+        }
+        for statement in chart.statements:
+            if isinstance(statement, Assign) and statement.location is not None:
+                place = place_of(statement.location.tree)
+                tree = statement.value.tree if isinstance(statement.value, Expression) else None
+                if place is not None and isinstance(tree, Call):
+                    yield from _check(tree, place, positive, fixed)
+
+
+def _check(call: Call, place: str, positive: Collection[str], fixed: Collection[str]) -> Iterator[Finding]:
+    function = call.function
+    if not isinstance(function, Member) or place_of(function.object) != "Math" or len(call.arguments) != 2:
+        return
+    sign = _LIMITING.get(function.name)
+    for step, limit in (call.arguments, call.arguments[::-1]):
+        direction = step_of(step, place, positive)
+        if sign is not None and direction == -sign and (constant(limit) is not None or place_of(limit) in fixed):
+            right = "max" if function.name == "min" else "min"
+            how, bound = ("falls", "an upper") if direction < 0 else ("grows", "a lower")
+            message = (
+                f"`{place}` {how} here, and `Math.{function.name}` only gives it {bound} limit; use `Math.{right}`"
+            )
+            yield RULE.at(
+                function.name_span, message, Fix(f"Change to `{right}`", (TextEdit(function.name_span, right),))
+            )
+
+
+RULE = Rule(
+    "wrong-limit",
+    Severity.WARNING,
+    "A number that falls has an upper limit only, or one that grows a lower limit.",
+    machine=check,
+    whole=True,
+)
