@@ -31,6 +31,7 @@ from roaml.expansion.instances import (
     removed_attribute,
     report_unused,
 )
+from roaml.expansion.namespaces import report_repeated
 from roaml.expansion.problems import ExpansionProblem, Problems
 from roaml.expansion.text import ExpandedText, expanded_text
 from roaml.expansion.uses import VARIABLE, ParameterUses, uses_in
@@ -230,6 +231,7 @@ class _Expander:
         self.settable |= {parameter.name.value for parameter in declared}
         self.note_declarations(self.path, document, declared, scope)
         listed = list(instances(document, problems))
+        report_repeated(listed, problems)
         edits = list(self._system_edits(document, scope))
         count: dict[str, int] = {}
         for instance in listed:

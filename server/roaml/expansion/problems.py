@@ -21,6 +21,7 @@ class ExpansionProblem(enum.Enum):
     HIDDEN = "hidden-parameter"
     ASSIGNED = "assigned-parameter"
     INSTANCE = "invalid-instance"
+    NAMESPACE = "repeated-namespace"
     DISTRIBUTION = "invalid-distribution"
     MISPLACED = "misplaced-random"
     REMAP = "unused-remap"

@@ -25,6 +25,8 @@ def check(context: TreeContext) -> Iterator[Finding]:
     statuses = PossibleStatuses(forest, exact=True)
     for tree in context.file.trees:
         for root in tree.roots:
+            if any(statuses.unreached(root)):
+                continue  # another finding states why failures have no effect
             for retrying, hiding in statuses.hidden_failures(root):
                 reported.add(hiding)
                 message = (

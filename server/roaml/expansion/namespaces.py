@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Finds two instances of a file in one namespace, if each namespace should have one of them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+
+from roaml.expansion.instances import ListedInstance
+from roaml.expansion.problems import ExpansionProblem, Problems
+from roaml.regex import regex
+from roaml.text import Span
+
+MIN_INSTANCES = 3
+"""The minimum number of instances of one file: two in the same namespace are not an exception from a pattern."""
+
+_WORD = regex(r"[A-Za-z]+|\d+")
+
+
+def report_repeated(instances: Iterable[ListedInstance], problems: Problems) -> None:
+    """Report one of two instances of a file in one namespace, if all others are in different ones, and the instances of
+    another file, as many, are all in different namespaces, one of which has no instance of the first file."""
+    groups: dict[str, list[ListedInstance]] = {}
+    for instance in instances:
+        if instance.namespace and not instance.is_plugin:
+            groups.setdefault(instance.src.value, []).append(instance)
+    used = {src: Counter(instance.namespace for instance in group) for src, group in groups.items()}
+    for src, group in groups.items():
+        twice = [name for name, count in used[src].items() if count > 1]
+        if len(group) < MIN_INSTANCES or len(twice) != 1 or used[src][twice[0]] != 2:
+            continue
+        pair = [instance for instance in group if instance.namespace == twice[0]]
+        for names in used.values():
+            missing = names.keys() - used[src].keys()
+            if len(names) == len(group) == sum(names.values()) and len(missing) == 1:
+                _report(src, pair, missing.pop(), problems)
+                break
+
+
+def _report(src: str, pair: list[ListedInstance], missing: str, problems: Problems) -> None:
+    """Report the instance whose name has a word of the namespace `missing`, or the second one."""
+    words = set(_words(missing)) - set(_words(pair[0].namespace))
+    wrong = 0 if pair[0].name is not None and words & set(_words(pair[0].name.value)) else 1
+    message = (
+        f"two instances of `{src}` are in the namespace `{pair[0].namespace}`, none is in `{missing}`, unlike those "
+        f"of another file; did you mean `{missing}`?"
+    )
+    related = [(_place(pair[1 - wrong]), "the other one")]
+    problems.add(ExpansionProblem.NAMESPACE, _place(pair[wrong]), message, close=(missing,), related=related)
+
+
+def _place(instance: ListedInstance) -> Span:
+    attribute = instance.element.get("namespace")
+    assert attribute is not None
+    return attribute.value_span
+
+
+def _words(name: str) -> list[str]:
+    return [match.group() for match in _WORD.finditer(name)]

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The rule `overwritten-value`, which overwritten_value.md describes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.model.behavior.knowledge import variables_in
+from roaml.model.machine import Assign, CallChild, If, ReturnStatus, RosSend, Send, SetOutput, Statement, bodies
+from roaml.model.syntax import Expression, Value
+from roaml.model.values.evaluate import place_of
+from roaml.rules.rule import MachineContext, Rule
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for chart in context.machine.charts:
+        for _, _, body in bodies(chart):
+            yield from _of_body(body)
+
+
+def _of_body(body: Sequence[Statement]) -> Iterator[Finding]:
+    """Report the assignments to a variable to which an earlier statement of the same body assigns a value that nothing
+    between them reads."""
+    unread: dict[str, Assign] = {}
+    for statement in body:
+        for name in _read(statement):
+            unread = {place: assign for place, assign in unread.items() if place.split(".")[0] != name}
+        if isinstance(statement, If):
+            for branch in (*statement.branches, *((statement.otherwise,) if statement.otherwise else ())):
+                yield from _of_body(branch.body)
+        if not isinstance(statement, Assign) or statement.location is None or statement.location.broken:
+            continue
+        place = place_of(statement.location.tree)
+        if place is None or "[" in place:
+            continue
+        earlier = unread.pop(place, None)
+        if earlier is not None:
+            message = (
+                f"this replaces the value that `{place}` got before, and nothing reads that value; "
+                "remove one of the assignments, or change its `location`"
+            )
+            related = [Related(earlier.element.name_span, "the value that is never read")]
+            yield RULE.at(statement.location.span, message, related=related)
+        unread[place] = statement
+
+
+def _read(statement: Statement) -> frozenset[str]:
+    """The variables that a statement reads, and those that it may read or change inside an `<if>`."""
+    match statement:
+        case Assign(location=location, value=value):
+            is_plain = location is None or "[" not in (place_of(location.tree) or "[]")
+            inside = () if is_plain else _names(location)
+            return frozenset((*_names(value), *inside))
+        case Send(params=values) | RosSend(fields=values):
+            named = [name for param in values for name in _names(param.value)]
+            ids = (statement.goal_id, statement.thread_id) if isinstance(statement, RosSend) else ()
+            return frozenset((*named, *(name for value in ids for name in _names(value))))
+        case SetOutput(value=value):
+            return frozenset(_names(value))
+        case If():
+            parts = (*statement.branches, *((statement.otherwise,) if statement.otherwise else ()))
+            names = {name for part in parts for name in _names(part.cond)}
+            for part in parts:
+                for inner in part.body:
+                    names |= _read(inner) | _changed(inner)
+            return frozenset(names)
+        case ReturnStatus(status=name) | CallChild(child=name):
+            return frozenset((name.value,)) if name is not None else frozenset()
+    return frozenset()
+
+
+def _changed(statement: Statement) -> frozenset[str]:
+    if isinstance(statement, Assign) and statement.location is not None:
+        return frozenset(variables_in((statement.location.tree,)))
+    return frozenset()
+
+
+def _names(value: Value | None) -> Iterator[str]:
+    if isinstance(value, Expression):
+        yield from variables_in((value.tree,))
+
+
+RULE = Rule(
+    "overwritten-value",
+    Severity.WARNING,
+    "A value is assigned to a variable and replaced before anything reads it.",
+    machine=check,
+)
