@@ -9,7 +9,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.expr.infer import constant
-from roaml.expr.operators import Operator, OperatorKind
+from roaml.expr.operators import MIRRORED, Operator, OperatorKind
 from roaml.expr.tree import Binary, Expr, Member, Name, String, walk
 from roaml.expr.types import INTEGER_RANGES, Scalar
 from roaml.interruption import checkpoint
@@ -71,6 +71,9 @@ def check_properties(file: LinkedFile) -> Iterator[Finding]:
         pattern = written.pattern.value if written.pattern is not None else ""
         for expression in written.expressions:
             required = [] if expression.broken else list(_required(expression.tree))
+            for conjunction, name in () if expression.broken else _contradictions(expression.tree):
+                message = f"this is never true: the comparisons of `{name}` contradict each other; did you mean `||`?"
+                yield RULE.at(conjunction.span, message)
             for node, name, number in () if expression.broken else _comparisons(expression.tree):
                 type_ = types.get(name)
                 if not isinstance(type_, Scalar) or type_.name not in INTEGER_RANGES:
@@ -105,6 +108,32 @@ def _required(tree: Expr) -> Iterator[Expr]:
     if isinstance(tree, Binary) and tree.operator is Operator.AND:
         yield from _required(tree.left)
         yield from _required(tree.right)
+
+
+def _contradictions(tree: Expr) -> Iterator[tuple[Expr, str]]:
+    """The conjunctions in a condition whose comparisons of a variable with constants exclude each other, each with the
+    name of the variable."""
+    if not isinstance(tree, Binary) or tree.operator is not Operator.AND:
+        for side in (tree.left, tree.right) if isinstance(tree, Binary) else ():
+            yield from _contradictions(side)
+        return
+    allowed: dict[str, tuple[float, bool, float, bool]] = {}
+    for part in _required(tree):
+        for node, name, number in _comparisons(part) if isinstance(part, Binary) else ():
+            operator = node.operator if isinstance(node.left, Name) else MIRRORED.get(node.operator)
+            if node is not part or operator is None:
+                continue
+            low, open_low, high, open_high = allowed.get(name, (-math.inf, False, math.inf, False))
+            if operator in (Operator.EQUAL, Operator.GREATER, Operator.GREATER_EQUAL):
+                low, open_low = max((low, open_low), (number, operator is Operator.GREATER))
+            if operator in (Operator.EQUAL, Operator.LESS, Operator.LESS_EQUAL):
+                high, not_open = min((high, not open_high), (number, operator is not Operator.LESS))
+                open_high = not not_open
+            allowed[name] = low, open_low, high, open_high
+    for name, (low, open_low, high, open_high) in allowed.items():
+        if low > high or (low == high and (open_low or open_high)):
+            yield tree, name
+            return
 
 
 def _comparisons(tree: Expr) -> Iterator[tuple[Binary, str, float]]:
