@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.model.behavior.knowledge import variables_in
@@ -15,24 +15,25 @@ from roaml.rules.rule import MachineContext, Rule
 
 def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
+        declared = context.typed.variables.get(chart.scope, {})
         for _, _, body in bodies(chart):
-            yield from _of_body(body)
+            yield from _of_body(body, declared)
 
 
-def _of_body(body: Sequence[Statement]) -> Iterator[Finding]:
-    """Report the assignments to a variable to which an earlier statement of the same body assigns a value that nothing
-    between them reads."""
+def _of_body(body: Sequence[Statement], declared: Container[str]) -> Iterator[Finding]:
+    """Report the assignments to a declared variable to which an earlier statement of the same body assigns a value that
+    nothing between them reads."""
     unread: dict[str, Assign] = {}
     for statement in body:
         for name in _read(statement):
             unread = {place: assign for place, assign in unread.items() if place.split(".")[0] != name}
         if isinstance(statement, If):
             for branch in (*statement.branches, *((statement.otherwise,) if statement.otherwise else ())):
-                yield from _of_body(branch.body)
+                yield from _of_body(branch.body, declared)
         if not isinstance(statement, Assign) or statement.location is None or statement.location.broken:
             continue
         place = place_of(statement.location.tree)
-        if place is None or "[" in place:
+        if place is None or "[" in place or place.split(".")[0] not in declared:
             continue
         earlier = unread.pop(place, None)
         if earlier is not None:
