@@ -62,6 +62,16 @@ def test_the_expanded_files_have_the_same_translation(folder: Path, tmp_path: Pa
     assert run(["translate", str(folder / "main.xml"), "--expand", str(plain), *values]) == 0
 
 
+def test_an_instance_keeps_handles_that_are_names_of_interfaces(folder: Path) -> None:
+    """Without `name`, the handle of an interface is its name, which the namespace of an instance changes."""
+    named = jani(folder / "main.xml")
+    for file in ("battery.ascxml", "monitor.ascxml"):
+        text = (folder / file).read_text()
+        assert 'name="level" topic="level"' in text
+        (folder / file).write_text(text.replace('name="level" topic="level"', 'topic="level"'))
+    assert jani(folder / "main.xml") == named
+
+
 def test_values_in_python(folder: Path) -> None:
     system = api.load(str(folder / "main.xml"), parameters={"capacity": 80, "loss": 0.25, "left.period": 2})
     assert system.parameters == {"capacity": "80", "loss": "0.25", "left.period": "2"}

@@ -464,7 +464,8 @@ class _Expander:
             report_unused(own_remaps, self.remapped, system_problems)
             own_name = document.root.get("name")
             spans = [edit.span for edit in renamed if own_name is None or edit.span != own_name.value_span]
-            self.renamed.setdefault(source, set()).update(document.decoded(span).text.strip() for span in spans)
+            names_in_file = (document.decoded(span).text.strip() for span in spans if span.start < span.end)
+            self.renamed.setdefault(source, set()).update(names_in_file)
             edits = [*renamed, *edits]
         text = expanded_text(path, source, document.text, edits)
         if kind is FileKind.MACHINE and calls_distribution(text.text):

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import posixpath
 import re
-from collections.abc import Container, Iterable, Iterator, Set
+from collections.abc import Callable, Container, Iterable, Iterator, Set
 
 from roaml.expansion.declarations import PARAM
 from roaml.expansion.problems import ExpansionProblem, Problems
@@ -217,26 +217,40 @@ def instance_edits(document: Document, instance: ListedInstance, used: set[Remap
         return
     names = InstanceNames(instance, own.value if own else "")
     for element in root.walk():
+        yield from interface_edits(document, element, names.interface)
         type_ = HL_SCXML.elements.get(element.name)
-        if type_ is None:
-            continue
-        if element.name in INTERFACE_ATTRIBUTES and (content := document.content(element)) is not None:
-            new = names.interface(content.text)
-            if new != content.text:
-                yield TextEdit(content.span(0, len(content.text)), new)
-        for attribute in element.attributes:
-            role = type_.attributes.get(attribute.name)
-            if role is None or not attribute.value.strip():
-                continue
-            if attribute.name in INTERFACE_ATTRIBUTES:
-                new = names.interface(attribute.value.strip())
-            elif role.defines is SymbolKind.EVENT or SymbolKind.EVENT in role.refers:
-                new = names.event(attribute.value.strip())
-            else:
-                continue
-            if new != attribute.value:
-                yield TextEdit(attribute.value_span, new)
+        for attribute in element.attributes if type_ is not None else ():
+            role = type_.attributes.get(attribute.name) if type_ is not None else None
+            if role is not None and (role.defines is SymbolKind.EVENT or SymbolKind.EVENT in role.refers):
+                event = attribute.value.strip()
+                if event and names.event(event) != event:
+                    yield TextEdit(attribute.value_span, names.event(event))
     used |= names.used
+
+
+def interface_edits(document: Document, element: Element, renamed: Callable[[str], str]) -> Iterator[TextEdit]:
+    """The edits that rename the topic, service or action that an element declares. The handle of a declaration without
+    a `name` is the name of the interface (docs/spec/ros.md#handles), so it gets this name.
+
+    Args:
+        renamed: the name of an interface -> its new name.
+    """
+    if element.name not in HL_SCXML.groups["Declaration"]:
+        return
+    for name in INTERFACE_ATTRIBUTES:
+        attribute, child = element.get(name), element.find(name)
+        if attribute is not None:
+            written, span = attribute.value.strip(), attribute.value_span
+        elif child is not None and (content := document.content(child)) is not None:
+            written, span = content.text.strip(), content.span(0, len(content.text))
+        else:
+            continue
+        new = renamed(written) if written else written
+        if new != written:
+            yield TextEdit(span, new)
+            if element.get("name") is None:
+                handle = document.text[span.start : span.end].strip().replace('"', "&quot;")
+                yield TextEdit(Span(element.name_span.end, element.name_span.end), f' name="{handle}"')
 
 
 def report_unused(remaps: Iterable[Remap], used: Set[Remap], problems: Problems) -> None:
