@@ -15,8 +15,9 @@ from as2fm_lsp.cli.main import run
 from roaml.api.trees import LoadedTree, load_tree
 from roaml.distributions.outcomes import MAX_CUT
 from roaml.experiments.exact_trees import measure_exactly
-from roaml.mocks.mock import DrawnDuration, MockError, read_mock
+from roaml.mocks.mock import MockError, read_mock
 from roaml.mocks.network import MockOptions
+from roaml.model.drawn_durations import DrawnDuration
 from roaml.smc.run import Options
 from roaml.verification.small import SHARED_LIMITS
 from roaml.verification.tree_outcome import Measured, TreeOutcome, measure

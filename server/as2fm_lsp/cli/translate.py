@@ -240,7 +240,8 @@ def _diagrams(system: api.LoadedSystem, model: Model, notation: Notation) -> Ite
     assert linked is not None
     for path, outline in (*linked.nodes, *linked.plugins):
         machine = system.analysis.machine(path)
-        assert machine is not None
+        if machine is None:  # that of a channel, which no file contains
+            continue
         for number, graph in enumerate(machine_graph(machine)):
             suffix = f"-{number}" if number else ""
             yield f"machine-{outline.name}{suffix}.{notation.extension}", notation.render(graph)

@@ -14,8 +14,9 @@ from as2fm_lsp.handlers.results import CurrentResults, result_words
 from as2fm_lsp.handlers.workspace_edit import workspace_edit
 from roaml.ide.lone_tree_mocks import LoneTreeMocks, lone_tree_mocks, set_mock
 from roaml.lower.programs.refusal import TreeRefusal
-from roaml.mocks.mock import DrawnDuration, Mock, MockError
+from roaml.mocks.mock import Mock, MockError
 from roaml.mocks.proposal import MockableLeaf
+from roaml.model.drawn_durations import DrawnDuration
 from roaml.project.analysis import Analysis
 from roaml.project.mock_files import executed_tree
 from roaml.scxml.names import SUCCEEDS

@@ -19,7 +19,8 @@ def lines(drawn: Sequence[DrawnNumber], place_of: Callable[[Location], str]) -> 
             continue
         values = f"{number.values:,} values"
         if number.shift:
-            values += f", each at most {float(number.shift):g} from the drawn number"
+            shift = f"{float(number.shift):g} {number.unit}".rstrip()
+            values += f", each at most {shift} from the drawn number"
         cut = f"; numbers with a probability of at most {number.cut:.1g} are cut" if number.cut > 0 else ""
         yield f"drawn: {number.text} ({place_of(Location(number.path, number.span))}) with {values}{cut}"
 
@@ -34,6 +35,7 @@ def rows(drawn: Sequence[DrawnNumber], place_of: Callable[[Location], dict[str, 
             "values": number.values,
             "shift": float(number.shift),
             "cut": number.cut,
+            **({"unit": number.unit} if number.unit else {}),
         }
         for number in drawn
     ]

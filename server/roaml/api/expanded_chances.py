@@ -2,7 +2,7 @@
 """The probabilities of a system that depend on its parameters, if nothing else does.
 
 The expansion replaces parameters by their values (docs/spec/parameters.md#expansion), and records each edit. A
-parameter on which only probabilities depend changes only edits inside of attributes `prob`.
+parameter on which only probabilities depend changes only edits inside of attributes `prob`, and of `loss` in channels.
 """
 
 from __future__ import annotations
@@ -12,14 +12,16 @@ from typing import TypeAlias
 
 from roaml.diagnostics import Severity
 from roaml.exact_number import exact_fraction
+from roaml.expansion.channels import CHANNEL, LOSS
 from roaml.experiments.parametric import Chances
 from roaml.experiments.sweeps import Setting
 from roaml.project.analysis import Analysis
 from roaml.record import Record, replace
 from roaml.xml_syntax import Document, Element
 
-Place: TypeAlias = tuple[str, int]
-"""The path under which an expanded text is analysed, and the offset of an edit in the file of the user."""
+Place: TypeAlias = tuple[str, int, int]
+"""The path under which an expanded text is analysed, how many expansions were made before the one of an edit, and the
+offset of the edit in the text before it: for the first expansion, in the file of the user."""
 _REAL_TYPES = ("float64", "float32")
 _PLACES = (0.41, 0.59)
 """Where the values of a parameter that are compared are between its least and its greatest value."""
@@ -68,7 +70,7 @@ def expanded_chances(analysis: Analysis, path: str, ranges: Mapping[str, tuple[f
             return None
         places |= {place for place, text in base.items() if text != other[place]}
     sources = {place: expanded.expansion.source(place[0]) for place in places}
-    if not places or not all(_is_probability(analysis.document(sources[p]), p[1]) for p in places):
+    if not places or not all(not p[1] and _is_probability(analysis.document(sources[p]), p[2]) for p in places):
         return None
     return ExpandedChances(analysis, path, tuple(sorted(places)))
 
@@ -84,18 +86,21 @@ def _texts(analysis: Analysis, path: str, setting: Setting) -> dict[Place, str] 
     if any(finding.severity not in (Severity.INFORMATION, Severity.HINT, Severity.WARNING) for finding in findings):
         return None
     return {
-        (name, edit.span.start): edit.new_text for name, text in expanded.expansion.texts.items() for edit in text.edits
+        (name, number, edit.span.start): edit.new_text
+        for name, text in expanded.expansion.texts.items()
+        for number, expansion in enumerate(text.expansions)
+        for edit in expansion.edits
     }
 
 
 def _is_probability(document: Document | None, offset: int) -> bool:
-    """Whether an offset is inside of an attribute `prob`."""
+    """Whether an offset is inside of an attribute `prob`, or of the `loss` of a channel."""
     if document is None or document.root is None:
         return False
     waiting: list[Element] = [document.root]
     while waiting:
         element = waiting.pop()
-        attribute = element.get("prob")
+        attribute = element.get(LOSS if element.name == CHANNEL else "prob")
         if attribute is not None and attribute.span.start <= offset <= attribute.span.end:
             return True
         waiting += element.elements

@@ -4,10 +4,10 @@
 - The files of a system become other texts, which are plain HL-SCXML. Everything behind this door (rules, linking,
   translation) reads only these texts, so it needs no special cases.
 - Each expanded text knows its edits, so that every place in it leads back to the file of the user.
-- A system that uses neither parameters nor instances is not expanded.
+- A system that uses none of these is not expanded.
 """
 
-from roaml.expansion.expand import SystemExpansion, expand, expand_file, needs_expansion
+from roaml.expansion.expand import SystemExpansion, expand, expand_file, has_channels, needs_expansion
 from roaml.expansion.text import ExpandedText
 
-__all__ = ["ExpandedText", "SystemExpansion", "expand", "expand_file", "needs_expansion"]
+__all__ = ["ExpandedText", "SystemExpansion", "expand", "expand_file", "has_channels", "needs_expansion"]

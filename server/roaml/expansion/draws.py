@@ -38,7 +38,7 @@ _OUTSIDE_OF_HANDLERS = ("onentry", "onexit", "datamodel")
 
 
 class DrawnNumber(Record, frozen=True):
-    """A number that a machine draws (docs/spec/distributions.md#error).
+    """A number that a machine or a channel draws (docs/spec/distributions.md#error).
 
     Attributes:
         path: the file of the user.
@@ -47,6 +47,7 @@ class DrawnNumber(Record, frozen=True):
         values: the number of different values.
         shift: how far a value is from the drawn number at most, unless this is cut.
         cut: an upper bound of the probability of the numbers that are cut.
+        unit: the unit of `shift`; "" if the number has none.
     """
 
     path: str
@@ -55,6 +56,7 @@ class DrawnNumber(Record, frozen=True):
     values: int
     shift: Fraction
     cut: float
+    unit: str = ""
 
 
 class _Draw(NamedTuple):

@@ -33,7 +33,7 @@ from roaml.expansion.instances import (
 )
 from roaml.expansion.namespaces import report_repeated
 from roaml.expansion.problems import ExpansionProblem, Problems
-from roaml.expansion.text import ExpandedText, expanded_text
+from roaml.expansion.text import CopiedText, ExpandedText, edited_again, expanded_text
 from roaml.expansion.uses import VARIABLE, ParameterUses, uses_in
 from roaml.expansion.values import ParameterValue, Scope
 from roaml.expr.types import ScalarKind
@@ -41,17 +41,21 @@ from roaml.jani.properties import Property, identifiers
 from roaml.language import SYSTEM
 from roaml.model.kinds import GRAMMARS, FileKind
 from roaml.model.syntax import Name
-from roaml.model.system_file import TREE_ATTRIBUTE
+from roaml.model.system_file import TREE_ATTRIBUTE, SystemSection
 from roaml.record import Record, field
 from roaml.roles import SymbolKind
+from roaml.scxml.names import sanitise
 from roaml.suggest import close_names, did_you_mean, listing
 from roaml.text import Span, TextEdit
-from roaml.xml_syntax import Document
+from roaml.xml_syntax import Document, Element, parse
 
 if TYPE_CHECKING:
     from roaml.expansion.draws import DrawnNumber
+    from roaml.model.ros import InterfaceType
 
 _STRING = ScalarKind.STRING
+CHANNELS = "channels"
+"""The name of the section of a system file that declares channels."""
 
 
 class UserFiles(Protocol):
@@ -68,6 +72,9 @@ class UserFiles(Protocol):
 
     def properties(self, path: str) -> tuple[Property, ...]:
         """The properties in a file of JANI properties."""
+
+    def interface(self, kind: str, name: str) -> InterfaceType | None:
+        """A ROS type of the kind msg, srv or action; `None` if it cannot be read."""
 
 
 class NamedPlace(Record, frozen=True):
@@ -93,8 +100,10 @@ class SystemExpansion(Record, frozen=True, eq=False):
         renamed: path of a file of the user -> the names of interfaces and events in it, as written, that its instances
             call otherwise.
         of_instances: `INSTANCE.PARAMETER` -> the text of a value that was given from outside.
-        drawn: the numbers that machines draw from distributions.
+        drawn: the numbers that machines and channels draw from distributions.
         data: the paths and texts of the files with data for these; `None` for a file that cannot be read.
+        channels: the paths of the texts that are machines of channels, which no file of the user contains, each with
+            the name of the automaton and the place of the `<channel>` in the system file.
     """
 
     system: str
@@ -109,6 +118,7 @@ class SystemExpansion(Record, frozen=True, eq=False):
     of_instances: Mapping[str, str] = field(default_factory=dict)
     drawn: tuple[DrawnNumber, ...] = ()
     data: tuple[tuple[str, str | None], ...] = ()
+    channels: Mapping[str, tuple[str, Span]] = field(default_factory=dict)
 
     def source(self, path: str) -> str:
         """The path of the file of the user that is analysed under `path`."""
@@ -126,17 +136,26 @@ class SystemExpansion(Record, frozen=True, eq=False):
 
 
 def needs_expansion(system: Document, texts: Iterator[str]) -> bool:
-    """Whether a system uses parameters, instances or distributions.
+    """Whether a system uses parameters, instances, channels or distributions.
 
     Args:
         system: the system file.
         texts: the texts of the other files of the system.
     """
-    if next(declaration_elements(system), None) is not None or "$(var" in system.text:
+    if next(declaration_elements(system), None) is not None or "$(var" in system.text or has_channels(system):
         return True
     if any(not instance.is_plain for instance in instances(system, Problems())):
         return True
     return any(f"<{PARAMETER}" in text or "$(var" in text or calls_distribution(text) for text in texts)
+
+
+def has_channels(system: Document) -> bool:
+    """Whether a system file declares channels."""
+    return next(_channel_sections(system), None) is not None
+
+
+def _channel_sections(system: Document) -> Iterator[Element]:
+    return (child for child in (system.root.elements if system.root else ()) if child.name == CHANNELS)
 
 
 def expand_file(
@@ -198,6 +217,9 @@ class _Expander:
         self.remapped: set[Remap] = set()
         self.set_by_trees: set[Name] = set()
         self.data: dict[str, str | None] = {}
+        self.machines: dict[str, str] = {}
+        """The path of each machine -> the path of its file."""
+        self.channels: dict[str, tuple[str, Span]] = {}
 
     def problems_of(self, path: str) -> Problems:
         return self.problems.setdefault(path, Problems())
@@ -219,6 +241,7 @@ class _Expander:
 
     def of_file(self, path: str) -> SystemExpansion:
         self._expand_listed(path, path, None, {})
+        self._expand_draws()
         return self._result({}, ())
 
     def expansion(self) -> SystemExpansion:
@@ -263,9 +286,11 @@ class _Expander:
                 edits.append(TextEdit(instance.src.value_span, _relative(new, instance.src.value)))
             edits += self._plain_input(document, instance)
         self._report_trees(trees, problems)
+        edits += self._expand_channels(document, scope)
         for other in self.others:
             if other not in seen:
                 self._expand_listed(other, other, None, scope)
+        self._expand_draws()
         self._report_unused(declared, problems)
         if edits:
             self.texts[self.path] = expanded_text(self.path, self.path, document.text, edits)
@@ -327,7 +352,8 @@ class _Expander:
     def _result(self, scope: Scope, declared: tuple[Declared, ...]) -> SystemExpansion:
         variants: dict[str, list[str]] = {}
         for path, text in self.texts.items():
-            variants.setdefault(text.source, []).append(path)
+            if path not in self.channels:
+                variants.setdefault(text.source, []).append(path)
         findings = {path: found.findings for path, found in self.problems.items() if found.findings}
         names = {path: tuple(places) for path, places in self.names.items()}
         return SystemExpansion(
@@ -343,16 +369,22 @@ class _Expander:
             self.of_instances,
             tuple(self.drawn),
             tuple(self.data.items()),
+            self.channels,
         )
 
     def _fresh(self, target: str, instance: ListedInstance) -> str:
         """A path for the text of an instance, beside its file, that no file has."""
-        begin = max(target.rfind("/"), target.rfind("\\")) + 1
-        folder, file = target[:begin], target[begin:]
-        stem, dot, extension = file.rpartition(".")
+        file = target[max(target.rfind("/"), target.rfind("\\")) + 1 :]
+        stem, _, extension = file.rpartition(".")
         name = instance.name.value if instance.name else f"{stem}_2"
         if instance.is_plugin and instance.tree is not None:
             name = f"{instance.tree.value}_{stem}"
+        return self._fresh_beside(target, name, extension)
+
+    def _fresh_beside(self, target: str, name: str, extension: str) -> str:
+        """A path beside the file `target` that no file has."""
+        folder = target[: max(target.rfind("/"), target.rfind("\\")) + 1]
+        dot = "." if extension else ""
         number = 2
         new = f"{folder}{name}{dot}{extension}"
         while new in self.taken or self.sources.text(new) is not None:
@@ -372,7 +404,7 @@ class _Expander:
         for element in declaration_elements(document):
             yield removed(document, element)
         for section in document.root.elements if document.root else ():
-            if section.name == SECTIONS[0]:
+            if section.name in (SECTIONS[0], CHANNELS):
                 yield removed(document, section)
         self._reference(document)
 
@@ -394,6 +426,60 @@ class _Expander:
                     ExpansionProblem.REFERENCE, section.name_span, message, severity=Severity.INFORMATION
                 )
                 return
+
+    # --------------------------------------------------------------- channels
+
+    def _expand_channels(self, document: Document, scope: Scope) -> Iterator[TextEdit]:
+        """Put the channels of the system between its machines. The edits list their machines in the system file."""
+        sections = list(_channel_sections(document))
+        if not sections:
+            return
+        # Few systems have channels.
+        from roaml.expansion.channel_links import ListedMachine, declares, link  # noqa: PLC0415
+        from roaml.expansion.channels import delay_uses, read_channels  # noqa: PLC0415
+
+        problems = self.problems_of(self.path)
+        message = (
+            f"AS2FM ignores `<{CHANNELS}>`, so all messages arrive at once in it; `as2fm-lsp translate --expand DIR` "
+            "writes a machine for each channel"
+        )
+        place = sections[0].name_span
+        problems.add(ExpansionProblem.REFERENCE, place, message, severity=Severity.INFORMATION)
+        for element in (child for section in sections for child in section.elements):
+            for use in delay_uses(document, element, scope):
+                self.used.add(use.name)
+                self.note(self.path, self.path, use.name, use.span)
+        channels = read_channels(self.path, document, sections, scope, problems)
+        texts = {path: text for path in self.machines if (text := self._text(path)) is not None}
+        machines = [ListedMachine(path, parse(text.text)) for path, text in texts.items()]
+        links = link(channels, machines, self.sources.interface, problems)
+        written = [found for path in set(self.machines.values()) if (found := self.sources.document(path)) is not None]
+        for channel in channels:
+            if any(declares(machine, channel) for machine in written):
+                self._note_interface(channel.kind.value, channel.name)
+        for path, edits in links.edits.items():
+            self.texts[path] = edited_again(texts[path], edits)
+        inputs = []
+        for channel, name, content in links.machines:
+            path = self._fresh_beside(self.path, name, "ascxml")
+            self.channels[path] = (name, channel.element.span)
+            values = tuple(TextEdit(attribute.value_span, value) for attribute, value in channel.values)
+            whole = CopiedText(0, len(content), channel.element.span, is_exact=False)
+            self.texts[path] = ExpandedText(path, self.path, content, values, (whole,))
+            inputs.append(f'<input type="node-ascxml" src="{_relative(path, "")}" />')
+        self.drawn.update((channel.drawn, None) for channel in channels if channel.drawn is not None)
+        if inputs:
+            yield _listed(document, inputs)
+
+    def _note_interface(self, kind: str, name: Name) -> None:
+        """Record the name of a topic or service in the system file."""
+        if kind == SymbolKind.TOPIC.value:
+            slash = len(name.value) - len(name.value.removeprefix("/"))
+            span = Span(name.span.start + slash, name.span.end)
+            symbol = Symbol(self.path, SymbolKind.TOPIC, sanitise(name.value))
+        else:
+            span, symbol = name.span, Symbol(self.path, SymbolKind.SERVICE, name.value)
+        self.names.setdefault(self.path, {})[NamedPlace(symbol, span, False)] = None
 
     def _plain_input(self, document: Document, instance: ListedInstance) -> Iterator[TextEdit]:
         """The edits that remove from an input what plain system files do not have."""
@@ -468,10 +554,27 @@ class _Expander:
             self.renamed.setdefault(source, set()).update(names_in_file)
             edits = [*renamed, *edits]
         text = expanded_text(path, source, document.text, edits)
-        if kind is FileKind.MACHINE and calls_distribution(text.text):
-            text = self._with_draws(text, problems)
+        if kind is FileKind.MACHINE:
+            self.machines[path] = source
         if text.text != document.text or path != source:
             self.texts[path] = text
+
+    def _text(self, path: str) -> ExpandedText | None:
+        """The text of a machine, as it is expanded so far; `None` if it cannot be read."""
+        source = self.machines[path]
+        document = self.sources.document(source)
+        if path in self.texts or document is None:
+            return self.texts.get(path)
+        return ExpandedText(path, source, document.text, ())
+
+    def _expand_draws(self) -> None:
+        """Expand the draws of all machines."""
+        for path, source in self.machines.items():
+            text = self._text(path)
+            if text is not None and calls_distribution(text.text):
+                drawn = self._with_draws(text, self.problems_of(source))
+                if drawn is not text:
+                    self.texts[path] = drawn
 
     def _with_draws(self, text: ExpandedText, problems: Problems) -> ExpandedText:
         from roaml.expansion.draws import expand_draws  # noqa: PLC0415 - few machines draw numbers
@@ -585,6 +688,21 @@ def _unused(document: Document, parameter: Declared, problems: Problems) -> None
     message = f"nothing uses the parameter `{parameter.name.value}`; remove it"
     fix = Fix(f"Remove the parameter `{parameter.name.value}`", (removed(document, parameter.element),))
     problems.add(ExpansionProblem.UNUSED, parameter.name.span, message, fixes=(fix,), tags=(Tag.UNNECESSARY,))
+
+
+def _listed(document: Document, inputs: list[str]) -> TextEdit:
+    """The edit that lists further machines in a system file."""
+    root = document.root
+    assert root is not None
+    section = root.find(SystemSection.NODE_MODELS.value)
+    lines = "".join(f"\n        {text}" for text in inputs)
+    if section is None:
+        end = root.open_span.end
+        return TextEdit(Span(end, end), f"\n    <node_models>{lines}\n    </node_models>")
+    if section.close_span is None:
+        return TextEdit(section.span, f"<node_models>{lines}\n    </node_models>")
+    end = section.elements[-1].span.end if section.elements else section.open_span.end
+    return TextEdit(Span(end, end), lines)
 
 
 def _named(tree: ListedInstance) -> str:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The problems of parameters and instances, as findings of the rules that `roaml.rules.expansion_rules` defines."""
+"""The problems of parameters, instances and channels, as findings of the rules that `roaml.rules.expansion_rules`
+defines."""
 
 from __future__ import annotations
 
@@ -22,6 +23,7 @@ class ExpansionProblem(enum.Enum):
     ASSIGNED = "assigned-parameter"
     INSTANCE = "invalid-instance"
     NAMESPACE = "repeated-namespace"
+    CHANNEL = "invalid-channel"
     DISTRIBUTION = "invalid-distribution"
     MISPLACED = "misplaced-random"
     REMAP = "unused-remap"

@@ -45,6 +45,11 @@ class ExpandedText(Record, frozen=True, dict=True):
     copies: tuple[CopiedText, ...] = ()
     before: ExpandedText | None = None
 
+    @property
+    def expansions(self) -> tuple[ExpandedText, ...]:
+        """The expansions that made this text, the first one first."""
+        return (self,) if self.before is None else (*self.before.expansions, self)
+
     @cached_property
     def _pieces(self) -> tuple[list[int], list[tuple[int, int, int]]]:
         """For each edit, the offset of its new text in the expanded text; and its old span with the length of the new
@@ -126,3 +131,10 @@ def expanded_text(path: str, source: str, text: str, edits: Iterable[TextEdit]) 
         if not kept or edit.span.start >= kept[-1].span.end:
             kept.append(edit)
     return ExpandedText(path, source, apply_edits(text, tuple(kept)), tuple(kept))
+
+
+def edited_again(before: ExpandedText, edits: Iterable[TextEdit]) -> ExpandedText:
+    """An expanded text with further edits, which do not overlap."""
+    ordered = tuple(sorted(edits, key=lambda edit: edit.span))
+    earlier = before if before.edits else None
+    return ExpandedText(before.path, before.source, apply_edits(before.text, ordered), ordered, (), earlier)

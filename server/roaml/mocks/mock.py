@@ -8,19 +8,15 @@ from fnmatch import fnmatchcase
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from roaml.exact_number import exact_fraction
 from roaml.record import Record
 from roaml.regex import regex
-from roaml.suggest import close_names, did_you_mean
 from roaml.text import Span
 
 if TYPE_CHECKING:
     from roaml.distributions.outcomes import Outcomes
+    from roaml.model.drawn_durations import DrawnDuration
 
 _MOCK = regex(r"(?P<name>.+?)\s*:\s*(?P<probability>[^\s:]+)(?:\s+in\s+(?P<duration>.+))?\Z")
-_DURATION = regex(r"(\d+(?:\.\d+)?)\s*(ms|s|min)\Z")
-_DRAWN = regex(r"([^\s(]*)\s*\((.*)\)\Z")
-_MILLISECONDS = {"ms": 1, "s": 1000, "min": 60_000}
 ALL = "*"
 
 
@@ -28,44 +24,24 @@ class MockError(ValueError):
     """A mock is not valid; the message states the reason."""
 
 
-class DrawnDuration(Record, frozen=True):
-    """A duration that is drawn from a distribution each time (docs/spec/mocks.md#durations).
+def drawn_ticks(duration: DrawnDuration, rate: Fraction) -> Outcomes:
+    """The numbers of ticks of the tree until a leaf with a drawn duration ends: rounded up, 0 for a negative duration.
 
-    Attributes:
-        text: the distribution as it is written: `normal(8 s, 2 s)`.
-        name: the name of the distribution.
-        arguments: its arguments; durations in ms.
+    Args:
+        rate: the ticks of the tree per second.
+
+    Raises:
+        MockError: there are too many different numbers of ticks.
     """
+    from roaml.distributions.laws import LawError  # noqa: PLC0415 - few mocks need it
 
-    text: str
-    name: str
-    arguments: tuple[Fraction, ...]
-
-    def ticks(self, rate: Fraction) -> Outcomes:
-        """The numbers of ticks of the tree until the leaf ends. A duration is rounded up, a negative one is 0.
-
-        Args:
-            rate: the ticks of the tree per second.
-
-        Raises:
-            MockError: there are too many different numbers of ticks.
-        """
-        from roaml.distributions.laws import LAWS, LawError  # noqa: PLC0415 - few mocks need it
-        from roaml.distributions.outcomes import Outcomes, Rounding, outcomes  # noqa: PLC0415
-
-        period = 1000 / rate
-        try:
-            drawn = outcomes(LAWS[self.name].law(self.arguments), period, Rounding.UP)
-        except LawError as error:
-            raise MockError(
-                f"`{self.text}` cannot be the duration of a mock at {float(rate):g} ticks per second: {error}; use a "
-                "lower tick rate or shorter durations"
-            ) from None
-        shares: dict[Fraction, float] = {}
-        for value, share in sorted(zip(drawn.values, drawn.probabilities, strict=True)):
-            ticks = max(value / period, Fraction(0))
-            shares[ticks] = shares.get(ticks, 0.0) + share
-        return Outcomes(tuple(shares), tuple(shares.values()), cut=drawn.cut)
+    try:
+        return duration.ticks(1000 / rate)
+    except LawError as error:
+        raise MockError(
+            f"`{duration.text}` cannot be the duration of a mock at {float(rate):g} ticks per second: {error}; use a "
+            "lower tick rate or shorter durations"
+        ) from None
 
 
 class Mock(Record, frozen=True):
@@ -113,58 +89,12 @@ def read_mock(text: str) -> Mock:
         raise MockError(f"`{match['probability']}` in `{text.strip()}` is not a probability from 0 to 1")
     if match["duration"] is None:
         return Mock(match["name"], probability)
-    return Mock(match["name"], probability, _duration(match["duration"].strip(), text.strip()))
+    from roaml.model.drawn_durations import DurationError, read_duration  # noqa: PLC0415 - not all mocks need it
 
-
-def _duration(written: str, mock: str) -> Fraction | DrawnDuration:
-    """The duration in `written`, the end of the text `mock`."""
-    if "(" in written:
-        return _drawn_duration(written, mock)
-    duration = _milliseconds(written)
-    if duration is None:
-        raise MockError(
-            f"`{written}` in `{mock}` is not a duration such as `2 s`, `250 ms`, `1 min` or `normal(8 s, 2 s)`"
-        )
-    return duration
-
-
-def _drawn_duration(written: str, mock: str) -> DrawnDuration:
-    """The distribution in `written`, the end of the text `mock`.
-
-    Raises:
-        MockError: `written` is not a distribution of durations.
-    """
-    from roaml.distributions.laws import LAWS, LawError  # noqa: PLC0415 - few mocks need it
-
-    match = _DRAWN.match(written)
-    if match is None:
-        raise MockError(f"`{written}` in `{mock}` is not a distribution such as `normal(8 s, 2 s)`")
-    name, arguments = match.groups()
-    function = LAWS.get(name)
-    if function is None or not function.has_units:
-        known = [law.name for law in LAWS.values() if law.has_units]
-        close = close_names(name, known)
-        hint = did_you_mean(close) if close else f"; the distributions of durations are {', '.join(known)}"
-        raise MockError(f"`{name}` in `{mock}` is not a distribution of durations{hint}")
-    values = []
-    for position, argument in enumerate(arguments.split(",")):
-        is_share = function.parameters[position % len(function.parameters)] == "p"
-        value = exact_fraction(argument.strip()) if is_share else _milliseconds(argument.strip())
-        if value is None:
-            what = "a probability such as 0.2" if is_share else "a duration such as `2 s` or `250 ms`"
-            raise MockError(f"`{argument.strip()}` in `{mock}` is not {what}")
-        values.append(value)
     try:
-        function.law(values)
-    except LawError as error:
-        raise MockError(f"`{written}` in `{mock}` is not a distribution: {error}") from None
-    return DrawnDuration(written, name, tuple(values))
-
-
-def _milliseconds(text: str) -> Fraction | None:
-    """The duration in `text`, in ms; `None` if `text` is not a duration such as `2 s`."""
-    match = _DURATION.match(text)
-    return None if match is None else Fraction(match[1]) * _MILLISECONDS[match[2]]
+        return Mock(match["name"], probability, read_duration(match["duration"].strip(), f" in `{text.strip()}`"))
+    except DurationError as error:
+        raise MockError(str(error)) from None
 
 
 def read_mocks(text: str) -> tuple[Mock, ...]:

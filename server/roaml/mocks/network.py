@@ -33,9 +33,10 @@ from roaml.lower.programs.nodes import (
 from roaml.lower.programs.refusal import TreeRefusal
 from roaml.lower.programs.values import ticks_of
 from roaml.lower.timers import Timer, clock, clock_step
-from roaml.mocks.mock import DrawnDuration, Mock, MockError, mock_for
+from roaml.mocks.mock import Mock, MockError, drawn_ticks, mock_for
 from roaml.mocks.proposal import MockableLeaf, leaves_of
 from roaml.mocks.unfolding import unfold
+from roaml.model.drawn_durations import DrawnDuration
 from roaml.model.timing import period
 from roaml.record import Record, field
 from roaml.scxml.events import EventRole, Role, ScxmlEvent
@@ -217,7 +218,7 @@ class _Builder:
             program = programs()["synchronous"]
         elif isinstance(mock.duration, DrawnDuration):
             try:
-                drawn = mock.duration.ticks(self.options.rate)
+                drawn = drawn_ticks(mock.duration, self.options.rate)
             except MockError as error:
                 raise TreeRefusal(node.origin, str(error)) from None
             known.update((f"ends_{ticks}", share) for ticks, share in enumerate(hazards(drawn)))

@@ -9,7 +9,8 @@ from xml.sax.saxutils import escape, quoteattr
 
 from roaml.distributions.outcomes import decimal_text, hazards
 from roaml.lower.programs.values import ticks_of
-from roaml.mocks.mock import DrawnDuration, Mock
+from roaml.mocks.mock import Mock, drawn_ticks
+from roaml.model.drawn_durations import DrawnDuration
 from roaml.record import Record
 
 
@@ -43,7 +44,7 @@ def mock_plugin(name: str, mock: Mock, rate: Fraction, ports: Sequence[MockPort]
     duration, ends = 0, tuple[float, ...]()
     if not is_condition:
         if isinstance(mock.duration, DrawnDuration):
-            ends = hazards(mock.duration.ticks(rate))
+            ends = hazards(drawn_ticks(mock.duration, rate))
         else:
             duration = ticks_of(mock.duration, rate)
     return "\n".join(_Plugin(name, mock, duration, ends, tuple(ports), is_condition).lines()) + "\n"

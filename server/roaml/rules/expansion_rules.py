@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The rules whose findings come from the expansion of parameters and instances; each is a kind of problem, a severity
-and a sentence. Their documents are in `parameters`."""
+"""The rules whose findings come from the expansion of parameters, instances and channels; each is a kind of problem, a
+severity and a sentence. Their documents are in `parameters`."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ RULES = (
     _rule(ExpansionProblem.ASSIGNED, Severity.ERROR, "A machine assigns a value to a parameter."),
     _rule(ExpansionProblem.DUPLICATE, Severity.ERROR, "A file declares two parameters with the same name."),
     _rule(ExpansionProblem.HIDDEN, Severity.WARNING, "A variable hides a parameter with the same name."),
+    _rule(ExpansionProblem.CHANNEL, Severity.ERROR, "A channel has an invalid attribute, or leads nowhere."),
     _rule(ExpansionProblem.DISTRIBUTION, Severity.ERROR, "A distribution has invalid arguments, or too many values."),
     _rule(
         ExpansionProblem.INSTANCE,

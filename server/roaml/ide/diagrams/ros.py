@@ -69,11 +69,21 @@ def machine_node_ids(system: System) -> Mapping[str, tuple[str, ...]]:
 
 def _machines(analysis: Analysis, system: System) -> Iterator[tuple[str, DiagramNode]]:
     for automaton in system.automata:
-        machine = analysis.machine(automaton.path) if automaton.path else None
-        if machine is not None:
+        place = _place(analysis, automaton) if automaton.path else None
+        if place is not None:
             kind = DiagramNodeKind.ROS_NODE if automaton.instance is None else DiagramNodeKind.PLUGIN
-            place = Location(automaton.path, machine.element.span)
             yield _id(automaton), DiagramNode(_id(automaton), kind, _title(automaton), place=place)
+
+
+def _place(analysis: Analysis, automaton: SystemAutomaton) -> Location | None:
+    """The machine of an automaton, or the `<channel>` for which the expansion added it."""
+    machine = analysis.machine(automaton.path)
+    if machine is not None:
+        return Location(automaton.path, machine.element.span)
+    expanded = analysis.expanded(automaton.path)
+    channels = dict(expanded.expansion.channels.values()) if expanded is not None else {}
+    span = channels.get(automaton.outline.name)
+    return None if span is None else Location(automaton.path, span)
 
 
 def _channel(analysis: Analysis, kind: DiagramNodeKind, channel: Channel, ends: list[ChannelEndpoint]) -> DiagramNode:

@@ -75,7 +75,7 @@ class Analysis:
         tree_files = TreeFiles(sources)
         self._systems = Systems(sources, tree_files, systems)
         families = Families(sources, tree_files, self._systems, trees, listed)
-        expanding = Expanding(sources, self._systems, overrides.values) if expands else None
+        expanding = Expanding(sources, interfaces, self._systems, overrides.values) if expands else None
         expansions = Expansions(expanding, functools.partial(_analysed, registry, overrides, trees))
         self.expanded = expansions.system
         self.expanded_file = expansions.file

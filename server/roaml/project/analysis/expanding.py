@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The files of systems whose parameters and instances are expanded (docs/spec/parameters.md#expansion)."""
+"""The files of systems whose parameters, instances and channels are expanded (docs/spec/parameters.md#expansion)."""
 
 from __future__ import annotations
 
@@ -8,14 +8,16 @@ from collections.abc import Callable
 from typing import Generic, TypeVar
 
 from roaml.distributions import calls_distribution
-from roaml.expansion import SystemExpansion, expand, expand_file, needs_expansion
+from roaml.expansion import SystemExpansion, expand, expand_file, has_channels, needs_expansion
 from roaml.jani.properties import Property
 from roaml.model.kinds import FileKind
+from roaml.model.ros import InterfaceType
 from roaml.project.analysis.sources import SourceFiles
 from roaml.project.analysis.systems import Systems
 from roaml.project.files import Files
 from roaml.project.memo import Memo
 from roaml.project.paths import resolve
+from roaml.project.ros_types import Interfaces
 from roaml.record import Record
 from roaml.text import SourceFile
 from roaml.xml_syntax import Document
@@ -41,8 +43,9 @@ class ExpandedFiles(Record, frozen=True, eq=False):
 class _Sources:
     """The files of the user, for the expansion."""
 
-    def __init__(self, sources: SourceFiles) -> None:
+    def __init__(self, sources: SourceFiles, interfaces: Interfaces) -> None:
         self._sources = sources
+        self._interfaces = interfaces
         self.document: Callable[[str], Document | None] = sources.document
         self.kind: Callable[[str], FileKind] = sources.kind
 
@@ -53,6 +56,10 @@ class _Sources:
     def properties(self, path: str) -> tuple[Property, ...]:
         return self._sources.properties(path)[0]
 
+    def interface(self, kind: str, name: str) -> InterfaceType | None:
+        interface = self._interfaces.interface(kind, name)
+        return interface if isinstance(interface, InterfaceType) else None
+
 
 class Expanding:
     """Expands systems and files.
@@ -61,23 +68,30 @@ class Expanding:
         given: names and texts of values that replace those in the files.
     """
 
-    def __init__(self, sources: SourceFiles, systems: Systems, given: tuple[tuple[str, str], ...]) -> None:
+    def __init__(
+        self, sources: SourceFiles, interfaces: Interfaces, systems: Systems, given: tuple[tuple[str, str], ...]
+    ) -> None:
         self._sources = sources
+        self._interfaces = interfaces
+        self._user = _Sources(sources, interfaces)
         self._systems = systems
         self._given = given
 
     def system(self, system: str, *, varied: bool = False) -> ExpandedFiles | None:
-        """An expanded system; `None` if it uses no parameters, instances or distributions, or cannot be read. If
-        `varied`, its parameters have other values than the given ones."""
+        """An expanded system; `None` if it uses no parameters, instances, channels or distributions, or cannot be read.
+        If `varied`, its parameters have other values than the given ones."""
         document = self._sources.document(system)
         if document is None or self._sources.system_file(system) is None:
             return None
         others = self._systems.files_of(system)[1:]
-        sources = _Sources(self._sources)
+        sources = self._user
         texts = tuple(sources.text(path) or "" for path in others)
         if not needs_expansion(document, iter(texts)):
             return None
-        key = (document.text, others, texts, self._given)
+        # The machines of channels contain the fields of messages.
+        machines = (self._sources.machine(path) for path in others) if has_channels(document) else ()
+        types = tuple(self._interfaces.interfaces_of(machine) for machine in machines if machine is not None)
+        key = (document.text, others, texts, self._given, types)
         compute = functools.partial(expand, system, others, sources, self._given, resolve, varied=varied)
         expansion = self._remembered("expansion", (system, varied), key, compute)
         return self._expanded(expansion, f"{system} {varied}", (system,))
@@ -93,7 +107,7 @@ class Expanding:
             return None
         if self._sources.kind(path) not in (FileKind.MACHINE, FileKind.XML_PROPERTIES):
             return None
-        compute = functools.partial(expand_file, path, _Sources(self._sources), resolve, varied=varied)
+        compute = functools.partial(expand_file, path, self._user, resolve, varied=varied)
         expansion = self._remembered("expansion alone", (path, varied), source.text, compute)
         return self._expanded(expansion, f"alone {path} {varied}", ())
 
@@ -101,7 +115,7 @@ class Expanding:
         self, name: str, place: object, key: object, compute: Callable[[], SystemExpansion]
     ) -> SystemExpansion:
         """The last expansion with a key, unless the data that it read have changed."""
-        memo, sources = self._sources.memo, _Sources(self._sources)
+        memo, sources = self._sources.memo, self._user
         expansion = memo.get(name, place, key, compute)
         data = tuple(sources.text(path) for path, _ in expansion.data)
         if data == tuple(text for _, text in expansion.data):
