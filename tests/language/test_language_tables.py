@@ -176,7 +176,9 @@ def test_roles_are_those_that_tools_know() -> None:
 PORT_MODEL = ("type", "default", "description")
 PLAIN = {
     "ascxml.xsd": {"log@expr", "log@label"},
-    "roaml.xsd": {"max_time@reaction_time", "input@namespace", "remap@from", "remap@to"},
+    "roaml.xsd": {
+        *("max_time@reaction_time", "input@namespace", "remap@from", "remap@to", "channel@delay", "channel@step"),
+    },
     "structs.xsd": set(),
     "properties.xsd": {"property@expect", "property@expr", "clock@topic_name", "clock@type"},
     "behaviortree.xsd": {

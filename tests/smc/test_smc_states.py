@@ -17,6 +17,7 @@ from smc_random import conditions, networks
 import roaml.smc
 from examples import examples
 from roaml.explicit.plain import plain_kernel, plain_states
+from roaml.record import replace
 from roaml.smc import states
 from roaml.smc.batch import BatchOutcome, Payload, Simulator, Task, run_on
 from roaml.smc.model import ModelChecker
@@ -53,12 +54,12 @@ def assert_same(compiled: Compiled, traces: int, steps: int, memory: int = state
     task = Task(NO_PAYLOAD, 7, 0, traces, steps, 0, tuple(range(questions)))
     alone, nodes = Simulator(compiled, 0), with_nodes(compiled, memory)
     for first, size in ((0, 1), (1, traces), (traces + 1, 5)):
-        part = task._replace(first=first, size=size)
+        part = replace(task, first=first, size=size)
         expected, actual = run_on(alone, part), run_on(nodes, part)
         assert results(actual) == results(expected)
         if expected.problem is not None:
             break
-        run_on(nodes, task._replace(size=2, scheduler=3))
+        run_on(nodes, replace(task, size=2, scheduler=3))
     assert alone.batch is not None
     assert alone.batch.count == 0
     return nodes.batch

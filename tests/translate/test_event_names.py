@@ -45,8 +45,10 @@ def test_events_of_interfaces(event: str, kind: InterfaceEventKind) -> None:
 
 
 def test_a_name_that_continues_another_is_another_interface() -> None:
-    assert read_interface_event("srv_look_again_request", ()) == (InterfaceEventKind.REQUEST, "look_again")
-    assert read_interface_event("action_get_result_feedback", ()) == (InterfaceEventKind.FEEDBACK, "get_result")
+    request = InterfaceEvent(InterfaceEventKind.REQUEST, "look_again")
+    assert read_interface_event("srv_look_again_request", ()) == request
+    feedback = InterfaceEvent(InterfaceEventKind.FEEDBACK, "get_result")
+    assert read_interface_event("action_get_result_feedback", ()) == feedback
 
 
 @pytest.mark.parametrize("event", ["topic_look", "look", "srv_look_req_client_Unknown", "bt_1_tick"])
