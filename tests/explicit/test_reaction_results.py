@@ -161,3 +161,59 @@ def test_time_stops(tmp_path: Path, capsys: pytest.CaptureFixture[str], machines
     (result,) = json.loads(capsys.readouterr().out)["results"]
     assert result["probability"] == 0
     assert result["ends"]["repeats_for_ever"] == 20
+
+
+def test_a_delay_ends_with_the_time(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The last step of the clock only ends the time: none passes in it, and other elements can take steps after it."""
+
+    def edge(source: str, guard: dict[str, object] | None, action: str, target: str, **values: object) -> object:
+        assignments = [{"ref": name, "value": value} for name, value in values.items()]
+        edge: dict[str, object] = {
+            "location": source,
+            "destinations": [{"location": target, "assignments": assignments}],
+        }
+        return edge | ({"action": action} if action else {}) | ({"guard": {"exp": guard}} if guard else {})
+
+    def automaton(name: str, *edges: object, locations: str) -> object:
+        places = [{"name": location} for location in locations]
+        return {"name": name, "locations": places, "initial-locations": [locations[0]], "edges": edges}
+
+    is_early, later = {"op": "<", "left": "now", "right": 2}, {"op": "+", "left": "now", "right": 1}
+    never = {"op": "G", "exp": {"op": "¬", "exp": "is_late"}}
+    formula = {"op": "filter", "fun": "values", "values": {"op": "Pmin", "exp": never}, "states": {"op": "initial"}}
+    flag = {"type": "bool", "initial-value": False}
+    model = {
+        "jani-version": 1,
+        "name": "late",
+        "type": "mdp",
+        "metadata": {"clock": {"automaton": "clock", "actions": ["tick"], "step": "1 s"}, "reaction-time": "any"},
+        "actions": [{"name": "tick"}],
+        "variables": [
+            {
+                "name": "now",
+                "type": {"kind": "bounded", "base": "int", "lower-bound": 0, "upper-bound": 2},
+                "initial-value": 0,
+            },
+            {"name": "is_over", **flag},
+            {"name": "is_late", **flag},
+        ],
+        "automata": [
+            automaton(
+                "clock",
+                edge("a", is_early, "tick", "a", now=later),
+                edge("a", {"op": "¬", "exp": is_early}, "tick", "b", is_over=True),
+                locations="ab",
+            ),
+            automaton("worker", edge("a", None, "", "b", is_late="is_over"), locations="ab"),
+        ],
+        "system": {
+            "elements": [{"automaton": "clock"}, {"automaton": "worker"}],
+            "syncs": [{"synchronise": ["tick", None], "result": "tick"}],
+        },
+        "properties": [{"name": "in_time", "expression": formula}],
+    }
+    file = tmp_path / "late.jani"
+    file.write_text(json.dumps(model))
+    assert run(["verify", str(file)]) == 0
+    shown = capsys.readouterr().out
+    assert "it fails, for example, if `worker` is delayed from 0 s until the end" in shown

@@ -21,8 +21,8 @@ class DelayedActor(Record, frozen=True):
 
     Attributes:
         actor: a noun phrase for the automaton.
-        since, until: the numbers of steps of the clock before and after the delay; `until` is `None` if it lasts until
-            the end of the trace.
+        since, until: the numbers of steps with which the clock has advanced the time before and after the delay;
+            `until` is `None` if it lasts until the end of the model's time.
     """
 
     actor: str
@@ -34,16 +34,17 @@ def longest_delay(trace: ShortestTrace, clock: Clock) -> DelayedActor | None:
     """The longest delay in a trace; of equally long ones, the first. `None` if nothing is delayed."""
     checker = trace.checker
     owners, begins = _deciders(checker, clock)
+    instance, ends = _ends_of_time(checker, clock)
     compiled = checker.compiled(trace.compiled_property)
     kernel = Kernel(compiled.program, compiled.goal)
     kernel.root(trace.path.root)
-    now, since = 0, dict[int, int]()
+    now, since, is_over = 0, dict[int, int](), False
     delays: list[tuple[int, int, int, bool]] = []
 
-    def end(owner: int, *, is_last: bool = False) -> None:
+    def end(owner: int) -> None:
         start = since.pop(owner)
         if now > start:
-            delays.append((now - start, start, owner, is_last))
+            delays.append((now - start, start, owner, is_over))
 
     for step in trace.path.steps:
         able = {owners[vector] for vector, _, _ in kernel.choices() if vector in owners}
@@ -51,16 +52,19 @@ def longest_delay(trace: ShortestTrace, clock: Clock) -> DelayedActor | None:
             end(owner)
         for owner in able:
             since.setdefault(owner, now)
-        now += step.vector in begins
         if owners.get(step.vector) in since:
             end(owners[step.vector])
         kernel.go(step.vector, list(step.edges), list(step.ways))
+        if step.vector in begins:
+            # The last step of the clock only ends the time, so no time passes in it.
+            is_over = kernel.location(instance) in ends
+            now += not is_over
     for owner in list(since):
-        end(owner, is_last=True)
+        end(owner)
     if not delays:
         return None
-    length, start, owner, is_last = max(delays, key=lambda delay: (delay[0], -delay[1]))
-    return DelayedActor(checker.actors[owner], start, None if is_last else start + length)
+    length, start, owner, lasts = max(delays, key=lambda delay: (delay[0], -delay[1]))
+    return DelayedActor(checker.actors[owner], start, None if lasts else start + length)
 
 
 def endless_delay(
@@ -94,6 +98,15 @@ def endless_delay(
     what = f"{'repeats' if len(names) == 1 else 'repeat'} {'a step' if count == 1 else f'{count:,} steps'}"
     verb = "fails" if endless.path.verdict == FALSE else "holds"
     return f"it {verb}, for example, if {checker.actors[waiting[0]]} is delayed for ever while {who} {what}"
+
+
+def _ends_of_time(checker: ModelChecker, clock: Clock) -> tuple[int, frozenset[int]]:
+    """The number of the clock's element, and the numbers of its locations that it never leaves."""
+    names = [element.automaton for element in checker.model.system.elements]
+    instance = names.index(clock.automaton)
+    sources = {edge.source for edge in checker.legend.layout.instances[instance].automaton.edges}
+    locations = enumerate(checker.legend.locations)
+    return instance, frozenset(n for n, (owner, name) in locations if owner == instance and name not in sources)
 
 
 def _deciders(checker: ModelChecker, clock: Clock | None) -> tuple[dict[int, int], set[int]]:
