@@ -212,6 +212,7 @@ def test_met_under_uniform_choices(command: Command, tmp_path: Path) -> None:
     done = command("verify", name, *options)
     assert done.status == 0
     assert "expected ≥ 0.9: met under uniform choices" in done.out
+    assert "\n1 of 1 expectation is met only under uniform choices, not known to be met under" in done.out
     assert done.out.count("\nnote: ") == 1
     known = r"\nnote: the minimum of p over all schedulers is not known \(up to \d+ sampled schedulers show no "
     assert re.search(known, done.out)

@@ -74,7 +74,7 @@ def as_text(
     ]
     unexpected = _without_expectation(results) if is_whole or any(result.verdicts for result in results) else []
     note = scheduler_report.note(open_, knows_reactions=any(result.conditional for result in results))
-    return "".join(f"{line}\n" for line in (*blocks, *unexpected, *note))
+    return "".join(f"{line}\n" for line in (*blocks, *unexpected, *_met_only_uniformly(results), *note))
 
 
 def as_brief_text(results: Sequence[Result], place_of: PlaceOf, level: StuckLevel = StuckLevel.WARNING) -> str:
@@ -94,6 +94,19 @@ def _without_expectation(results: Sequence[Result]) -> list[str]:
     """A line with the names of the properties for which nothing is expected; empty if there are none."""
     names = [result.name for result in results if result.has_no_expectation]
     return [f"{NO_EXPECTATION}: {', '.join(names)}"] if names else []
+
+
+def _met_only_uniformly(results: Sequence[Result]) -> list[str]:
+    """A line with the number of expectations that are met only under uniform choices, although the exit status is that
+    of met ones; empty if there are none."""
+    verdicts = [(result.name, verdict) for result in results for verdict in result.verdicts]
+    names = [name for name, verdict in verdicts if verdict.is_uniform]
+    if not names:
+        return []
+    what = f"expectation{'' if len(verdicts) == 1 else 's'} {'is' if len(names) == 1 else 'are'}"
+    shown = ", ".join(dict.fromkeys(names))
+    known = "not known to be met under all schedulers"
+    return [f"{len(names):,} of {len(verdicts):,} {what} met only under uniform choices, {known}: {shown}"]
 
 
 def one_as_text(result: Result, place_of: PlaceOf, level: StuckLevel = StuckLevel.WARNING, shown: str = "") -> str:
