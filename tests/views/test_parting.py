@@ -8,10 +8,12 @@ from pathlib import Path
 import pytest
 
 from roaml import api
+from roaml.record import replace
 from roaml.smc.story import Story
 from roaml.verification.counterexample import unwanted_trace
 from roaml.verification.nearest import nearest
 from roaml.verification.results import Result
+from roaml.views.cause import cause
 from roaml.views.parting import parting, parting_text
 from roaml.views.turn_words import details
 
@@ -70,6 +72,38 @@ def test_the_nearest_passing_trace_parts_where_the_block_is_dropped(result: Resu
     lines = parting_text(near.parting, near.story, lambda _: "arm.ascxml:38").splitlines()
     assert lines[0].endswith(f"passed: the first {near.parting.common} turns are the same, then Arm at 5.000 s")
     assert [line.split()[0] for line in lines[1:]] == ["here", "there"]
+
+
+def test_the_first_line_begins_where_the_traces_part(result: Result) -> None:
+    """The last outcome of chance is named as what decides, and not once more at the end of the sentence."""
+    assert result.traces is not None
+    story = story_of(result)
+    near = nearest(result, story, result.traces.target.clock)
+    assert near is not None
+    first = cause(story, lambda _: "", (near.parting, near.story))
+    other = near.story.recording.trace
+    assert first == (
+        "by chance (0.5), Arm sends /block/dropped (data: true) and /arm/gripper (data: false) at 5.000 s, "
+        f"unlike in trace {other}, which passed; never_placed_empty fails at 10.000 s: "
+        "Arm receives /arm/command (data: 3) in still and sends /block/placed (data: false)"
+    )
+    back = parting(near.story, story)
+    assert back is not None
+    assert "does not send /block/dropped (data: true) and /arm/gripper (data: false) at 5.000 s" in cause(
+        near.story, lambda _: "", (back, story)
+    )
+
+
+def test_a_later_outcome_of_chance_decides(result: Result) -> None:
+    """The turn in which traces part is not named if chance decides something after it."""
+    assert result.traces is not None
+    story = story_of(result)
+    near = nearest(result, story, result.traces.target.clock)
+    assert near is not None
+    early = replace(near.parting.here, number=1)
+    first = cause(story, lambda _: "", (replace(near.parting, here=early), near.story))
+    assert first == cause(story, lambda _: "")
+    assert first.endswith("; the last outcome of chance was that of Arm at 5.000 s (0.5)")
 
 
 def test_no_other_trace_has_more_in_common(result: Result) -> None:

@@ -74,6 +74,7 @@ if TYPE_CHECKING:
     from roaml.mocks.network import MockedTree
     from roaml.project.settings import Settings
     from roaml.smc.story import Story
+    from roaml.verification.nearest import Nearest
     from roaml.verification.searches import Searches
     from roaml.verification.tree_outcome import TreeOutcome
 
@@ -226,7 +227,7 @@ class _Verification:
         self.limits = verifier.options
         self.outputs = outputs_of(options, self.target.files)
         self.stuck_result: stuck.StuckResult | None = None
-        self.partings: dict[str, str] = {}
+        self.partings: dict[str, Nearest] = {}
         self.state = None if options.resume is None else SavedState(options.resume, self.limits)
         self.results: list[Result] = []
         self.faults: list[FaultError] = []
@@ -674,11 +675,10 @@ class _Verification:
     def _compare(self, result: Result, story: Story) -> None:
         """Keep where a trace parts from the nearest one with the opposite verdict."""
         from roaml.verification.nearest import nearest  # noqa: PLC0415
-        from roaml.views.parting import parting_text  # noqa: PLC0415
 
         near = nearest(result, story, self.target.clock)
         if near is not None:
-            self.partings[story.property] = parting_text(near.parting, near.story, self._place)
+            self.partings[story.property] = near
 
     def _shortest(self, result: Result, exact: Exact) -> Iterator[Story]:
         """The explanation of the shortest trace that contradicts an expectation."""
@@ -703,6 +703,7 @@ class _Verification:
 
     def _story_texts(self, stories: Sequence[Story]) -> str:
         """The text of all explanations. Parts that several of them share are written once."""
+        from roaml.views.parting import parting_text  # noqa: PLC0415
         from roaml.views.story import as_text as story_text  # noqa: PLC0415
         from roaml.views.story import waits_of  # noqa: PLC0415
 
@@ -710,8 +711,12 @@ class _Verification:
         shown_at: dict[object, str] = {}
         for story in stories:
             chain = stuck.chain_of(waits_of(story))
-            text = story_text(story, self._place, shown_at.get(chain, "") if chain else "")
-            texts.append(text + self.partings.get(story.property, ""))
+            where, near = shown_at.get(chain, "") if chain else "", self.partings.get(story.property)
+            if near is None:
+                texts.append(story_text(story, self._place, where))
+            else:
+                text = story_text(story, self._place, where, (near.parting, near.story))
+                texts.append(text + parting_text(near.parting, near.story, self._place))
             shown_at.setdefault(chain, f"above, at the end of the trace of `{story.property}`")
         text = "\n".join(texts)
         return text + explained(text, self.target.model, self._place)

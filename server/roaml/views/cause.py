@@ -13,6 +13,7 @@ from roaml.smc.end import End
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.story import Story
 from roaml.views.actors import tree_phrase
+from roaml.views.parting import Parting, other_course
 from roaml.views.turn_words import chance, details, draws, what
 from roaml.views.turns import Turn, turns
 
@@ -29,17 +30,43 @@ _OTHER_ENDS: Mapping[End, str] = MappingProxyType(
 )
 
 
-def cause(story: Story, place_of: Callable[[Origin], str]) -> str:
+def cause(story: Story, place_of: Callable[[Origin], str], near: tuple[Parting, Story] | None = None) -> str:
     """Why the property holds or fails, in one sentence; "" if the trace does not decide it, or if the story is not
-    about a property.
+    about a property. If a trace with the opposite verdict is known, the sentence begins with the turn in which that
+    trace takes another course, unless chance decides something later.
 
     Args:
         place_of: file and line of an origin.
+        near: where the trace parts from one with the opposite verdict, and that trace.
+    """
+    all_turns = turns(story)
+    if near is None or not _is_last(near[0], all_turns):
+        return _why(story, all_turns, place_of, 0)
+    why = _why(story, all_turns, place_of, near[0].here.number)
+    return f"{other_course(*near, place_of)}; {why}" if why else ""
+
+
+def _is_last(difference: Parting, all_turns: Sequence[Turn]) -> bool:
+    """Whether the turn in which traces part comes before the end, and chance decides nothing after it."""
+    number = difference.here.number
+    if difference.there is None or any(turn.ends and turn.number <= number for turn in all_turns):
+        return False
+    root = _ended_root(all_turns)
+    node = None if root is None else _responsible(all_turns[: all_turns.index(root)])
+    if node is not None and node.number == number:
+        return False
+    return not any(turn.number > number and any(draws(turn)) for turn in all_turns)
+
+
+def _why(story: Story, all_turns: Sequence[Turn], place_of: Callable[[Origin], str], named: int) -> str:
+    """Why the property holds or fails, from the end of the trace.
+
+    Args:
+        named: the number of a turn that the sentence names already; 0 if there is none.
     """
     verb = {TRUE: "holds", FALSE: "fails"}.get(story.recording.verdict, "")
     if story.is_whole or not verb or not story.steps:
         return ""
-    all_turns = turns(story)
     subject = f"{story.property} {verb}"
     if story.recording.end is End.TIME:
         subject += _at(story.clock[-1])
@@ -47,8 +74,9 @@ def cause(story: Story, place_of: Callable[[Origin], str]) -> str:
             return f"{subject}, because the time ends before what the property requires has happened"
         return f"{subject}, because nothing has violated it when the time ends"
     if story.recording.end in _OTHER_ENDS:
-        return f"{subject}{_at(story.clock[-1])}, {_OTHER_ENDS[story.recording.end]}"
-    root = next((turn for turn in reversed(all_turns) if turn.ends and _is_root(turn)), None)
+        why = _OTHER_ENDS[story.recording.end]
+        return f"{subject}{_at(story.clock[-1])}, {why}{_chance_before(all_turns, len(story.steps) + 1, named)}"
+    root = _ended_root(all_turns)
     if root is not None:
         why = _why_tree_ends(all_turns[: all_turns.index(root)], root.result, place_of)
         end = f"{tree_phrase(root.automaton, (a.name for a in story.automata))} ends with {root.result}"
@@ -57,7 +85,12 @@ def cause(story: Story, place_of: Callable[[Origin], str]) -> str:
     last = next((turn for turn in reversed(all_turns) if turn.ends), None)
     if last is None:
         return ""
-    return f"{subject}{_at(last.time)}: {_sentence(last, place_of)}{_chance_before(all_turns, last)}"
+    return f"{subject}{_at(last.time)}: {_sentence(last, place_of)}{_chance_before(all_turns, last.number, named)}"
+
+
+def _ended_root(all_turns: Sequence[Turn]) -> Turn | None:
+    """The turn in which a tree ended, and with it the trace; `None` if the trace ended otherwise."""
+    return next((turn for turn in reversed(all_turns) if turn.ends and _is_root(turn)), None)
 
 
 def _at(time: float | None) -> str:
@@ -120,10 +153,15 @@ def _sentence(turn: Turn, place_of: Callable[[Origin], str]) -> str:
     return f"{turn.who} {what(turn)}{f' and {effects}' if effects else ''}{_place(turn, place_of)}"
 
 
-def _chance_before(all_turns: Sequence[Turn], last: Turn) -> str:
-    """The last relevant outcome of chance before a turn; "" if there is none."""
-    drawn = next((t for t in reversed(all_turns) if t is not last and t.number < last.number and any(draws(t))), None)
-    if drawn is None:
+def _chance_before(all_turns: Sequence[Turn], end: int, named: int) -> str:
+    """The last relevant outcome of chance before a step; "" if there is none, or if it is that of the turn `named`.
+
+    Args:
+        end: the number of the step.
+        named: see `_why`.
+    """
+    drawn = next((t for t in reversed(all_turns) if t.number < end and any(draws(t))), None)
+    if drawn is None or drawn.number == named:
         return ""
     odds = [chance(part.destination.probability) for part in draws(drawn)][-1]
     return f"; the last outcome of chance was that of {drawn.who}{_at(drawn.time)} ({odds.removeprefix('by chance, ')})"

@@ -12,11 +12,16 @@ from collections.abc import Callable, Mapping, Sequence
 
 from roaml.jani.node import Origin
 from roaml.record import Record, replace
-from roaml.smc.record import VERDICTS
+from roaml.smc.record import SELECTED, VERDICTS
 from roaml.smc.story import Story
-from roaml.views.story import trace_name
-from roaml.views.turn_words import details, what
+from roaml.views.trace_names import trace_name
+from roaml.views.turn_words import chance, details, draws, what
 from roaml.views.turns import Turn, turns
+
+MAX_NAMED_EFFECTS = 3
+"""The maximum number of effects in the clause about a turn."""
+_SENDS, _CHANGE = "sends ", " → "
+"""How `roaml.views.turn_words.details` begins an event, and what it writes between two values."""
 
 PlaceOf = Callable[[Origin], str]
 
@@ -106,6 +111,58 @@ def parting_heading(difference: Parting, other: Story) -> str:
     at = "" if turn.time is None else f" at {turn.time:.3f} s"
     same = f"the first {count:,} {'turn is' if count == 1 else 'turns are'} the same"
     return f"{trace_name(other)} {VERDICTS[other.recording.verdict].value}: {same}, then {turn.who}{at}"
+
+
+def other_course(difference: Parting, other: Story, place_of: PlaceOf) -> str:
+    """What the automaton does in the first trace where the second one takes another course, as a clause.
+
+    Args:
+        other: the second trace.
+        place_of: file and line of an origin.
+    """
+    here, there = difference.here, difference.there
+    odds = [chance(part.destination.probability) for part in draws(here)]
+    done = what(here)
+    if there is not None and done == what(there):
+        done = _own_effects(here, there) or _other_effects(here, there) or done
+    by = ""
+    if odds:
+        number = odds[-1].removeprefix("by chance").removeprefix(", ")
+        by = f"by chance ({number}), " if number else "by chance, "
+    at = "" if here.time is None else f" at {here.time:.3f} s"
+    place = "" if here.origin is None else place_of(here.origin)
+    name = trace_name(other)
+    which = " that" if other.recording.trace == SELECTED else ", which"
+    verdict = VERDICTS[other.recording.verdict].value
+    return f"{by}{here.who} {done}{at}{f' ({place})' if place else ''}, unlike in {name}{which} {verdict}"
+
+
+def _own_effects(here: Turn, there: Turn) -> str:
+    """The events that only the first of two turns sends or, if there are none, the changes of only this turn."""
+    known = set(details(there))
+    own = [effect for effect in details(here) if effect not in known]
+    sent = [effect.removeprefix(_SENDS) for effect in own if effect.startswith(_SENDS)]
+    if sent:
+        return f"sends {_listed(sent)}"
+    changes = [effect for effect in own if _CHANGE in effect]
+    return f"changes {_listed(changes)}" if changes else ""
+
+
+def _other_effects(here: Turn, there: Turn) -> str:
+    """The same for a turn that has no effect of its own: what only the second turn sends or changes."""
+    known = set(details(here))
+    other = [effect for effect in details(there) if effect not in known]
+    sent = [effect.removeprefix(_SENDS) for effect in other if effect.startswith(_SENDS)]
+    if sent:
+        return f"does not send {_listed(sent)}"
+    changed = [effect.partition(": ")[0] for effect in other if _CHANGE in effect]
+    return f"does not change {_listed(changed)}" if changed else ""
+
+
+def _listed(effects: Sequence[str]) -> str:
+    more = len(effects) - MAX_NAMED_EFFECTS
+    shown = [*effects[:MAX_NAMED_EFFECTS], *([f"{more:,} more"] if more > 0 else [])]
+    return " and ".join(filter(None, (", ".join(shown[:-1]), *shown[-1:])))
 
 
 def _turn(turn: Turn, place_of: PlaceOf) -> str:

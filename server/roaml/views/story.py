@@ -12,12 +12,14 @@ from roaml.jani.node import Origin
 from roaml.regex import regex
 from roaml.scxml.names import read_tree_event
 from roaml.smc.end import End
-from roaml.smc.record import SELECTED, SHORTEST, VERDICTS, TraceVerdict
+from roaml.smc.record import VERDICTS, TraceVerdict
 from roaml.smc.story import Story
 from roaml.views.cause import cause
 from roaml.views.event_words import message_phrases
 from roaml.views.folding import LeftOut, Repetition, Shown, folded, without_middle
 from roaml.views.observed import reads_observer
+from roaml.views.parting import Parting
+from roaml.views.trace_names import trace_name
 from roaml.views.turn_words import chance, details, draws, message_text, what
 from roaml.views.turns import Turn, turns
 from roaml.views.waiting import Wait, help_line, waits
@@ -107,16 +109,17 @@ def turn_line(turn: Turn, place_of: PlaceOf) -> StoryLine:
     )
 
 
-def as_text(story: Story, place_of: PlaceOf, shown: str = "") -> str:
+def as_text(story: Story, place_of: PlaceOf, shown: str = "", near: tuple[Parting, Story] | None = None) -> str:
     """The explanation as text for a terminal.
 
     Args:
         shown: the place in the output where the waiting automata are already shown; "" if they are to be shown here.
+        near: where the trace parts from one with the opposite verdict, and that trace.
     """
     waiting = waits_of(story)
     table = [*_turn_lines(story, place_of), *([] if shown else _waiting(story, place_of))]
     widths = [max((len(str(row[i])) for row in table), default=0) for i in range(4)]
-    why = cause(story, place_of)
+    why = cause(story, place_of, near)
     text = f"{why}\n  {heading(story)}\n" if why else f"{heading(story)}\n"
     text += f"  {story.comment}\n" if story.comment else ""
     for row in table:
@@ -147,12 +150,6 @@ def heading(story: Story) -> str:
     read = [name for name in story.variables if not reads_observer(name, automata) and not _is_status(name)]
     variables = message_phrases(read, automata)
     return text + (f" (it reads {', '.join(variables)})" if variables else "")
-
-
-def trace_name(story: Story) -> str:
-    """The name of a trace in a sentence, such as `trace 20`."""
-    number = story.recording.trace
-    return {SHORTEST: "the shortest trace", SELECTED: "a trace"}.get(number, f"trace {number}")
 
 
 def _is_status(name: str) -> bool:
