@@ -99,6 +99,20 @@ def test_steps_of_hand_written_models_are_listed_one_by_one() -> None:
     assert story_lines == [("a", "meet: s → t", ()), ("b", "meet: s → t", ()), ("a", "t → u", ("x: 0 → 1",))]
 
 
+def test_the_probability_of_an_outcome_is_shown_if_it_does_not_depend_on_the_state() -> None:
+    """A probability may be computed from constants; the other one depends on a variable."""
+    known = edge("s", way("t", op("/", "k", 4), x=1), way("t", op("-", 1, op("/", "k", 4)), x=1))
+    unknown = edge("t", way("u", op("/", "y", 4), x=2), way("u", op("-", 1, op("/", "y", 4)), x=2))
+    written = document(
+        automaton("a", "s t u", [known, unknown]),
+        variables=[variable("x"), variable("y", initial=2)],
+        properties={"p": probability(op("F", op("=", "x", 2)))},
+    )
+    written["constants"] = [{"name": "k", "type": "int", "value": 2}]
+    odds = [next(iter(line.details)) for line in lines(walked(written), lambda _: "")]
+    assert odds == ["by chance, 0.5", "by chance"]
+
+
 def test_repetitions_are_folded() -> None:
     count = edge("s", way("s", x=op("+", "x", 1)))
     goal = {"p": probability(op("F", op("=", "x", 9)))}

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple, TypeAlias
 
 from roaml.exhaustive import Vocabulary
+from roaml.jani.constants import constant_values
 from roaml.jani.model import Automaton, Destination, Edge, System
 from roaml.jani.types import Type, element_of, is_text
 from roaml.record import Record
@@ -190,6 +191,7 @@ class Recorder:
         compiled = checker.compiled(property_)
         self.legend = checker.legend
         self.system = checker.model.system
+        self.constants = constant_values(checker.model)
         self._marks = compiled.program.location_mark
         self.compiled_property = property_
         self.seed = seed

@@ -12,7 +12,8 @@ from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from roaml.jani.model import Automaton
-from roaml.record import Record
+from roaml.jani.semantics import Value
+from roaml.record import Record, field
 from roaml.smc.end import End
 from roaml.smc.record import Plain, RecordedVariable, Recorder, Recording, TraceStep
 from roaml.smc.standstill import Standstill
@@ -31,6 +32,7 @@ class Story(Record, frozen=True):
         start: the variables of the model before the first step.
         standstill: the final state, if the trace is stuck.
         is_whole: whether all steps are shown, not only the relevant ones.
+        constants: the values of the constants of the model.
         comment: a description of what the property requires, if the model contains one.
     """
 
@@ -46,6 +48,7 @@ class Story(Record, frozen=True):
     standstill: Standstill | None = None
     is_whole: bool = False
     comment: str = ""
+    constants: Mapping[str, Value] = field(default_factory=dict)
 
 
 def build_story(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -> Story:
@@ -75,6 +78,7 @@ def build_story(recorder: Recorder, trace: int, clock: tuple[str, str] | None = 
         start,
         recorder.standstill() if recording.end is End.STUCK else None,
         comment=recorder.compiled_property.property.comment or "",
+        constants=recorder.constants,
     )
 
 

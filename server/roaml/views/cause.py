@@ -14,7 +14,7 @@ from roaml.smc.program import FALSE, TRUE
 from roaml.smc.story import Story
 from roaml.views.actors import tree_phrase
 from roaml.views.parting import Parting, other_course
-from roaml.views.turn_words import chance, details, draws, what
+from roaml.views.turn_words import chances, details, draws, what
 from roaml.views.turns import Turn, turns
 
 _ENDS = ("SUCCESS", "FAILURE")
@@ -138,8 +138,8 @@ def _node(turn: Turn, place_of: Callable[[Origin], str]) -> str:
 
 
 def _returned(turn: Turn) -> str:
-    chances = [chance(part.destination.probability) for part in draws(turn)]
-    return f"returns {turn.status}{f' ({chances[-1]})' if chances else ''}"
+    odds = chances(turn)
+    return f"returns {turn.status}{f' ({odds[-1]})' if odds else ''}"
 
 
 def _place(turn: Turn, place_of: Callable[[Origin], str]) -> str:
@@ -163,5 +163,5 @@ def _chance_before(all_turns: Sequence[Turn], end: int, named: int) -> str:
     drawn = next((t for t in reversed(all_turns) if t.number < end and any(draws(t))), None)
     if drawn is None or drawn.number == named:
         return ""
-    odds = [chance(part.destination.probability) for part in draws(drawn)][-1]
+    odds = chances(drawn)[-1]
     return f"; the last outcome of chance was that of {drawn.who}{_at(drawn.time)} ({odds.removeprefix('by chance, ')})"

@@ -15,7 +15,7 @@ from roaml.record import Record, replace
 from roaml.smc.record import SELECTED, VERDICTS
 from roaml.smc.story import Story
 from roaml.views.trace_names import trace_name
-from roaml.views.turn_words import chance, details, draws, what
+from roaml.views.turn_words import chances, details, what
 from roaml.views.turns import Turn, turns
 
 MAX_NAMED_EFFECTS = 3
@@ -121,7 +121,7 @@ def other_course(difference: Parting, other: Story, place_of: PlaceOf) -> str:
         place_of: file and line of an origin.
     """
     here, there = difference.here, difference.there
-    odds = [chance(part.destination.probability) for part in draws(here)]
+    odds = chances(here)
     done = what(here)
     if there is not None and done == what(there):
         done = _own_effects(here, there) or _other_effects(here, there) or done

@@ -20,7 +20,7 @@ from roaml.views.folding import LeftOut, Repetition, Shown, folded, without_midd
 from roaml.views.observed import reads_observer
 from roaml.views.parting import Parting
 from roaml.views.trace_names import trace_name
-from roaml.views.turn_words import chance, details, draws, message_text, what
+from roaml.views.turn_words import chances, details, message_text, what
 from roaml.views.turns import Turn, turns
 from roaml.views.waiting import Wait, help_line, waits
 
@@ -265,7 +265,7 @@ def _key(turn: Turn) -> str | None:
     if turn.ends or turn.observed:
         return None
     texts = (_NUMBER.sub("#", text) for text in (what(turn), *details(turn)))
-    return "\n".join((turn.who, *(chance(part.destination.probability) for part in draws(turn)), *texts))
+    return "\n".join((turn.who, *chances(turn), *texts))
 
 
 def _folded_text(shown: Repetition | LeftOut, shown_turns: Sequence[Turn]) -> str:

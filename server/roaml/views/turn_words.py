@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
-from roaml.jani.expressions import Integer, Real
 from roaml.jani.model import Clause
+from roaml.jani.semantics import EvaluationError, Value, evaluate
 from roaml.scxml.names import CLOCK, MOCK_FAILURES, MOCK_SUCCESSES, TREE_ROOT_PREFIX
 from roaml.smc.record import AutomatonStep
 from roaml.views.arrays import DeclaredChange, DeclaredValue
@@ -57,7 +57,7 @@ def details(turn: Turn) -> Iterator[str]:
         return
     if turn.automaton == CLOCK:
         return
-    yield from (chance(part.destination.probability) for part in draws(turn))
+    yield from chances(turn)
     yield from (
         _change(change, turn)
         for change in turn.changes
@@ -66,10 +66,20 @@ def details(turn: Turn) -> Iterator[str]:
     yield from (f"sends {message_text(message)}" for message in turn.sent)
 
 
-def chance(probability: Clause | None) -> str:
-    """A phrase for an outcome with this probability."""
+def chances(turn: Turn) -> list[str]:
+    """A phrase for each outcome of chance in a turn, with its probability unless this depends on the state."""
+    return [_chance(part.destination.probability, turn.constants) for part in draws(turn)]
+
+
+def _chance(probability: Clause | None, constants: Mapping[str, Value]) -> str:
     known = probability.exp if probability is not None else None
-    return f"by chance, {known.value:g}" if isinstance(known, (Integer, Real)) else "by chance"
+    if known is None:
+        return "by chance"
+    try:
+        value = evaluate(known, constants, {})
+    except EvaluationError:
+        return "by chance"
+    return f"by chance, {value:g}" if isinstance(value, (int, float)) else "by chance"
 
 
 def message_text(message: Message) -> str:

@@ -13,6 +13,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
+from roaml.jani.semantics import Value
 from roaml.record import Record, field
 from roaml.scxml.names import (
     NODE_AUTOMATON,
@@ -66,6 +67,7 @@ class Turn(Record):
         states: location of the automaton -> the state to which it belongs.
         is_library_node: whether the automaton is a node of the tree whose behaviour is that of a library or of a mock,
             so that its states are not those of a machine of the user.
+        constants: the values of the constants of the model.
         actor: the phrase of `roaml.views.actors.actors_of` for the automaton.
     """
 
@@ -86,6 +88,7 @@ class Turn(Record):
     states: Mapping[str, str] = field(default_factory=dict)
     is_library_node: bool = False
     actor: str = ""
+    constants: Mapping[str, Value] = field(default_factory=dict)
 
     @property
     def automaton(self) -> str:
@@ -261,6 +264,7 @@ class _Reader:
                 together = step.action if len(actors) > 1 and heard is None else None
                 turn = Turn(part.instance, step.number, self._story.clock[index], heard, together)
                 turn.phrases, turn.states = self._phrases(part.instance), self._states(part.instance)
+                turn.constants = self._story.constants
                 turn.actor = self._actors[part.automaton]
                 turn.is_library_node = part.instance in self._library_nodes
                 if is_observer(part.automaton):
