@@ -144,3 +144,50 @@ def test_a_variable_that_counts_and_is_never_read(value: str, severity: Severity
 """
     diagnostics, _ = check_text(tmp_path, text)
     assert [d.severity for d in diagnostics if d.code == "unused-variable"] == [severity]
+
+
+def severities(folder: Path, text: str, code: str) -> list[Severity]:
+    diagnostics, _ = check_text(folder, text)
+    return [d.severity for d in diagnostics if d.code == code]
+
+
+OVERWRITTEN = """
+<ascxml name="M" version="1.0" initial="a">
+    <datamodel><data id="x" type="int32" expr="0" /></datamodel>
+    <state id="a"><onentry><assign location="x" expr="{}" /><assign location="x" expr="3" /></onentry></state>
+</ascxml>
+"""
+
+
+@pytest.mark.parametrize(("first", "severity"), [("0", Severity.INFORMATION), ("1", Severity.WARNING)])
+def test_the_initial_value_may_be_overwritten(tmp_path: Path, first: str, severity: Severity) -> None:
+    assert severities(tmp_path, OVERWRITTEN.format(first), "overwritten-value") == [severity]
+
+
+FORCED = """
+<root BTCPP_format="4"><BehaviorTree ID="A"><ForceSuccess>{}</ForceSuccess></BehaviorTree></root>
+"""
+
+
+@pytest.mark.parametrize(
+    ("condition", "severity"),
+    [('<Condition ID="IsOpen"/>', Severity.INFORMATION), ('<ScriptCondition code="1 &lt; 2"/>', Severity.WARNING)],
+)
+def test_an_unknown_condition_may_have_effects(tmp_path: Path, condition: str, severity: Severity) -> None:
+    assert severities(tmp_path, FORCED.format(condition), "hidden-failure") == [severity]
+
+
+MEETING = """
+<root BTCPP_format="4"><BehaviorTree ID="A"><Sequence>
+    <Look {0}="{{{0}}}" {1}="{{{1}}}"/><Meet robot_{0}="{{{0}}}" robot_{1}="{{{0}}}"/>
+</Sequence></BehaviorTree></root>
+"""
+
+
+@pytest.mark.parametrize(
+    ("names", "severity"), [(("place1", "place2"), Severity.INFORMATION), (("x", "y"), Severity.WARNING)]
+)
+def test_two_ports_may_get_the_same_of_several_numbered_entries(
+    tmp_path: Path, names: tuple[str, str], severity: Severity
+) -> None:
+    assert severities(tmp_path, MEETING.format(*names), "copied-value") == [severity]

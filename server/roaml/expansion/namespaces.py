@@ -38,9 +38,13 @@ def report_repeated(instances: Iterable[ListedInstance], problems: Problems) -> 
 
 
 def _report(src: str, pair: list[ListedInstance], missing: str, problems: Problems) -> None:
-    """Report the instance whose name has a word of the namespace `missing`, or the second one."""
+    """Report the instance whose name has a word of the namespace `missing`, such as its number. Without such a name,
+    both may be in one namespace intentionally."""
     words = set(_words(missing)) - set(_words(pair[0].namespace))
-    wrong = 0 if pair[0].name is not None and words & set(_words(pair[0].name.value)) else 1
+    named = [index for index, one in enumerate(pair) if one.name and words & set(_words(one.name.value))]
+    if len(named) != 1:
+        return
+    wrong = named[0]
     message = (
         f"two instances of `{src}` are in the namespace `{pair[0].namespace}`, none is in `{missing}`, unlike those "
         f"of another file; did you mean `{missing}`?"

@@ -156,7 +156,8 @@ class PossibleStatuses:
     def endless(self, root: TreeNode) -> Iterator[tuple[TreeNode, TreeNode]]:
         """The plugins that never end, because they always return RUNNING and no node above them halts them: each with
         the node above it, if this continues with a running child without ticking earlier children again, and if further
-        nodes would follow."""
+        nodes would follow. An earlier child that takes time is an action; to stay where one has failed may be intended.
+        """
         statuses = self.statuses(root)
         above = {child: node for node in statuses for child in node.children}
         for node, possible in statuses.items():
@@ -169,8 +170,9 @@ class PossibleStatuses:
                 and not self._may_halt(node, above, statuses)
             ):
                 parent = above[node]
-                before = parent.children[: parent.children.index(node)]
-                if any(SUCCESS in statuses[child].ever for child in before) and self._continues(parent, above):
+                before = [statuses[child].ever for child in parent.children[: parent.children.index(node)]]
+                waits = any(SUCCESS in ever for ever in before) and not any(RUNNING in ever for ever in before)
+                if waits and self._continues(parent, above):
                     yield node, parent
 
     def _may_halt(

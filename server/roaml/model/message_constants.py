@@ -6,7 +6,7 @@ probably wrong.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -62,7 +62,8 @@ def field_choices(machine: Machine, typed: TypedMachine) -> tuple[FieldChoice, .
             uses.add(value, value.value.tree)
     for chart in machine.charts:
         uses.others |= set(_with_default(machine, chart))
-    return tuple(uses.choices())
+    acted = set(_acted_on(machine, uses.readers))
+    return tuple(choice for choice in uses.choices() if (choice.field.part, choice.field.handle) not in acted)
 
 
 class _Uses:
@@ -80,6 +81,8 @@ class _Uses:
         self.compared: dict[object, set[Fraction]] = {}
         self.held: dict[object, set[MessageField]] = {}
         self.others: set[object] = set()
+        self.readers: set[Handler] = set()
+        """The handlers that read a field of what they handle."""
 
     def add(self, value: TypedValue, tree: Expr) -> None:
         inner = {id(node.object) for node in walk(tree) if isinstance(node, Member)}
@@ -90,11 +93,16 @@ class _Uses:
                     number = constant_fraction(other)
                     if number is not None:
                         known.add(id(side))
-                        self.compared.setdefault(_key(self.machine, value, side), set()).add(number)
+                        key = _key(self.machine, value, side)
+                        self.compared.setdefault(key, set()).add(number)
+                        if isinstance(key, MessageField) and value.place.handler is not None:
+                            self.readers.add(value.place.handler)
         for node in walk(tree):
             if not isinstance(node, NameExpr | Member) or id(node) in inner or id(node) in known:
                 continue
             key = _key(self.machine, value, node)
+            if isinstance(key, MessageField) and value.place.handler is not None:
+                self.readers.add(value.place.handler)
             target = self.assigned.get(value.element) if node is tree and value.use is ValueUse.ASSIGNED else None
             if target is not None and isinstance(key, MessageField):
                 self.held.setdefault((value.place.chart.scope, target), set()).add(key)
@@ -147,6 +155,22 @@ def _with_default(machine: Machine, chart: Chart) -> Iterator[object]:
         for handler in state.handlers:
             if (handler.trigger, find_handle(machine, handler)) in unconditional:
                 yield from _named(machine, chart, handler, handler.cond)
+
+
+def _acted_on(machine: Machine, readers: Collection[Handler]) -> Iterator[tuple[ProtocolPart, str]]:
+    """The part and handle of what a state handles without a condition: it does something, whatever the fields are."""
+    for chart in machine.charts:
+        for state in chart.states:
+            for handler in state.handlers:
+                if handler.cond is not None or handler in readers or handler.trigger not in _DATA:
+                    continue
+                declaration = find_handle(machine, handler)
+                own = state.id.value if state.id is not None else ""
+                leaves = any(target.state is not None and target.state.value != own for target in handler.targets)
+                if declaration is None or declaration.handle is None or handler.trigger is None:
+                    continue
+                if leaves or any(target.body for target in handler.targets):
+                    yield handler.trigger, declaration.handle.value
 
 
 def _named(machine: Machine, chart: Chart, handler: Handler | None, cond: Expression | None) -> Iterator[object]:
@@ -223,12 +247,13 @@ def _constant(param: Param, fixed: Mapping[str, PortRead | Fraction]) -> tuple[F
 
 def unexpected(sent: Iterable[Fraction], expected: frozenset[Fraction]) -> tuple[Fraction, Fraction] | None:
     """The only constant that is sent and not expected, and the only one that is expected and never sent. `None` if
-    there are several or none, or if the expected constants are not successive, so that the receiver may be wrong."""
+    there are several or none, or if the expected constants are not successive, so that the receiver may be wrong. A
+    smaller constant than those that are expected, such as 0 or -1, usually means that there is nothing to do."""
     known = frozenset(sent)
     surplus, missing = known - expected, expected - known
     if len(surplus) != 1 or len(missing) != 1 or len(expected) < 3 or not _is_regular(expected):
         return None
-    return next(iter(surplus)), next(iter(missing))
+    return (next(iter(surplus)), next(iter(missing))) if max(surplus) > max(expected) else None
 
 
 def _is_regular(numbers: frozenset[Fraction]) -> bool:

@@ -3,14 +3,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from fractions import Fraction
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import constant
 from roaml.expr.tree import Call, Member
 from roaml.expr.types import Scalar
-from roaml.model.machine import Assign
+from roaml.model.behavior.knowledge import variables_in
+from roaml.model.machine import Assign, Chart, If, Statement, bodies
 from roaml.model.syntax import Expression
 from roaml.model.values.evaluate import place_of
 from roaml.model.waits import fixed_variables
@@ -34,8 +35,43 @@ def check(context: MachineContext) -> Iterator[Finding]:
             if isinstance(statement, Assign) and statement.location is not None:
                 place = place_of(statement.location.tree)
                 tree = statement.value.tree if isinstance(statement.value, Expression) else None
-                if place is not None and isinstance(tree, Call):
+                if place is not None and isinstance(tree, Call) and not _is_bounded(chart, statement, place):
                     yield from _check(tree, place, positive, fixed)
+
+
+def _is_bounded(chart: Chart, assign: Assign, place: str) -> bool:
+    """Whether the variable has something else that limits it: a condition under which it is assigned compares it, or it
+    also gets a negative constant, which usually means that its value is not known yet."""
+    for _, handler, body in bodies(chart):
+        above = _conditions_above(body, assign)
+        if above is not None:
+            conditions = (*above, handler.cond if handler is not None else None)
+            if any(cond is not None and place in variables_in((cond.tree,)) for cond in conditions):
+                return True
+    values = [data.value for data in chart.data if data.id is not None and data.id.value == place]
+    values += [s.value for s in chart.statements if isinstance(s, Assign) and _assigns(s, place)]
+    numbers = [constant(value.tree) for value in values if isinstance(value, Expression)]
+    return any(number is not None and number < 0 for number in numbers)
+
+
+def _assigns(statement: Assign, place: str) -> bool:
+    return statement.location is not None and place_of(statement.location.tree) == place
+
+
+def _conditions_above(body: Sequence[Statement], assign: Assign) -> tuple[Expression | None, ...] | None:
+    """The conditions of the branches in which `assign` is; `None` if it is not in `body`."""
+    for statement in body:
+        if statement is assign:
+            return ()
+        if isinstance(statement, If):
+            for branch in statement.branches:
+                inner = _conditions_above(branch.body, assign)
+                if inner is not None:
+                    return (*inner, branch.cond)
+            inner = _conditions_above(statement.otherwise.body, assign) if statement.otherwise else None
+            if inner is not None:
+                return (*inner, *(branch.cond for branch in statement.branches))
+    return None
 
 
 def _check(call: Call, place: str, positive: Collection[str], fixed: Collection[str]) -> Iterator[Finding]:

@@ -9,12 +9,14 @@ from roaml.diagnostics import Finding, Related, Severity
 from roaml.forest.forest import Forest
 from roaml.forest.names import entry_of
 from roaml.forest.ports import ports_of
+from roaml.forest.scripts import scripts_of
 from roaml.forest.statuses import PossibleStatuses
 from roaml.libraries import Node
 from roaml.model.tree import TreeNode
-from roaml.roles import NodeKind
+from roaml.roles import NodeKind, ProtocolPart
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.forest import trees_of
+from roaml.script.names import names_in
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
@@ -39,8 +41,12 @@ def check(context: TreeContext) -> Iterator[Finding]:
         if _name(node) in ("ForceSuccess", "ForceFailure") and node not in reported and len(node.children) == 1:
             condition = _condition(forest, node.children[0])
             if condition is not None:
-                message = f"`{_name(node)}` hides what the condition `{_name(condition)}` returns, so it has no effect"
-                yield RULE.at(node.element.name_span, f"{message}; remove one of them")
+                message = f"`{_name(node)}` hides what the condition `{_name(condition)}` returns"
+                if _is_unknown(forest, condition):
+                    message += ", which has no effect unless the condition does something else, too"
+                    yield RULE.at(node.element.name_span, message, severity=Severity.INFORMATION)
+                else:
+                    yield RULE.at(node.element.name_span, f"{message}, so it has no effect; remove one of them")
 
 
 def _condition(forest: Forest, node: TreeNode) -> TreeNode | None:
@@ -49,11 +55,34 @@ def _condition(forest: Forest, node: TreeNode) -> TreeNode | None:
         node = node.children[0]
     known = forest.known_node(node)
     is_condition = node.element.name == "Condition" or (known is not None and known.kind is NodeKind.CONDITION)
-    return node if is_condition and not node.children and not node.scripts and not _may_write(node, known) else None
+    if not is_condition or node.children or node.scripts or _may_write(forest, node, known):
+        return None
+    return None if _sends(forest, known) else node
 
 
-def _may_write(node: TreeNode, known: Node | None) -> bool:
+def _is_unknown(forest: Forest, node: TreeNode) -> bool:
+    """Whether nothing states what a node does: it is neither in a library nor a plugin of the system."""
+    known = forest.known_node(node)
+    return known is None or not (known.library or forest.is_machine(known))
+
+
+def _sends(forest: Forest, known: Node | None) -> bool:
+    """Whether a plugin sends messages, goals or events, which is another purpose than its result."""
+    if known is None or forest.system is None or not forest.is_machine(known):
+        return False
+    outline = forest.system.plugin(known.name)[1]
+    if outline is None:
+        return True
+    return bool(outline.sent) or any(
+        part in use.sends for use in outline.interfaces for part in (ProtocolPart.MESSAGE, ProtocolPart.GOAL)
+    )
+
+
+def _may_write(forest: Forest, node: TreeNode, known: Node | None) -> bool:
     """Whether a node may write to the blackboard, which is another purpose than its result."""
+    for script in scripts_of(forest, node):
+        if any(operator != "read" for _, operator in names_in(script.attribute.value)):
+            return True
     for setting in ports_of(node):
         port = known.port(setting.attribute.name) if known is not None else None
         if entry_of(setting) is not None and (port is None or port.direction.writes):

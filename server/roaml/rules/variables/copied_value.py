@@ -12,11 +12,13 @@ from roaml.expr.tree import Name as NameExpr
 from roaml.expr.types import Struct, Type
 from roaml.forest.names import entry_of
 from roaml.forest.ports import ports_of
+from roaml.model.behavior.knowledge import variables_in
 from roaml.model.machine import Assign, Chart, Handler, If, Param, RosSend, Send, SetOutput, Statement, bodies
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Expression, Value
 from roaml.model.tree import TreeNode
-from roaml.model.value_types import INTERFACE_KINDS, find_handle
+from roaml.model.value_types import INTERFACE_KINDS, ValueUse, find_handle
+from roaml.record import replace
 from roaml.regex import regex
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule, TreeContext, replacements
@@ -47,8 +49,28 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for _, handler, body in bodies(chart):
             for group in _groups(body):
                 for copy, other, meant in _suspicions(group):
-                    if _exists(context, chart, handler, meant.split(".")):
+                    if _exists(context, chart, handler, meant.split(".")) and not _is_start(
+                        context, chart, copy, meant
+                    ):
                         yield _finding(copy, other, meant, copy.value, meant)
+
+
+def _is_start(context: MachineContext, chart: Chart, copy: _Copy, meant: str) -> bool:
+    """Whether a value is probably where a variable begins, as in an empty range: the variable also gets other values,
+    and the variable that seems to be meant has another purpose."""
+    assigned = [s for s in chart.statements if isinstance(s, Assign) and isinstance(s.value, Expression)]
+    if copy.value.split(".")[0] in _ROOTS or not any(
+        s.value is not None and s.value.span == copy.span for s in assigned
+    ):
+        return False
+    others = [s for s in assigned if s.location is not None and s.location.text.strip() == copy.target]
+    others = [s for s in others if not any(same.value == copy.value for same in _copies("", s.value))]
+    return bool(others) and any(
+        meant.split(".", maxsplit=1)[0] in variables_in((value.value.tree,))
+        for value in context.typed.values
+        if value.place.chart.scope == chart.scope and isinstance(value.value, Expression)
+        if value.use is not ValueUse.LOCATION
+    )
 
 
 def _finding(copy: _Copy, other: _Copy, meant: str, written: str, fixed: str) -> Finding:
@@ -147,7 +169,11 @@ def in_tree(context: TreeContext) -> Iterator[Finding]:
         group = [_Copy(port, entry, spans[port]) for port, entry in bound.items()]
         for copy, other, meant in _suspicions(group):
             if meant in entries:
-                yield _finding(copy, other, meant, f"{{{copy.value}}}", f"{{{meant}}}")
+                finding = _finding(copy, other, meant, f"{{{copy.value}}}", f"{{{meant}}}")
+                words = _difference(copy.value, meant)
+                if words is not None and words[0].isdigit():  # one of several alike, which may be meant twice
+                    finding = replace(finding, severity=Severity.INFORMATION)
+                yield finding
         for copy, other in _exchanged(group):
             message = f"the ports `{copy.target}` and `{other.target}` are bound to each other's entries; exchange them"
             edits = (TextEdit(copy.span, f"{{{other.value}}}"), TextEdit(other.span, f"{{{copy.value}}}"))

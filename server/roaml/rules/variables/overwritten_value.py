@@ -3,11 +3,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.model.behavior.knowledge import variables_in
-from roaml.model.machine import Assign, CallChild, If, ReturnStatus, RosSend, Send, SetOutput, Statement, bodies
+from roaml.model.machine import (
+    Assign,
+    CallChild,
+    If,
+    NoEffect,
+    ReturnStatus,
+    RosSend,
+    Send,
+    SetOutput,
+    Statement,
+    bodies,
+)
 from roaml.model.syntax import Expression, Value
 from roaml.model.values.evaluate import place_of
 from roaml.rules.rule import MachineContext, Rule
@@ -16,20 +27,28 @@ from roaml.rules.rule import MachineContext, Rule
 def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         declared = context.typed.variables.get(chart.scope, {})
+        initial = {
+            data.id.value: data.value.text.strip()
+            for data in chart.data
+            if data.id is not None and isinstance(data.value, Expression)
+        }
         for _, _, body in bodies(chart):
-            yield from _of_body(body, declared)
+            yield from _of_body(body, declared, initial)
 
 
-def _of_body(body: Sequence[Statement], declared: Container[str]) -> Iterator[Finding]:
+def _of_body(body: Sequence[Statement], declared: Container[str], initial: Mapping[str, str]) -> Iterator[Finding]:
     """Report the assignments to a declared variable to which an earlier statement of the same body assigns a value that
-    nothing between them reads."""
+    nothing between them reads. The severity is information if this is the initial value: often everything is reset, and
+    some of it set."""
     unread: dict[str, Assign] = {}
     for statement in body:
+        if isinstance(statement, NoEffect):
+            unread.clear()  # a `<log>` shows values
         for name in _read(statement):
             unread = {place: assign for place, assign in unread.items() if place.split(".")[0] != name}
         if isinstance(statement, If):
             for branch in (*statement.branches, *((statement.otherwise,) if statement.otherwise else ())):
-                yield from _of_body(branch.body, declared)
+                yield from _of_body(branch.body, declared, initial)
         if not isinstance(statement, Assign) or statement.location is None or statement.location.broken:
             continue
         place = place_of(statement.location.tree)
@@ -42,7 +61,10 @@ def _of_body(body: Sequence[Statement], declared: Container[str]) -> Iterator[Fi
                 "remove one of the assignments, or change its `location`"
             )
             related = [Related(earlier.element.name_span, "the value that is never read")]
-            yield RULE.at(statement.location.span, message, related=related)
+            was = earlier.value
+            is_reset = isinstance(was, Expression) and was.text.strip() == initial.get(place)
+            severity = Severity.INFORMATION if is_reset else None
+            yield RULE.at(statement.location.span, message, severity=severity, related=related)
         unread[place] = statement
 
 
