@@ -164,19 +164,6 @@ def test_the_initial_value_may_be_overwritten(tmp_path: Path, first: str, severi
     assert severities(tmp_path, OVERWRITTEN.format(first), "overwritten-value") == [severity]
 
 
-FORCED = """
-<root BTCPP_format="4"><BehaviorTree ID="A"><ForceSuccess>{}</ForceSuccess></BehaviorTree></root>
-"""
-
-
-@pytest.mark.parametrize(
-    ("condition", "severity"),
-    [('<Condition ID="IsOpen"/>', Severity.INFORMATION), ('<ScriptCondition code="1 &lt; 2"/>', Severity.WARNING)],
-)
-def test_an_unknown_condition_may_have_effects(tmp_path: Path, condition: str, severity: Severity) -> None:
-    assert severities(tmp_path, FORCED.format(condition), "hidden-failure") == [severity]
-
-
 MEETING = """
 <root BTCPP_format="4"><BehaviorTree ID="A"><Sequence>
     <Look {0}="{{{0}}}" {1}="{{{1}}}"/><Meet robot_{0}="{{{0}}}" robot_{1}="{{{0}}}"/>

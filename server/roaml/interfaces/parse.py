@@ -160,7 +160,15 @@ class _Parser:
             f"missing here: {_and(names)}",
             instead=new_line + "---\n" * len(names),
             at_end=end,
+            before=self.content.start if self.may_be_response() else None,
         )
+
+    def may_be_response(self) -> bool:
+        """Whether the only content of a service is one field. It is more often the answer of a service without
+        arguments than the argument of one without an answer."""
+        elements = list(self.sections[0].elements.values())
+        is_alone = len(elements) == 1 and isinstance(elements[0].item, Field)
+        return self.kind == "srv" and len(self.sections) == 1 and is_alone
 
     # -------------------------------------------------------------- elements
 

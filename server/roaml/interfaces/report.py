@@ -34,15 +34,23 @@ class FileFindings:
         *,
         instead: str | None = None,
         at_end: int | None = None,
+        before: int | None = None,
         severity: Severity | None = None,
         related: tuple[Related, ...] = (),
     ) -> None:
         """Add a finding with `message` at `span`; `instead` is the correct text for `span`, or the text that is missing
-        at the offset `at_end`."""
+        at the offset `at_end`, or perhaps at the beginning of the line at `before`."""
         fixes: tuple[Fix, ...] = ()
         where = span if at_end is None else Span(at_end, at_end)
         if instead is not None:
-            fixes = (Fix(f"Write `{shorten(' '.join(instead.split()))}`", (TextEdit(where, instead),)),)
+            title = f"Write `{shorten(' '.join(instead.split()))}`"
+            fixes = (Fix(title, (TextEdit(where, instead),)),)
+            if before is not None:
+                earlier = TextEdit(Span(before, before), instead.lstrip())
+                fixes = (
+                    Fix(f"{title} before the field", (earlier,), preferred=False),
+                    Fix(f"{title} after the field", fixes[0].edits, preferred=False),
+                )
         self._findings.append(Finding(CODE, span, message, severity, fixes, related))
 
     def findings(self) -> tuple[Finding, ...]:

@@ -41,12 +41,8 @@ def check(context: TreeContext) -> Iterator[Finding]:
         if _name(node) in ("ForceSuccess", "ForceFailure") and node not in reported and len(node.children) == 1:
             condition = _condition(forest, node.children[0])
             if condition is not None:
-                message = f"`{_name(node)}` hides what the condition `{_name(condition)}` returns"
-                if _is_unknown(forest, condition):
-                    message += ", which has no effect unless the condition does something else, too"
-                    yield RULE.at(node.element.name_span, message, severity=Severity.INFORMATION)
-                else:
-                    yield RULE.at(node.element.name_span, f"{message}, so it has no effect; remove one of them")
+                message = f"`{_name(node)}` hides what the condition `{_name(condition)}` returns, so it has no effect"
+                yield RULE.at(node.element.name_span, f"{message}; remove one of them")
 
 
 def _condition(forest: Forest, node: TreeNode) -> TreeNode | None:
@@ -58,12 +54,6 @@ def _condition(forest: Forest, node: TreeNode) -> TreeNode | None:
     if not is_condition or node.children or node.scripts or _may_write(forest, node, known):
         return None
     return None if _sends(forest, known) else node
-
-
-def _is_unknown(forest: Forest, node: TreeNode) -> bool:
-    """Whether nothing states what a node does: it is neither in a library nor a plugin of the system."""
-    known = forest.known_node(node)
-    return known is None or not (known.library or forest.is_machine(known))
 
 
 def _sends(forest: Forest, known: Node | None) -> bool:
