@@ -95,6 +95,7 @@ def declares(document: Document, channel: DeclaredChannel) -> bool:
 class _Linker:
     def __init__(self, machines: Sequence[ListedMachine], interface: FindInterface, problems: Problems) -> None:
         self._interface = interface
+        self._reported = problems
         self._problems = problems
         self._ends = {
             element: tuple(_ends(machines, element, _ATTRIBUTES[kind]))
@@ -106,6 +107,7 @@ class _Linker:
         self.made: list[tuple[DeclaredChannel, str, str]] = []
 
     def link(self, channel: DeclaredChannel) -> None:
+        self._problems = self._reported if channel.is_valid else Problems()
         name = channel.name.value
         senders, receivers = (self._ends[element] for element in _DECLARING[channel.kind])
         from_, to = ([end for end in ends if _is_named(end, channel)] for ends in (senders, receivers))

@@ -15,6 +15,8 @@ from roaml.expansion.problems import ExpansionProblem, Problems
 from roaml.expansion.uses import VARIABLE, ParameterUse, names_in
 from roaml.expansion.values import Content, Scope, evaluate, number_text
 from roaml.expr.parse import parse
+from roaml.language import SYSTEM
+from roaml.language.validate import misspelled_attribute
 from roaml.model.drawn_durations import DrawnDuration, DurationError, read_duration
 from roaml.model.syntax import Name, name_of
 from roaml.record import Record
@@ -46,7 +48,7 @@ class ChannelKind(enum.Enum):
 
 
 class DeclaredChannel(Record, frozen=True, eq=False):
-    """A `<channel>` without errors.
+    """A `<channel>` that names a topic or service.
 
     Attributes:
         name: the name of the topic or service.
@@ -56,6 +58,8 @@ class DeclaredChannel(Record, frozen=True, eq=False):
         step: the length of a step, in ns; 0 without a delay.
         values: the attributes whose values the machines of the channel contain, with their values.
         drawn: how the delay is discretised; `None` if it is not drawn.
+        is_valid: whether all attributes are valid. Otherwise defaults replace the invalid ones, so that properties can
+            still name what the receivers get.
     """
 
     element: Element
@@ -67,6 +71,7 @@ class DeclaredChannel(Record, frozen=True, eq=False):
     step: int
     values: tuple[tuple[Attribute, str], ...]
     drawn: DrawnNumber | None
+    is_valid: bool
 
     @property
     def key(self) -> tuple[ChannelKind, str]:
@@ -82,13 +87,13 @@ def interface_key(kind: ChannelKind, name: str) -> str:
 def read_channels(
     path: str, document: Document, sections: Iterable[Element], scope: Scope, problems: Problems
 ) -> tuple[DeclaredChannel, ...]:
-    """The valid channels of a system file, one for each topic and service.
+    """The channels of a system file, one for each topic and service.
 
     Args:
         path: the path of the system file.
         sections: its elements `<channels>`.
         scope: the parameters of the system.
-        problems: receives what is wrong with the others.
+        problems: receives what is wrong with them.
     """
     channels: dict[tuple[ChannelKind, str], DeclaredChannel] = {}
     for element in (child for section in sections for child in section.elements if child.name == CHANNEL):
@@ -137,18 +142,25 @@ class _Reader:
         self._values: list[tuple[Attribute, str]] = []
         self._is_valid = True
 
-    def _wrong(self, span: Span, message: str) -> None:
+    def _wrong(self, span: Span, message: str, close: tuple[str, ...] = ()) -> None:
         self._is_valid = False
-        self._problems.add(ExpansionProblem.CHANNEL, span, message)
+        self._problems.add(ExpansionProblem.CHANNEL, span, message, close=close)
+
+    def _not(self, attribute: Attribute, what: str) -> None:
+        """Report a value that is not `what`, and may be a misspelled parameter."""
+        close = close_names(attribute.value, self._scope, 1) if attribute.value.isidentifier() else ()
+        close = tuple(name for name in close if name != attribute.value)
+        self._wrong(attribute.value_span, f"`{attribute.value}` is not {what}{did_you_mean(close)}", close)
 
     def channel(self) -> DeclaredChannel | None:
         element = self._element
         kinds = [kind for kind in ChannelKind if element.get(kind.value) is not None]
         name = name_of(element.get(kinds[0].value)) if len(kinds) == 1 else None
         if name is None:
-            self._wrong(
-                element.name_span, "a channel needs the name of either a `topic` or a `service`; write one of the two"
-            )
+            known = SYSTEM.elements[CHANNEL].attributes
+            if kinds or not any(misspelled_attribute(element, kind.value, known) for kind in ChannelKind):
+                message = "a channel needs the name of either a `topic` or a `service`; write one of the two"
+                self._wrong(element.name_span, message)
             return None
         kind = kinds[0]
         if kind is ChannelKind.SERVICE:
@@ -160,10 +172,9 @@ class _Reader:
         delay = self._delay()
         step = self._step(delay)
         delays, drawn = self._delays(delay, step)
-        if not self._is_valid:
-            return None
         nanoseconds = int(step * _NANOSECONDS_PER_MILLISECOND)
-        return DeclaredChannel(element, kind, name, depth, loss, delays, nanoseconds, tuple(self._values), drawn)
+        values = tuple(self._values)
+        return DeclaredChannel(element, kind, name, depth, loss, delays, nanoseconds, values, drawn, self._is_valid)
 
     # ------------------------------------------------------------------ values
 
@@ -196,7 +207,7 @@ class _Reader:
             return Fraction(0)
         value = self._evaluated(self._text(attribute))
         if not isinstance(value, Fraction) or not 0 <= value <= 1:
-            self._wrong(attribute.value_span, f"`{attribute.value}` is not a probability from 0 to 1, as `loss` needs")
+            self._not(attribute, "a probability from 0 to 1, as `loss` needs")
             return Fraction(0)
         self._values.append((attribute, number_text(value, is_real=False)))
         return value
@@ -207,7 +218,7 @@ class _Reader:
             return DEFAULT_DEPTH
         value = self._evaluated(self._text(attribute))
         if not isinstance(value, Fraction) or value.denominator != 1 or not 1 <= value <= MAX_DEPTH:
-            self._wrong(attribute.value_span, f"`{attribute.value}` is not a depth, an integer from 1 to {MAX_DEPTH}")
+            self._not(attribute, f"a depth, an integer from 1 to {MAX_DEPTH}")
             return DEFAULT_DEPTH
         self._values.append((attribute, str(value)))
         return int(value)
@@ -220,7 +231,7 @@ class _Reader:
         if text not in known:
             close = close_names(text, known, 1)
             hint = did_you_mean(close) if close else f"; write `{_RELIABLE}` or `{_BEST_EFFORT}`"
-            self._wrong(attribute.value_span, f"there is no reliability `{attribute.value}`{hint}")
+            self._wrong(attribute.value_span, f"there is no reliability `{attribute.value}`{hint}", tuple(close))
         elif text == _RELIABLE and loss > 0:
             self._wrong(
                 attribute.value_span,
@@ -297,7 +308,7 @@ class _Reader:
             ticks = delay.ticks(step)
         except LawError as error:
             self._wrong(attribute.value_span, f"`{delay.text}` cannot be a delay: {error}; use a greater `step`")
-            return (), None
+            return ((0, 1.0),), None
         shift = step if delay.is_continuous else Fraction(0)
         drawn = DrawnNumber(
             self._path, attribute.value_span, delay.text, len(ticks.values), shift, ticks.cut, unit="ms"

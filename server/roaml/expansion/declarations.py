@@ -10,6 +10,8 @@ from roaml.expansion.problems import ExpansionProblem, Problems
 from roaml.expansion.values import Content, ParameterValue, Scope, evaluate, number_text, read_value
 from roaml.expr.parse import parse
 from roaml.expr.types import BASE_TYPES, ScalarKind
+from roaml.language import SYSTEM
+from roaml.language.validate import misspelled_attribute
 from roaml.model.syntax import Name, name_of
 from roaml.record import Record
 from roaml.suggest import close_names, did_you_mean
@@ -62,7 +64,8 @@ def declarations(document: Document, problems: Problems) -> tuple[Declared, ...]
     for element in declaration_elements(document):
         name = name_of(element.get("name"))
         if name is None:
-            problems.add(ExpansionProblem.DECLARATION, element.name_span, "a parameter needs a `name`")
+            if not _is_misspelled(element, "name"):
+                problems.add(ExpansionProblem.DECLARATION, element.name_span, "a parameter needs a `name`")
             continue
         if name.value in declared:
             first = declared[name.value].name.span
@@ -85,7 +88,9 @@ def declarations(document: Document, problems: Problems) -> tuple[Declared, ...]
 def _type(element: Element, problems: Problems) -> str:
     given = name_of(element.get("type"))
     if given is None:
-        problems.add(ExpansionProblem.DECLARATION, element.name_span, "a parameter needs a `type`, such as `int32`")
+        if not _is_misspelled(element, "type"):
+            message = "a parameter needs a `type`, such as `int32`"
+            problems.add(ExpansionProblem.DECLARATION, element.name_span, message)
         return ""
     if given.value not in BASE_TYPES:
         close = close_names(given.value, BASE_TYPES)
@@ -94,6 +99,10 @@ def _type(element: Element, problems: Problems) -> str:
         problems.add(ExpansionProblem.DECLARATION, given.span, message, close=close)
         return ""
     return given.value
+
+
+def _is_misspelled(element: Element, name: str) -> bool:
+    return misspelled_attribute(element, name, SYSTEM.elements[PARAMETER].attributes)
 
 
 class Given(Record, frozen=True):
@@ -175,8 +184,9 @@ def _stand_in(parameter: Declared, scope: Scope) -> ParameterValue:
 
 def _value(parameter: Declared, given: Given | None, scope: Scope, problems: Problems) -> ParameterValue | None:
     if parameter.value is None and given is None:
-        message = f"the parameter `{parameter.name.value}` has no `value`; add one"
-        problems.add(ExpansionProblem.DECLARATION, parameter.element.name_span, message)
+        if not _is_misspelled(parameter.element, "value"):
+            message = f"the parameter `{parameter.name.value}` has no `value`; add one"
+            problems.add(ExpansionProblem.DECLARATION, parameter.element.name_span, message)
         return None
     if given is not None:
         text, span, source = given.text, given.span or parameter.name.span, f" that {given.source} gives"

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, TypeAlias
 
 from roaml.interruption import checkpoint
@@ -20,6 +20,7 @@ from roaml.language.resources import schema_path
 from roaml.record import Record
 from roaml.regex import regex
 from roaml.roles import UNBOUNDED
+from roaml.suggest import are_similar
 from roaml.text import Span
 from roaml.xml_syntax import Attribute, CData, Document, Element, Text
 from roaml.xml_syntax.escapes import replace_forbidden
@@ -246,6 +247,13 @@ def _counts(element: Element, type_: ElementType, counts: dict[str, list[Element
             yield MissingElement(element, type_, ())
         for extra in every[type_.any_child.most :]:
             yield TooManyElements(extra, every[0], type_, type_.any_child.most)
+
+
+def misspelled_attribute(element: Element, name: str, known: Iterable[str]) -> bool:
+    """Whether an attribute of `element` that is not in `known` is probably a misspelling of `name`. The rule
+    `unknown-attribute` reports it; others do not report that `name` is missing."""
+    names = set(known)
+    return any(a.name not in names and are_similar(a.name, name) for a in element.attributes)
 
 
 def unmet(simple: SimpleType, value: str) -> str:

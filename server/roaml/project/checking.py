@@ -32,6 +32,7 @@ from roaml.project.settings import Settings
 from roaml.project.suppress import Suppression, covering, suppressions
 from roaml.record import replace
 from roaml.rules import BY_CODE, RULES
+from roaml.rules.elements import invalid_value
 from roaml.rules.files import file_too_large, unused_suppression
 from roaml.rules.files import internal_error as internal_error_rule
 from roaml.rules.parser_rules import INVALID_SETTING, TOML_SYNTAX
@@ -187,7 +188,23 @@ class RuleRunner:
             assert varied is not None
             always = {(f.code, f.span) for f in self._mapped_findings(varied, path, system)}
             findings = [f for f in findings if _own_severity(f) is Severity.ERROR or (f.code, f.span) in always]
-        return tuple(dict.fromkeys((*own, *findings)))
+        known = {(finding.code, finding.span) for finding in findings}
+        unseen = (f for f in self._replaced_findings(expanded, subject) if (f.code, f.span) not in known)
+        unseen = (f for f in unseen if not any(f.span.start < span.end and span.start < f.span.end for span in broken))
+        return tuple(dict.fromkeys((*own, *findings, *unseen)))
+
+    def _replaced_findings(self, expanded: Expanded[Analysis], subject: _FileInSystem) -> Iterator[Finding]:
+        """The findings about the form of the parts of a file that its expanded texts do not contain, such as
+        declarations. Values in them are checked by the expansion."""
+        texts = [expanded.expansion.texts.get(variant) for variant in expanded.expansion.paths(subject.path)]
+        spans = [edit.span for text in texts if text is not None for edit in text.expansions[0].edits]
+        context = self.analysis.file_context(subject) if spans else None
+        if context is None or context.document is None:
+            return
+        for finding in found(subject.path, file_checks(context), self.analysis.memo):
+            place = finding.span
+            if finding.code not in _OF_VALUES and any(s.start <= place.start and place.end <= s.end for s in spans):
+                yield finding
 
     def _mapped_findings(self, expanded: Expanded[Analysis], path: str, system: str | None) -> Iterator[Finding]:
         runner = RuleRunner(expanded.analysis, self.settings)
@@ -252,6 +269,8 @@ def _in_all_copies(text: ExpandedText, findings: tuple[Finding, ...]) -> tuple[F
     return tuple(kept.values())
 
 
+_OF_VALUES = (invalid_value.RULE.code,)
+"""The codes of findings about the values of attributes, which may be expressions over parameters."""
 _UNKNOWN_NAMES = ("undeclared-variable", "property-condition", "invalid-rate", "invalid-value")
 """The codes of findings at a name that may be a misspelled parameter."""
 

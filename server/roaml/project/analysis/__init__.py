@@ -94,6 +94,7 @@ class Analysis:
         self.checked_file = subjects.checked_file
         self.subject = subjects.subject
         self.contexts = subjects.contexts
+        self.file_context = subjects.file_context
         self.places = subjects.places
 
     def _open_files(self, sources: SourceFiles, interfaces: Interfaces) -> None:

@@ -203,6 +203,12 @@ class Subjects(Generic[E]):
         path, source, kind = subject.path, subject.source, subject.kind
         return _Reader(self._rooms, path, source, kind, subject.system_path, subject.system).contexts(limits)
 
+    def file_context(self, subject: FileInSystem[E]) -> FileContext:
+        """The context of the rules about files of any kind, in the text of the user, also if it is expanded."""
+        kind = self._rooms.systems.kind_in(subject.path, subject.system_path)
+        reader = _Reader(self._rooms, subject.path, subject.source, kind, subject.system_path, subject.system)
+        return reader.file_context()
+
     def places(self, symbols: Iterable[Symbol]) -> Mapping[Symbol, tuple[Location, SourceFile]]:
         """The positions where symbols are defined, with the texts of their files. Symbols that no longer exist are left
         out."""

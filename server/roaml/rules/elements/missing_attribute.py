@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.language import HL_SCXML
-from roaml.language.validate import MissingAttribute
+from roaml.language.validate import MissingAttribute, misspelled_attribute
 from roaml.model.build_machine import INTERFACE_ATTRIBUTES
 from roaml.model.machine import Declaration
 from roaml.model.syntax import PortRead
@@ -30,7 +30,7 @@ def check(context: FileContext) -> Iterator[Finding]:
             continue  # undeclared-handle reports this with more detail
         known = violation.type.attributes
         meant = any(misspelled.only_missing(element, violation.type, a.name) for a in element.attributes)
-        if not meant and not misspelled.attribute(element, attribute.name, known):
+        if not meant and not misspelled_attribute(element, attribute.name, known):
             choices = [choice.value for choice in attribute.simple.choices if not choice.use]
             value = choices[0] if len(choices) == 1 else _likely(context, element, attribute.name)
             yield _missing(element, attribute.name, value)
@@ -55,7 +55,7 @@ def _interface(declaration: Declaration) -> Iterator[Finding]:
     elif declaration.interface is None and element.get(name) is None:
         if child is not None:
             yield RULE.at(child.name_span, f"`<{name}>` is empty; write a name or a `<bt_get_input>` into it")
-        elif not misspelled.attribute(element, name, known):
+        elif not misspelled_attribute(element, name, known):
             yield _missing(element, name, "")
 
 

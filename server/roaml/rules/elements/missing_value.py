@@ -9,10 +9,10 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.types import Array, Scalar, Type
 from roaml.expr.zero import zero_text
 from roaml.language import HL_SCXML
+from roaml.language.validate import misspelled_attribute
 from roaml.model.machine import Assign, Param, RosSend, Send
 from roaml.model.syntax import Value
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support import misspelled
 from roaml.text import Span, TextEdit
 from roaml.xml_syntax import Element
 
@@ -39,7 +39,7 @@ def is_missing(element: Element, value: Value | None) -> bool:
     """Whether an element has no value, and no attribute that may be an incomplete or misspelled value."""
     if value is not None or element.get("expr") is not None:
         return False
-    return not misspelled.attribute(element, "expr", HL_SCXML.elements[element.name].attributes)
+    return not misspelled_attribute(element, "expr", HL_SCXML.elements[element.name].attributes)
 
 
 def _param(param: Param, name: str) -> Finding:

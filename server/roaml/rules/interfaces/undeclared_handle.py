@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import after, first_in
 from roaml.language import HL_SCXML
+from roaml.language.validate import misspelled_attribute
 from roaml.model.build_machine import INTERFACE_ATTRIBUTES
 from roaml.model.machine import Declaration, Handler, Machine, RosSend
 from roaml.model.syntax import Name
@@ -75,7 +76,7 @@ def _declared_otherwise(declaration: Declaration, uses: list[Name]) -> Finding:
 
 def _without_name(element: Element, kinds: tuple[SymbolKind, ...], right: list[str]) -> Iterator[Finding]:
     attribute = element.get("name")
-    if misspelled.attribute(element, "name", HL_SCXML.elements[element.name].attributes) or (
+    if misspelled_attribute(element, "name", HL_SCXML.elements[element.name].attributes) or (
         attribute is not None and not attribute.has_value
     ):
         return

@@ -7,11 +7,10 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.language import HL_SCXML
-from roaml.language.validate import is_foreign
+from roaml.language.validate import is_foreign, misspelled_attribute
 from roaml.model.machine import Handler
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support import misspelled
 from roaml.text import Span, TextEdit
 from roaml.xml_syntax import Element
 
@@ -39,7 +38,7 @@ def _check(handler: Handler, children: list[Element], here: str) -> Iterator[Fin
             related=related,
         )
     elif attribute is None and not targets:
-        if not misspelled.attribute(element, "target", handler.type.attributes):
+        if not misspelled_attribute(element, "target", handler.type.attributes):
             at = element.name_span.end
             fixes = [Fix(f"Stay in `{here}`", (TextEdit(Span(at, at), f' target="{here}"'),))] if here else []
             message = f"`<{element.name}>` needs a target; to stay in the state, name the state itself"

@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator
 from roaml.diagnostics import Fix, Related, Severity
 from roaml.edit.elements import after, first_in, last_in, without_tags
 from roaml.language import HL_SCXML
+from roaml.language.validate import misspelled_attribute
 from roaml.model.behavior.duties import Possible, always, is_suspicious, untaken
 from roaml.model.behavior.explore import Behavior, BehaviorStep, Fault, FaultKind, explore
 from roaml.model.behavior.instants import Instants, is_readable
@@ -313,7 +314,7 @@ def _is_misspelled(element: Element) -> bool:
     if type_ is None:
         return True
     missing = [name for name in type_.attributes if element.get(name) is None]
-    return any(misspelled.attribute(element, name, type_.attributes) for name in missing)
+    return any(misspelled_attribute(element, name, type_.attributes) for name in missing)
 
 
 # ------------------------------------------------------------------ the fixes

@@ -14,12 +14,6 @@ from roaml.suggest import are_similar
 from roaml.xml_syntax import Element
 
 
-def attribute(element: Element, name: str, known: Iterable[str]) -> bool:
-    """Whether an attribute of `element` that is not in `known` is probably a misspelling of `name`."""
-    names = set(known)
-    return any(a.name not in names and are_similar(a.name, name) for a in element.attributes)
-
-
 def only_missing(element: Element, type_: ElementType, name: str) -> tuple[str, ...]:
     """The required attribute of which `name` is probably a misspelling: the only missing one, if `name` is the only
     unknown attribute of the element. Otherwise empty."""

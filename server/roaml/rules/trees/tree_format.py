@@ -11,10 +11,10 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal, rename_tag
 from roaml.forest.forest import CPP, Forest
 from roaml.language import BEHAVIOR_TREE
+from roaml.language.validate import misspelled_attribute
 from roaml.model.tree import TreeNode, nodes
 from roaml.regex import regex
 from roaml.rules.rule import Rule, TreeContext
-from roaml.rules.support import misspelled
 from roaml.text import Edit, Span, TextEdit, computed
 from roaml.xml_syntax import Attribute, Element
 
@@ -69,7 +69,7 @@ def _file_name(path: str) -> str:
 
 
 def _is_misspelled(root: Element) -> bool:
-    return misspelled.attribute(root, "BTCPP_format", BEHAVIOR_TREE.elements[root.name].attributes)
+    return misspelled_attribute(root, "BTCPP_format", BEHAVIOR_TREE.elements[root.name].attributes)
 
 
 def _plan(context: TreeContext) -> tuple[TextEdit, ...]:

@@ -9,11 +9,11 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import infer
 from roaml.expr.types import Scalar, unwrap
 from roaml.language import HL_SCXML
+from roaml.language.validate import misspelled_attribute
 from roaml.model.machine import Data
 from roaml.model.syntax import Expression
 from roaml.model.vocabulary import DEFAULT_TYPES
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support import misspelled
 from roaml.text import Span, TextEdit
 
 KNOWN = HL_SCXML.elements["data"].attributes
@@ -22,7 +22,7 @@ KNOWN = HL_SCXML.elements["data"].attributes
 def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         for data in chart.data:
-            if data.type is None and data.id is not None and not misspelled.attribute(data.element, "type", KNOWN):
+            if data.type is None and data.id is not None and not misspelled_attribute(data.element, "type", KNOWN):
                 span = data.id.span
                 message = f"the variable `{data.id.value}` has no type; add `type`"
                 yield RULE.at(span, message, *_fix(data))
