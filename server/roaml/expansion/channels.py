@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import enum
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 
 from roaml.distributions.laws import LawError
@@ -18,7 +18,9 @@ from roaml.expr.parse import parse
 from roaml.language import SYSTEM
 from roaml.language.validate import misspelled_attribute
 from roaml.model.drawn_durations import DrawnDuration, DurationError, read_duration
+from roaml.model.parameters import DEFAULT_TICK_RATE
 from roaml.model.syntax import Name, name_of
+from roaml.model.system_file import SystemSection
 from roaml.record import Record
 from roaml.regex import regex
 from roaml.suggest import close_names, did_you_mean
@@ -85,7 +87,12 @@ def interface_key(kind: ChannelKind, name: str) -> str:
 
 
 def read_channels(
-    path: str, document: Document, sections: Iterable[Element], scope: Scope, problems: Problems
+    path: str,
+    document: Document,
+    sections: Iterable[Element],
+    scope: Scope,
+    periods: Sequence[Fraction],
+    problems: Problems,
 ) -> tuple[DeclaredChannel, ...]:
     """The channels of a system file, one for each topic and service.
 
@@ -93,11 +100,12 @@ def read_channels(
         path: the path of the system file.
         sections: its elements `<channels>`.
         scope: the parameters of the system.
+        periods: the times between the ticks of its timers and trees, in ms. Default steps divide them.
         problems: receives what is wrong with them.
     """
     channels: dict[tuple[ChannelKind, str], DeclaredChannel] = {}
     for element in (child for section in sections for child in section.elements if child.name == CHANNEL):
-        channel = _Reader(path, document, element, scope, problems).channel()
+        channel = _Reader(path, document, element, scope, periods, problems).channel()
         if channel is None:
             continue
         if channel.key in channels:
@@ -111,6 +119,26 @@ def read_channels(
             continue
         channels[channel.key] = channel
     return tuple(channels.values())
+
+
+def tick_periods(document: Document, machines: Iterable[Document], scope: Scope) -> tuple[Fraction, ...]:
+    """The times between the ticks of the timers and trees of a system in ms, without those that are no whole number of
+    nanoseconds, which no step of a channel divides.
+
+    Args:
+        document: the system file.
+        machines: its machines, expanded.
+    """
+    elements = [e for d in (document, *machines) if d.root is not None for e in d.root.walk()]
+    rates = {a.value for e in elements for n in ("rate_hz", "tick_rate") if (a := e.get(n)) is not None}
+    ticked = [element for element in elements if element.name == "bt_tick_rate"]
+    rates |= {a.value for element in ticked if (a := element.get("value")) is not None}
+    if not ticked and any(element.name == SystemSection.BEHAVIOR_TREE.value for element in elements):
+        rates.add(str(DEFAULT_TICK_RATE))
+    text = (VARIABLE.sub(lambda m: scope[m[1]].text if m[1] in scope else m[0], rate) for rate in sorted(rates))
+    values = (evaluate(parse(Decoded(rate.strip(), 0))[0], scope) for rate in text)
+    periods = (1000 / value for value in values if isinstance(value, Fraction) and value > 0)
+    return tuple(period for period in periods if (period * _NANOSECONDS_PER_MILLISECOND).denominator == 1)
 
 
 def delay_uses(document: Document, element: Element, scope: Scope) -> Iterator[ParameterUse]:
@@ -133,11 +161,20 @@ def _numbers(text: str) -> Iterator[tuple[int, int]]:
 
 
 class _Reader:
-    def __init__(self, path: str, document: Document, element: Element, scope: Scope, problems: Problems) -> None:
+    def __init__(
+        self,
+        path: str,
+        document: Document,
+        element: Element,
+        scope: Scope,
+        periods: Sequence[Fraction],
+        problems: Problems,
+    ) -> None:
         self._path = path
         self._document = document
         self._element = element
         self._scope = scope
+        self._periods = periods
         self._problems = problems
         self._values: list[tuple[Attribute, str]] = []
         self._is_valid = True
@@ -283,7 +320,7 @@ class _Reader:
                 self._wrong(attribute.name_span, "`step` has an effect only on a `delay`; remove it, or add a `delay`")
             return step if delay else Fraction(0)
         if isinstance(delay, Fraction):
-            return delay
+            return _common_divisor([delay, *self._periods]) if delay else delay
         if delay.is_continuous:
             place = self._element.get("delay")
             assert place is not None
@@ -293,7 +330,8 @@ class _Reader:
                 'as `step="10 ms"`',
             )
             return Fraction(0)
-        return _common_divisor([value for value in delay.arguments[::2] if value > 0])
+        times = [value for value in delay.arguments[::2] if value > 0]
+        return _common_divisor([*times, *self._periods]) if times else Fraction(0)
 
     def _delays(
         self, delay: Fraction | DrawnDuration, step: Fraction

@@ -436,7 +436,7 @@ class _Expander:
             return
         # Few systems have channels.
         from roaml.expansion.channel_links import ListedMachine, declares, link  # noqa: PLC0415
-        from roaml.expansion.channels import delay_uses, read_channels  # noqa: PLC0415
+        from roaml.expansion.channels import delay_uses, read_channels, tick_periods  # noqa: PLC0415
 
         problems = self.problems_of(self.path)
         message = (
@@ -449,9 +449,10 @@ class _Expander:
             for use in delay_uses(document, element, scope):
                 self.used.add(use.name)
                 self.note(self.path, self.path, use.name, use.span)
-        channels = read_channels(self.path, document, sections, scope, problems)
         texts = {path: text for path in self.machines if (text := self._text(path)) is not None}
         machines = [ListedMachine(path, parse(text.text)) for path, text in texts.items()]
+        periods = tick_periods(document, (machine.document for machine in machines), scope)
+        channels = read_channels(self.path, document, sections, scope, periods, problems)
         links = link(channels, machines, self.sources.interface, problems)
         written = [found for path in set(self.machines.values()) if (found := self.sources.document(path)) is not None]
         for channel in channels:
