@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import re
+import shlex
 from pathlib import Path
 
 import pytest
@@ -17,7 +18,9 @@ from roaml.ide.rename import Renaming, rename
 from roaml.jani.writer import write
 from roaml.text import apply_edits
 
-PAGE = (Path(__file__).resolve().parents[2] / "docs" / "spec" / "channels.md").read_text(encoding="utf-8")
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+PAGE = (DOCS / "spec" / "channels.md").read_text(encoding="utf-8")
+EXPERIMENTS = (DOCS / "experiments.md").read_text(encoding="utf-8")
 FILES = dict(re.findall(r"^\*\*`(\S+)`\*\*\n\n```xml\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL))
 """The files of the example in the definition."""
 CHANNEL = '<channel topic="level" loss="loss" delay="200 ms" step="100 ms" />'
@@ -250,3 +253,18 @@ def test_losses_share_the_explored_states(main: Path, capsys: pytest.CaptureFixt
     assert run(["experiment", str(main), "--set", "loss=0.1,0.2", "--property", "notices", "--slopes"]) == 0
     out = capsys.readouterr().out
     assert re.search(r"0\.1  0\.999, d/d\w+ -0\.03", out), out
+
+
+def test_the_page_about_experiments(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "radio"
+    folder.mkdir()
+    for name, text in FILES.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    ((command, printed),) = re.findall(
+        r"^\$ as2fm-lsp (experiment radio.*)\n((?:.*\n)*?)```", EXPERIMENTS, re.MULTILINE
+    )
+    assert run([*shlex.split(command), "--jobs", "1"]) == 0
+    assert capsys.readouterr().out == printed
