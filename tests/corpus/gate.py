@@ -340,7 +340,7 @@ def draw(system: System) -> Iterator[str]:
 
 def debug(system: System) -> Iterator[str]:
     with Client(validates=False) as client:
-        options = {"rosPath": [str(conformance.INTERFACES)]} if system.paths else {}
+        options = {"rosPath": list(system.paths[1:])} if system.paths else {}
         try:
             client.begin(system.main, **options)
             if not client.ask("threads")["threads"]:

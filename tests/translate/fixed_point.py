@@ -2,7 +2,7 @@
 """JANI models with real variables as models with integers, because Storm builds no models with real variables.
 
 Each real value is represented by its product with `SCALE`, an integer. Only what keeps this exact is allowed: copies,
-sums, differences, minima, maxima, absolute values and comparisons.
+sums, differences, products with integers, minima, maxima, absolute values, roundings and comparisons.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ Json: TypeAlias = Any
 SCALE = 1000
 _LINEAR = {"+", "-", "min", "max", "abs"}
 _COMPARISONS = {"=", "≠", "<", "≤", ">", "≥"}
+_ROUNDINGS = {"floor", "ceil"}
 _OPERANDS = ("left", "right", "exp", "then", "else")
 
 
@@ -79,7 +80,7 @@ class _Scaled:
                 return self.is_real(array)
             case {"op": "ite"}:
                 return self.is_real(expression["then"]) or self.is_real(expression["else"])
-            case {"op": operator} if operator not in _COMPARISONS:
+            case {"op": operator} if operator not in _COMPARISONS | _ROUNDINGS:
                 return any(self.is_real(expression[key]) for key in _OPERANDS if key in expression)
         return False
 
@@ -103,12 +104,22 @@ class _Scaled:
                 return {"op": "*", "left": self.integer(expression), "right": SCALE}
             case {"op": operator} if operator in _LINEAR:
                 return {key: self.real(value) if key in _OPERANDS else value for key, value in expression.items()}
+            case {"op": "*", "left": left, "right": right} if not (self.is_real(left) and self.is_real(right)):
+                return {"op": "*", "left": self.factor(left), "right": self.factor(right)}
             case {"op": "aa"} | str():
                 return expression
         raise NotExactError(expression)
 
+    def factor(self, expression: Json) -> Json:
+        """A factor of a product that has a single real factor, which alone is scaled."""
+        if self.is_real(expression):
+            return self.real(expression)
+        if _has_fraction(expression):
+            raise NotExactError(expression)
+        return self.integer(expression)
+
     def integer(self, part: Json) -> Json:
-        """Any part of a model that has no real value itself, with scaled comparisons of reals."""
+        """Any part of a model that has no real value itself, with scaled comparisons and roundings of reals."""
         match part:
             case list():
                 return [self.integer(element) for element in part]
@@ -116,9 +127,24 @@ class _Scaled:
                 self.is_real(left) or self.is_real(right)
             ):
                 return {**part, "left": self.real(left), "right": self.real(right)}
+            case {"op": operator, "exp": operand} if operator in _ROUNDINGS and self.is_real(operand):
+                return {**part, "exp": {"op": "/", "left": self.real(operand), "right": SCALE}}
+            case {"op": _} if any(self.is_real(part[key]) for key in _OPERANDS if key in part):
+                raise NotExactError(part)
             case dict():
                 return {key: self.integer(value) for key, value in part.items()}
         return part
+
+
+def _has_fraction(expression: Json) -> bool:
+    """Whether an expression contains a number that is not an integer, or a quotient or a function with real values."""
+    match expression:
+        case float():
+            return not expression.is_integer()
+        case {"op": operator} if operator not in _COMPARISONS | _ROUNDINGS:
+            is_real = operator not in {*_LINEAR, "*", "%", "aa", "ite"}
+            return is_real or any(_has_fraction(expression[key]) for key in _OPERANDS if key in expression)
+    return False
 
 
 def _integers(type_: Json) -> Json:

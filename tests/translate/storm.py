@@ -117,10 +117,14 @@ def exact(model: Model, name: str) -> Exact:
 
 
 def _of_schedulers(property_: dict[str, Any], operator: str) -> dict[str, Any]:
-    """A property with another operator, Pmin or Pmax, which is its name as well."""
+    """The values of a property with another operator, Pmin or Pmax, which is its name as well. If the property compares
+    a probability with a number, the probability remains."""
     expression = property_["expression"]
+    values = expression["values"]
+    sides = (values, values.get("left"), values.get("right"))
+    probability = next(side for side in sides if isinstance(side, dict) and side["op"] in ("Pmin", "Pmax"))
     return {
         **property_,
         "name": operator,
-        "expression": {**expression, "values": {**expression["values"], "op": operator}},
+        "expression": {**expression, "fun": "values", "values": {**probability, "op": operator}},
     }

@@ -114,6 +114,16 @@ def test_probabilities(name: str) -> None:
     assert actual_exact.greatest == pytest.approx(float(expected), abs=1e-9)
 
 
+def test_a_probability_that_a_property_compares() -> None:
+    """The file states that the probability is at least 0.1; Storm is asked for its value."""
+    coin, count, expected = COINS["ternary"]
+    properties = json.loads(reaches("told__heads", count))
+    expression = properties["properties"][0]["expression"]
+    expression.update(fun="∀", values={"op": "≥", "left": expression["values"], "right": 0.1})
+    model = api.to_jani(loaded(system(coin, JUDGE, LISTENER, properties=json.dumps(properties))))
+    assert exact(model, "p").greatest == pytest.approx(float(expected), abs=1e-9)
+
+
 def test_many_draws_do_not_multiply() -> None:
     """Three numbers drawn for one value are 300 ways to go on, not a million."""
     assigned = f'<assign location="x" expr="{SUM} ? 1 : 0" />' + SEND.format("x == 1")
