@@ -128,7 +128,9 @@ def test_mocks_that_are_not_valid(mock: str, reason: str, tmp_path: Path, capsys
             "means the entry whose name",
         ),
         ("<LoopInt queue='{q}' value='{v}'><Drive/></LoopInt>", "a queue in the blackboard"),
-        ("<ManualSelector><Drive/></ManualSelector>", "ManualSelector"),
+        ("<ManualSelector><Drive/></ManualSelector>", "asks a person to choose a child"),
+        ("<ManualSelector><Drive/></ManualSelector>", "such as `Sequence`, `Fallback` or `Switch2`, or write"),
+        ("<EntryUpdatedDecorator><Drive/></EntryUpdatedDecorator>", "such as `SkipUnlessUpdated`, or write"),
     ],
 )
 def test_trees_that_are_rejected(content: str, reason: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

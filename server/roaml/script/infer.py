@@ -138,7 +138,8 @@ def _operation(expr: Expr, entry: Callable[[str], Type]) -> Iterator[ScriptProbl
         case Unary(operator="!", operand=operand):
             yield from _truth(operand, entry)
         case Unary(operator=operator, operand=operand) if type_of(operand, entry) is Type.TEXT:
-            yield ScriptProblem(operand.span, f"`{operator}` needs a number, not a string")
+            message = f"`{operator}` needs a number, not a string"
+            yield ScriptProblem(operand.span, message, number=_name(operand), operator=operator)
         case Binary(operator="&&" | "||", left=left, right=right):
             yield from _truth(left, entry)
             yield from _truth(right, entry)
@@ -148,15 +149,22 @@ def _operation(expr: Expr, entry: Callable[[str], Type]) -> Iterator[ScriptProbl
         case Binary(operator="+", operator_span=span, left=left, right=right):
             types = {type_of(left, entry), type_of(right, entry)}
             if Type.TEXT in types and types & set(NUMBERS):
-                yield ScriptProblem(span, "`+` cannot join a string and a number; use `..`", "..")
+                name = _name(left) if type_of(left, entry) is Type.TEXT else _name(right)
+                message = "`+` cannot join a string and a number; use `..`"
+                yield ScriptProblem(span, message, "..", name, "+")
         case Binary(operator=operator, left=left, right=right):
             for side in (left, right):
                 if type_of(side, entry) is Type.TEXT:
-                    yield ScriptProblem(side.span, f"`{operator}` needs numbers, not a string")
+                    message = f"`{operator}` needs numbers, not a string"
+                    yield ScriptProblem(side.span, message, number=_name(side), operator=operator)
                 elif operator in ("&", "|", "^") and isinstance(side, Number) and not float(side.value).is_integer():
                     yield ScriptProblem(side.span, f"`{operator}` needs integers")
         case Conditional(test=test) if type_of(test, entry) is not Type.TEXT:
             yield from _truth(test, entry)
+
+
+def _name(expr: Expr) -> str:
+    return expr.name if isinstance(expr, Name) else ""
 
 
 def _truth(expr: Expr, entry: Callable[[str], Type]) -> Iterator[ScriptProblem]:

@@ -89,12 +89,18 @@ class ScriptGrammar(enum.Enum):
 
 
 class ScriptProblem(Record, frozen=True):
-    """A syntax error in a script. `replacement` is the text that was probably intended instead of the text in `span`,
-    or ""."""
+    """An error in a script.
+
+    Attributes:
+        replacement: the text that was probably intended instead of the text in `span`, or "".
+        number: the name that must be a number for the operator in `operator`, but is a string; "" in other errors.
+    """
 
     span: Span
     message: str
     replacement: str = ""
+    number: str = ""
+    operator: str = ""
 
 
 class _TokenKind(Vocabulary):

@@ -43,13 +43,7 @@ def program_of(node: ExecutedNode, version: Version = NEWEST_VERSION) -> NodePro
         _check_children(node)
         return known_programs[node.type]
     if node.children:
-        like = "`Inverter`, `ForceSuccess` or `Precondition`" if len(node.children) == 1 else "`Sequence` or `Fallback`"
-        reason = (
-            f"`{node.type}` has children, but its behaviour is not known; in a copy of the tree, write the node "
-            f"of BehaviorTree.CPP that behaves most like it, such as {like}, or write `{node.type}` as a plugin of a "
-            "system"
-        )
-        raise TreeRefusal(node.origin, reason)
+        raise TreeRefusal(node.origin, _own_parent(node))
     if node.known is not None and node.known.kind in (NodeKind.CONTROL, NodeKind.DECORATOR):
         raise TreeRefusal(node.origin, f"`{node.type}` needs children", is_reported=True)
     absent = CPP.absent.get(node.type)
@@ -58,6 +52,23 @@ def program_of(node: ExecutedNode, version: Version = NEWEST_VERSION) -> NodePro
             node.origin, f"`{node.type}` cannot be a node of a tree: it is {absent.reason}", is_reported=True
         )
     return None
+
+
+def _own_parent(node: ExecutedNode) -> str:
+    """Why a node with children cannot be executed, and which nodes of the library are similar."""
+    absent = CPP.absent.get(node.type)
+    kind = node.known.kind if node.known is not None else absent.kind if absent is not None else None
+    if absent is not None and absent.instead:
+        like = f"`{absent.instead}`"
+    elif kind is NodeKind.CONTROL or (kind is None and len(node.children) > 1):
+        like = "`Sequence`, `Fallback` or `Switch2`"
+    else:
+        like = "`Inverter`, `ForceSuccess` or `Precondition`"
+    reason = f"cannot be executed: it is {absent.reason}" if absent else "has children, but its behaviour is not known"
+    return (
+        f"`{node.type}` {reason}; in a copy of the tree, write the node of BehaviorTree.CPP that behaves most like it, "
+        f"such as {like}, or write `{node.type}` as a plugin of a system"
+    )
 
 
 def _check_children(node: ExecutedNode) -> None:

@@ -41,10 +41,27 @@ def type_problems(context: TreeContext) -> Iterator[tuple[ScriptUse, ScriptProbl
 
         if problems:
             continue
-        yield from ((use, problem, False, None) for problem in check_types(script, lookup))
+        for problem in check_types(script, lookup):
+            yield use, _with_port(problem, entries, own, types), False, None
         if use.is_condition:
             yield from ((use, problem, True, None) for problem in check_condition(script, lookup))
             yield from ((use, problem, True, Severity.WARNING) for problem in assignments_as_conditions(script))
+
+
+def _with_port(problem: ScriptProblem, entries: Entries, own: str, types: Mapping[str, Type]) -> ScriptProblem:
+    """The problem with the port that makes an entry a string, if a port does. Then `..` is probably not intended,
+    because the script uses the entry as a number."""
+    keys = entries.entries(own, problem.number) if problem.number else ()
+    ports = [bound.use for key in keys for bound in entries.by_entry.get(key, ()) if bound.use.type == STRING]
+    if not ports or any(types.get(key) is not Type.TEXT for key in keys):
+        return problem
+    port = ports[0]
+    node = port.node.plugin.value if port.node.plugin else port.node.element.name
+    message = (
+        f"`{problem.operator}` needs numbers, but the port `{port.port}` of `{node}` makes `{problem.number}` a "
+        "string; compute the number in another entry"
+    )
+    return ScriptProblem(problem.span, message)
 
 
 def _types(entries: Entries) -> dict[str, Type]:
