@@ -126,7 +126,7 @@ cdef class Kernel:
     cdef void _notice(self, u64 state) noexcept
     @cython.locals(i=i64)
     cpdef tuple changed(self, i64[::1] ints, double[::1] reals)
-    @cython.locals(state=u64, second=u64, third=u64, fourth=u64, i=i64, j=i64)
+    @cython.locals(state=u64, second=u64, third=u64, fourth=u64, i=i64, j=i64, real=double, part=u64)
     cdef u64 _state_hash(self) noexcept
     @cython.locals(i=i64, slot=i64, count=i64, pick=i64, edge=i64, way=i64, parts=i64)
     cdef inline void _take(self, i64 vector, u64 rest, i64 apart) noexcept

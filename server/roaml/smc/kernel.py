@@ -914,7 +914,10 @@ class Kernel:
         for j in range(i - 3, self.int_count):
             state = ((state ^ (state >> 32)) + (self.ints[j] & UINT64_MASK)) * MIX_1 & UINT64_MASK
         for i in range(self.real_count):
-            state = ((state ^ (state >> 32)) + (hash(self.reals[i]) & UINT64_MASK)) * MIX_1 & UINT64_MASK
+            real = self.reals[i]
+            # `hash` creates an object, and most of the hundreds of reals in messages with poses are 0, whose hash is 0.
+            part = 0 if real == 0.0 else hash(real) & UINT64_MASK
+            state = ((state ^ (state >> 32)) + part) * MIX_1 & UINT64_MASK
         state = ((state ^ (state >> 32)) + second) * MIX_1 & UINT64_MASK
         state = ((state ^ (state >> 32)) + third) * MIX_1 & UINT64_MASK
         state = ((state ^ (state >> 32)) + fourth) * MIX_1 & UINT64_MASK
