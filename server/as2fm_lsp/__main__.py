@@ -15,7 +15,7 @@ INTERRUPTED = 130
 
 
 def main() -> None:
-    status = INTERRUPTED
+    status = 1  # that of Python after a traceback
 
     def end() -> None:
         """End the process. Python would destroy its objects one by one, which takes 5 ms."""
