@@ -44,7 +44,7 @@ from roaml.text import Location
 from roaml.verification.counterexample import counterexample, unwanted_trace, witness, witness_trace
 from roaml.verification.expectations import NO_EXPECTATION
 from roaml.verification.results import Result
-from roaml.verification.target import VerificationTarget
+from roaml.verification.target import VerificationTarget, own_words
 from roaml.views.story import StoryLine
 
 PROPERTIES = "as2fm/properties"
@@ -91,7 +91,7 @@ def register(context: Context) -> None:
             return None
         return {
             "property": result.name,
-            "heading": " ".join(filter(None, (markdown.plain(result.comment), why.heading))),
+            "heading": " ".join(filter(None, (markdown.plain(own_words(target, result.name)), why.heading))),
             "verdict": why.verdict.value,
             "seed": known.result.traces.options.seed,
             "trace": why.trace,

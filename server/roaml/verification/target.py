@@ -111,6 +111,12 @@ def with_sentences(model: Model) -> Model:
     return replace(model, properties=tuple(p if p.comment else _commented(p) for p in model.properties))
 
 
+def own_words(target: VerificationTarget, name: str) -> str:
+    """What the files say about a property in words; "" if its sentence is computed from its formula."""
+    comments = (p.comment for p in target.properties if p.name == name and p.comment != sentence(p.expression))
+    return next(comments, None) or ""
+
+
 def _commented(property_: Property) -> Property:
     return replace(property_, comment=sentence(property_.expression) or None)
 

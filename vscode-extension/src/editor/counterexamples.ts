@@ -102,7 +102,11 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
         const last = this.turns.at(-1);
         if (last) await this.select(last);
         const found = await this.server.ask(parting, asked);
-        if (found && this.shown === trace) await this.setParting(found);
+        if (this.shown !== trace) return;
+        if (found) await this.setParting(found);
+        // The view of the state has appeared beside the list meanwhile. The message then takes more lines, which would
+        // push the selected turn out of sight.
+        if (last && this.latest === last) await this.view.reveal(last, { select: true });
     }
 
     private async setParting(parting: Parting | undefined): Promise<void> {
