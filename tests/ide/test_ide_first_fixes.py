@@ -108,7 +108,7 @@ MISTAKES = [
     ('target="moving"', 'target="closed"', "unanswered-request", "Go to the state `moving`, which answers"),
     (RESPONSE, f'<if cond="there">\n{RESPONSE}</if>', "unanswered-request", "Answer without this condition"),
     (RESPONSE, f'<if cond="is_stuck">{RESPONSE}</if>', "unanswered-request", "Answer without this condition"),
-    ("Math.max(level", "Math.min(level", "wrong-limit", "Change to `max`"),
+    ("Math.max(level", "Math.min(level", "wrong-limit", "Change to `Math.max`"),
     ('response name="open"', 'response name="check"', "unknown-field", "Change to `open`"),
 ]
 

@@ -9,7 +9,7 @@ from fractions import Fraction
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import constant
 from roaml.expr.tree import Call, Member
-from roaml.expr.types import Scalar
+from roaml.expr.types import INTEGER_RANGES
 from roaml.model.behavior.knowledge import variables_in
 from roaml.model.machine import Assign, Chart, If, Statement, bodies
 from roaml.model.syntax import Expression
@@ -28,9 +28,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         fixed = {name: value for name, value in fixed_variables(chart).items() if isinstance(value, Fraction)}
         types = context.typed.variables.get(chart.scope, {})
         positive = {name for name, value in fixed.items() if value > 0}
-        positive |= {
-            name for name, type_ in types.items() if isinstance(type_, Scalar) and type_.name.startswith("uint")
-        }
+        positive |= {name for name, type_ in types.items() if INTEGER_RANGES.get(str(type_), (-1, 0))[0] == 0}
         for statement in chart.statements:
             if isinstance(statement, Assign) and statement.location is not None:
                 place = place_of(statement.location.tree)
@@ -87,9 +85,8 @@ def _check(call: Call, place: str, positive: Collection[str], fixed: Collection[
             message = (
                 f"`{place}` {how} here, and `Math.{function.name}` only gives it {bound} limit; use `Math.{right}`"
             )
-            yield RULE.at(
-                function.name_span, message, Fix(f"Change to `{right}`", (TextEdit(function.name_span, right),))
-            )
+            fix = Fix(f"Change to `Math.{right}`", (TextEdit(function.name_span, right),))
+            yield RULE.at(function.name_span, message, fix)
 
 
 RULE = Rule(
