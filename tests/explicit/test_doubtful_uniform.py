@@ -32,10 +32,18 @@ def verdict(text: str, method: ExtremeMethod = ExtremeMethod.SAMPLING) -> Verdic
         ),
         ("p >= 0.9", "NOT MET under sampled scheduler 1: 0.756 in [0.64, 0.872]"),
         ("p <= 0.9", "met"),
+        ("p == 0.5", "NOT MET under uniform choices"),
+        ("p == 0.95", "NOT MET under sampled scheduler 1: 0.756 in [0.64, 0.872]"),
     ],
 )
 def test_the_line_says_what_the_sampled_scheduler_shows(text: str, words: str) -> None:
     assert verdict(text).text == words
+
+
+def test_values_for_instant_reactions_are_a_reason() -> None:
+    missed = verdict("p >= 0.9", ExtremeMethod.REACTIONS)
+    assert missed.text == "NOT MET if machines react at once: 0.756"
+    assert missed.is_certain
 
 
 def test_the_estimate_under_uniform_choices_is_no_reason() -> None:

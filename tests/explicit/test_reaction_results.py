@@ -13,6 +13,12 @@ from as2fm_lsp.cli.main import run
 from roaml import api
 from roaml.durations import ANY_TIME, AT_ONCE, ReactionTime, reaction_time
 from roaml.model.parameters import Overrides
+from roaml.smc.choices import Choices, Extreme, ExtremeMethod
+from roaml.smc.goal import Question
+from roaml.smc.statistics import Bounds
+from roaml.verification.headline import claim_for_all
+from roaml.verification.reactions import with_reactions
+from roaml.verification.results import Exact
 
 LAMP = """\
 <ascxml name="Lamp" version="1.0" initial="off">
@@ -141,6 +147,30 @@ def test_open_extremes_are_shown_for_instant_reactions(tmp_path: Path, capsys: p
     (conditional,) = result["conditional"]
     assert conditional["assumption"] == "if machines react at once"
     assert conditional["exact"]["least"] == 1
+
+
+def test_values_for_instant_reactions_bound_those_of_all_schedulers() -> None:
+    """Machines that react at once follow some of all schedulers."""
+    uniform = Extreme(1.0, Bounds(0.98, 1.0), ExtremeMethod.UNIFORM)
+    instant = Exact(Bounds(0.9, 0.9), Bounds(0.99, 0.99), None, 20)
+    known = with_reactions(Choices("", uniform, uniform), instant)
+    assert known.minimum == Extreme(0.9, Bounds(0.9, 0.9), ExtremeMethod.REACTIONS)
+    assert known.maximum == Extreme(0.99, Bounds(0.99, 0.99), ExtremeMethod.REACTIONS)
+    sampled = Extreme(0.5, Bounds(0.4, 0.6), ExtremeMethod.SAMPLING, "sampled scheduler 1", 60)
+    assert with_reactions(Choices("", sampled, uniform), instant).minimum == sampled
+    nothing = with_reactions(Choices(), Exact(Bounds(1, 1), Bounds(1, 1), None, 20))
+    assert claim_for_all(Question("p", "Pmin", False, None, ()), nothing) == "minimum not known"
+
+
+@pytest.mark.parametrize(("value", "words"), [(0.872, ", at most 0.872"), (1 - 2**-20, ", less than 1"), (1.0, "")])
+def test_a_bound_is_true_after_rounding(value: float, words: str) -> None:
+    known = Extreme(value, Bounds(value, value), ExtremeMethod.REACTIONS)
+    question = Question("p", "Pmin", False, None, ())
+    assert claim_for_all(question, Choices("", known, None)) == f"minimum not known{words}"
+    opposite = Extreme(1 - value, Bounds(1 - value, 1 - value), ExtremeMethod.REACTIONS)
+    words = words.replace("at most 0.872", "at least 0.128").replace("less than 1", "greater than 0")
+    question = Question("p", "Pmax", False, None, ())
+    assert claim_for_all(question, Choices("", None, opposite)) == f"maximum not known{words}"
 
 
 def test_requested_traces_are_not_extended_by_a_search(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

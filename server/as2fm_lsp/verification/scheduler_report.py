@@ -41,6 +41,8 @@ def _known(question: Question, extreme: Extreme) -> str:
     choices is in the line before it."""
     if extreme.is_exact:
         return f"is {number(extreme.value)} (exact, from all states)"
+    if extreme.method is ExtremeMethod.REACTIONS and (bound := bound_text(question, extreme)):
+        return f"is {bound}, the value if machines react at once"
     if extreme.method is ExtremeMethod.SAMPLING and (bound := bound_text(question, extreme)):
         return f"is {bound} (by {extreme.scheduler})"
     return f"may be {'smaller' if is_minimised(question) else 'greater'}: other schedulers have other values"

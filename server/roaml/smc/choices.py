@@ -40,6 +40,7 @@ class ExtremeMethod(Vocabulary):
     EXPLORATION = "all states"
     SAMPLING = "sampled schedulers"
     UNIFORM = "uniform choices"
+    REACTIONS = "machines that react at once"
 
 
 class Extreme(Record, frozen=True):
@@ -48,7 +49,8 @@ class Extreme(Record, frozen=True):
     Attributes:
         value: the estimate, or the exact value.
         bounds: an interval that contains the probability under some scheduler; this is certain if all states were
-            explored, and otherwise has the confidence of the method.
+            explored, also with the assumption that machines react at once, and otherwise has the confidence of the
+            method.
         method: the method by which the extreme was found.
         scheduler: a description of the sampled scheduler that achieves the value; empty for the other methods.
         traces: the number of traces on which the estimate is based; 0 for an exact value.

@@ -16,7 +16,7 @@ from collections.abc import Callable
 
 from roaml.exhaustive import assert_never
 from roaml.record import Record
-from roaml.smc.choices import Choices, Extreme
+from roaml.smc.choices import Choices, Extreme, ExtremeMethod
 from roaml.smc.end import End
 from roaml.smc.goal import Question
 from roaml.smc.run import Answer
@@ -27,6 +27,7 @@ from roaml.verification.schedulers import extreme_of, is_minimised
 NOT_KNOWN = "not known"
 NO_TRACES = "no result yet"
 UNKNOWN = "unknown"
+_SIGNS = (("at most", "≤"), ("at least", "≥"), ("less than", "<"), ("greater than", ">"))
 
 
 class Headline(Record, frozen=True):
@@ -80,7 +81,9 @@ def of_answer(answer: Answer, choices: Choices | None = None) -> Headline:
     claim = claim_for_all(answer.question, choices) if answer.tally.traces else ""
     if not claim:
         return Headline("", estimate, short)
-    brief = claim.replace(", at most ", ", ≤ ").replace(", at least ", ", ≥ ")
+    brief = claim
+    for words, sign in _SIGNS:
+        brief = brief.replace(f", {words} ", f", {sign} ")
     return Headline(claim, estimate, f"{brief}; uniform {short}")
 
 
@@ -109,11 +112,16 @@ def bound_text(question: Question, known: Extreme | None) -> str:
     as `at most 0.17`; "" for nothing."""
     if known is None or question.has_opposite_extremes or question.is_reward:
         return ""
+    digits = 6 if known.method is ExtremeMethod.REACTIONS else 3
     if is_minimised(question):
-        upper = _outwards(known.bounds.upper, math.ceil)
-        return f"at most {upper:g}" if upper < 1 else ""
-    lower = _outwards(known.bounds.lower, math.floor)
-    return f"at least {lower:g}" if lower > 0 else ""
+        upper = _outwards(known.bounds.upper, math.ceil, digits)
+        if upper < 1:
+            return f"at most {upper:g}"
+        return "less than 1" if known.method is ExtremeMethod.REACTIONS and known.bounds.upper < 1 else ""
+    lower = _outwards(known.bounds.lower, math.floor, digits)
+    if lower > 0:
+        return f"at least {lower:g}"
+    return "greater than 0" if known.method is ExtremeMethod.REACTIONS and known.bounds.lower > 0 else ""
 
 
 def estimate_text(answer: Answer) -> str:
@@ -176,9 +184,10 @@ def _short(answer: Answer) -> str:
     return f"{_rounded(answer.value)} [{_rounded(lower)}, {_rounded(upper)}]"
 
 
-def _outwards(value: float, rounding: Callable[[float], int]) -> float:
-    """A bound with three digits after the point, rounded so that the statement remains true."""
-    return rounding(round(value * 1000, 9)) / 1000
+def _outwards(value: float, rounding: Callable[[float], int], digits: int = 3) -> float:
+    """A bound with some digits after the point, rounded so that the statement remains true."""
+    scale = float(10**digits)
+    return rounding(round(value * scale, 9)) / scale
 
 
 def _rounded(value: float, digits: int = 3) -> str:

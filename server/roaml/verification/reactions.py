@@ -11,6 +11,7 @@ from roaml.explicit.independence import can_be_reduced
 from roaml.explicit.space import LimitError, StateLimits, explore
 from roaml.jani.model import Clock
 from roaml.record import replace
+from roaml.smc.choices import Choices, Extreme, ExtremeMethod
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
@@ -55,6 +56,17 @@ def at_once(
     if exact is None or not exact.is_precise:
         return None
     return UnderAssumption(ASSUMPTION, Computed(question, exact), _remark(outcome, exact, metadata.clock))
+
+
+def with_reactions(choices: Choices, exact: Exact) -> Choices:
+    """What is known about schedulers, with the values if machines react at once. The schedulers under which they do are
+    among all schedulers, so these values bound the minimum from above and the maximum from below."""
+    least, greatest = choices.minimum, choices.maximum
+    if least is None or exact.minimum.upper < least.bounds.upper:
+        least = Extreme(exact.least, exact.minimum, ExtremeMethod.REACTIONS)
+    if greatest is None or exact.maximum.lower > greatest.bounds.lower:
+        greatest = Extreme(exact.greatest, exact.maximum, ExtremeMethod.REACTIONS)
+    return replace(choices, minimum=least, maximum=greatest)
 
 
 def _is_open(outcome: Outcome) -> bool:

@@ -41,7 +41,9 @@ def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | No
     if threshold.relation is BinaryOperator.EQUAL:
         width = answer.options.epsilon
         bounds = None if extreme is None else extreme.bounds
-        if bounds is not None and not bounds.lower - width <= threshold.number <= bounds.upper + width:
+        if bounds is not None and (
+            threshold.number > bounds.upper + width if is_minimum else threshold.number < bounds.lower - width
+        ):
             return missed
         return replace(verdict, is_uniform=verdict.is_met)
     if threshold.is_lower is is_minimum:
@@ -70,6 +72,8 @@ def _missed_by(question: Question, extreme: Extreme | None) -> str:
         return "under uniform choices"
     if extreme.is_exact:
         return f"by the {extreme_of(question)} over all schedulers, which is {number(extreme.value)}"
+    if extreme.method is ExtremeMethod.REACTIONS:
+        return f"if machines react at once: {number(extreme.value)}"
     return f"under {extreme.scheduler}: {interval_text(extreme)}"
 
 

@@ -26,7 +26,7 @@ from roaml.verification.exhaustive import UndecidedError, alone, check_exactly, 
 from roaml.verification.expectations import Expectation, Verdict, check_expectation, check_range, is_possible
 from roaml.verification.explorations import Explorations, subject_of
 from roaml.verification.reactions import LIMITS as REACTION_LIMITS
-from roaml.verification.reactions import at_once
+from roaml.verification.reactions import at_once, with_reactions
 from roaml.verification.refusal import refusal
 from roaml.verification.results import (
     Computed,
@@ -632,6 +632,11 @@ class Verifier(Record, frozen=True):
         )
         if under is None:
             return result
+        match result.outcome, under.outcome:
+            case Estimated(choices=Choices() as known) as estimated, Computed(exact=exact):
+                estimated = replace(estimated, choices=with_reactions(known, exact))
+                verdicts = _verdicts(self.target, self.expected(property_), estimated, None)
+                result = replace(result, outcome=estimated, verdicts=verdicts)
         return replace(result, conditional=(*result.conditional, under), seconds=time.monotonic() - began)
 
     def check_stuck(self, level: StuckLevel = StuckLevel.WARNING, pulse: Pulse | None = None) -> StuckResult:
