@@ -18,6 +18,7 @@ import pytest
 
 if TYPE_CHECKING:
     from roaml import api
+    from roaml.project.settings import Settings
 
 _EXTENSION = ".xml"
 
@@ -76,7 +77,10 @@ class ModelFile(pytest.File):
         from roaml import api  # noqa: PLC0415
 
         if self._results is None:
-            results = api.verify(self._target, exact_if_small=True)
+            settings = self._settings
+            results = api.verify(
+                self._target, only_uniform=settings.only_uniform, exact_if_small=True, uniform=settings.uniform
+            )
             self._results = {result.name: result for result in results}
         return self._results[name]
 
@@ -88,10 +92,14 @@ class ModelFile(pytest.File):
     @functools.cached_property
     def _target(self) -> api.VerificationTarget:
         from roaml import api  # noqa: PLC0415
+
+        return api.target(str(self.path), settings=self._settings)
+
+    @functools.cached_property
+    def _settings(self) -> Settings:
         from roaml.project.configuration import find_settings  # noqa: PLC0415
 
-        settings, _ = find_settings(str(self.path))
-        return api.target(str(self.path), settings=settings)
+        return find_settings(str(self.path))[0]
 
 
 class _ModelItem(pytest.Item):

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Comparisons with a number as users write them: `>= 0.95`."""
+"""Comparisons with a number as users write them: `>= 0.95`; what one is worth that is not known to hold for all
+schedulers."""
 
 from __future__ import annotations
 
 import math
 
+from roaml.exhaustive import Vocabulary
 from roaml.record import Record
 from roaml.regex import regex
 
@@ -17,6 +19,20 @@ class Comparison(Record, frozen=True):
 
     relation: str
     number: float
+
+
+class UniformPolicy(Vocabulary):
+    """What an expectation is worth that is met under uniform choices, but not known to be met under all schedulers.
+
+    Attributes:
+        ACCEPT: it is met.
+        WARN: it is met, and a warning reports it.
+        FAIL: it is not met.
+    """
+
+    ACCEPT = "accept"
+    WARN = "warn"
+    FAIL = "fail"
 
 
 def read_comparison(text: str) -> Comparison | None:

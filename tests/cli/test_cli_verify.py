@@ -201,7 +201,7 @@ def test_expectations_in_the_configuration(command: Command, tmp_path: Path) -> 
         ('expect = ["x"]', "`verify.expect` must be a table"),
         ('expect.heads = "often"', "the expectation of `heads` must be a comparison with a number"),
         ("expect.heads = 1", "the expectation of `heads` must be a comparison with a number"),
-        ("expects = 1", "there is no setting `verify.expects`; valid settings are `expect` and `scheduler`"),
+        ("expects = 1", "there is no setting `verify.expects`; valid settings are `expect`, `scheduler` and `uniform`"),
     ],
 )
 def test_wrong_expectations_in_the_configuration(command: Command, tmp_path: Path, written: str, message: str) -> None:

@@ -228,6 +228,43 @@ def test_met_under_uniform_choices(command: Command, tmp_path: Path) -> None:
     assert "which may differ; " in (properties["warning"] or "")
 
 
+@pytest.mark.parametrize(
+    ("policy", "status", "text"),
+    [
+        ("accept", 0, "met under uniform choices"),
+        ("warn", 0, "met under uniform choices"),
+        ("fail", 1, "NOT MET: known only under uniform choices"),
+    ],
+)
+def test_the_worth_of_what_is_met_only_under_uniform_choices(
+    command: Command, tmp_path: Path, policy: str, status: int, text: str
+) -> None:
+    name = write(tmp_path, hidden())
+    arguments = ("verify", name, "--expect", "p >= 0.9", "--method", "fixed", "--max-traces", "200")
+    done = command(*arguments, "--uniform", policy)
+    assert done.status == status
+    (tmp_path / "as2fm.toml").write_text(f'[verify]\nuniform = "{policy}"\n')
+    assert command(*arguments).status == status
+    assert command(*arguments, "--uniform", "accept").status == 0
+    assert f"\n  expected ≥ 0.9: {text}; " in done.out or f"\n  expected ≥ 0.9: {text}\n" in done.out
+    count = "\n1 of 1 expectation is met only under uniform choices, not known to be met under all schedulers: p\n"
+    assert (count in done.out) is (policy != "accept")
+    about = f"expected ≥ 0.9: {text}"
+    reports = {form: command(*arguments, "--format", form).out for form in ("json", "junit", "sarif", "markdown")}
+    (row,) = rows(reports["json"]).values()
+    assert (row["expectations"][0]["met"], row["expectations"][0]["uniform"]) == (status == 0, policy)
+    assert (about in row["warning"]) is (policy == "warn")
+    (case,) = ET.fromstring(reports["junit"]).iter("testcase")
+    assert (case.find("failure") is not None) is (status == 1)
+    properties = {item.get("name"): item.get("value") for item in case.iter("property")}
+    assert (properties["expected ≥ 0.9"] or "").startswith(text)
+    (run_,) = json.loads(reports["sarif"])["runs"]
+    levels = [found["level"] for found in run_["results"] if about in found["message"]["text"]]
+    assert levels == {"accept": [], "warn": ["warning"], "fail": ["error"]}[policy]
+    assert f"| ≥ 0.9 | {text}" in reports["markdown"]
+    assert (count in reports["markdown"]) is (policy != "accept")
+
+
 def test_the_note_names_each_property_once(command: Command, tmp_path: Path) -> None:
     """The note also states why no schedulers were sampled, if none were."""
     written = hidden()
@@ -366,7 +403,9 @@ def test_uniform_choices_that_are_requested(command: Command, tmp_path: Path, wa
     assert "minimum" not in row
 
 
-@pytest.mark.parametrize("text", ["[verify]\nscheduler = 1", "[verify]\nsched = 'uniform'", "verify = 3"])
+@pytest.mark.parametrize(
+    "text", ["[verify]\nscheduler = 1", "[verify]\nsched = 'uniform'", "verify = 3", "[verify]\nuniform = 'ok'"]
+)
 def test_mistakes_in_the_configuration(command: Command, tmp_path: Path, text: str) -> None:
     (tmp_path / "as2fm.toml").write_text(text)
     done = command("verify", write(tmp_path, coin()))

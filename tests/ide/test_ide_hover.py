@@ -18,7 +18,7 @@ from roaml.ide.describe.markdown import plain
 from roaml.ide.hover import hover
 from roaml.language import HL_SCXML
 from roaml.language.json_schema import PROPERTIES
-from roaml.project.settings import Settings
+from roaml.project.settings import SETTING_DOCUMENTATION, TABLES_OF_SETTINGS, VALUES_OF_SETTINGS, Settings
 
 MODELS = {"robot": split_files(ROBOT), "corners": split_files(CORNERS)}
 
@@ -92,6 +92,29 @@ def test_numbers_of_status(number: str, name: str) -> None:
     assert hover_in(other, f"{number}}}") is None
     turned = text.replace("FORMULA", f'{{"op": "=", "left": {number}, "right": "act_result_handle_client_a__code"}}')
     assert "4 = STATUS_SUCCEEDED" in (hover_in(turned, f'{number}, "right"') or "")
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "at", "expected"),
+    [
+        ("as2fm.toml", '[verify]\nuniform = "fail"\n', "form", "Values: accept, warn, fail"),
+        ("as2fm.toml", '[verify]\nexpect.alarm = ">= 0.9"\n', "expect", "The expected values of properties"),
+        ("as2fm.toml", 'verify.scheduler = "uniform"\n', "scheduler", "only uniform choices are considered"),
+        ("pyproject.toml", '[tool.as2fm]\ntree-semantics = "as2fm"\n', "semantics", "Values: behaviortree-cpp, as2fm"),
+        ("pyproject.toml", '[project]\nroots = "as2fm"\n', "roots", None),
+        ("as2fm.toml", "[verify]\nuniform = \n", "form", None),
+        ("as2fm.toml", "[severity]\nshort-time = 'hint'\n", "time", None),
+    ],
+)
+def test_settings(name: str, text: str, at: str, expected: str | None) -> None:
+    shown = hover_in(text, at, name)
+    assert shown is None if expected is None else expected in (shown or "")
+
+
+def test_every_setting_has_documentation() -> None:
+    names = {f"{table}.{name}" if table else name for table, names in TABLES_OF_SETTINGS.items() for name in names}
+    assert set(SETTING_DOCUMENTATION) == names
+    assert set(VALUES_OF_SETTINGS) <= names
 
 
 def test_every_operator_is_explained_in_models_too() -> None:

@@ -207,6 +207,8 @@ export interface Verified {
         readonly certain: boolean;
         /** Whether the expectation is met under uniform choices, but not known to be met under all schedulers. */
         readonly under_uniform_choices_only?: boolean;
+        /** What the expectation is worth then. */
+        readonly uniform?: "accept" | "warn" | "fail";
         /** The number of traces if none of them contradicts an expected 0 or 1. */
         readonly unanimous?: number;
     }[];

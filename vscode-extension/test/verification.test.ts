@@ -81,6 +81,18 @@ test("an expectation that only uniform choices are known to meet passes with a r
     });
 });
 
+test("an expectation that is accepted under uniform choices passes without a remark", () => {
+    const uniformOf = (uniform: "accept" | "warn") => {
+        const outcome = outcomeOf({
+            ...ROW,
+            expectations: [{ ...MET, under_uniform_choices_only: true, uniform }],
+        });
+        return outcome.kind === "passed" ? outcome.uniform : undefined;
+    };
+    assert.deepEqual(uniformOf("accept"), []);
+    assert.deepEqual(uniformOf("warn"), [">= 0.5"]);
+});
+
 test("a warning is also reported for a failure", () => {
     const warning = "all 200 traces got stuck and say nothing about the property";
     const failed = outcomeOf({ ...ROW, expectations: [MISSED], warning });

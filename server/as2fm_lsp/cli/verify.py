@@ -138,6 +138,7 @@ def _run(options: argparse.Namespace, interrupts: Interrupts) -> int:
                 exact_if_small=not asks_for_traces(options),
                 example_traces=EXAMPLE_TRACES,
                 limits=state_limits_in(options),
+                uniform=options.uniform or settings.uniform,
             )
     except (api.ModelError, api.JaniError) as error:
         return _errors(options, error_report(error))

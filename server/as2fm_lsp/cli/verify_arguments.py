@@ -13,6 +13,7 @@ from as2fm_lsp.cli.formats import Format
 from as2fm_lsp.cli.model_arguments import UsageError, add_model_arguments
 from as2fm_lsp.cli.numbers import natural, positive, size
 from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, InputPath, OutputFolder, OutputPath
+from roaml.comparison import UniformPolicy
 from roaml.exhaustive import Vocabulary
 from roaml.experiments.bands import BandKind
 from roaml.explicit.space import StateLimits
@@ -87,6 +88,9 @@ def parser() -> ArgumentParser:
         "repeated. It can be written as in PRISM: 'Pmax=? [ F<=100 done ]'")  # fmt: skip
     add("--expect", action="append", default=[], metavar="'NAME >= P'", help="expect this of the "
         "property NAME, with >=, <=, >, < or ==, and exit with 1 if it does not hold; may be repeated")  # fmt: skip
+    add("--uniform", action=WordAction, words=UniformPolicy, help="what an expectation is worth that is met under "
+        "uniform choices, but not known to be met under all schedulers: it is met (accept), met with a warning (warn, "
+        "the default), or not met, with exit status 1 (fail)")  # fmt: skip
     add_sampling(result)
     _add_search(result)
     add_model_arguments(result)

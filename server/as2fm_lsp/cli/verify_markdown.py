@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from as2fm_lsp.cli.formats import CheckReport, Format, render
 from as2fm_lsp.cli.formats.markdown import cell
 from as2fm_lsp.verification.findings import value_text
+from as2fm_lsp.verification.report import met_only_uniformly
 from roaml.record import replace
 from roaml.verification.results import Result
 
@@ -25,6 +26,7 @@ def as_markdown(results: Sequence[Result], report: CheckReport, assumptions: str
         verdict = ", ".join(verdict.text for verdict in result.verdicts) or "–"
         lines.append(f"| `{result.name}` | {cell(value_text(result))} | {cell(expected)} | {cell(verdict)} |")
     text = "".join(f"{line}\n" for line in lines)
+    text += "".join(f"\n{line}\n" for line in met_only_uniformly(results))
     if report.entries:
         text += f"\n{render(replace(report, has_summary=False), Format.MARKDOWN)}"
     return f"{text}\n" + "".join(f"{line}  \n" for line in assumptions.splitlines())

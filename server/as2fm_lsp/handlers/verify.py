@@ -162,7 +162,7 @@ class _VerifyCommand:
                 self.reject(name, str(error))
         if not usable:
             return None, {}
-        only_uniform = context.session.settings_of(self.path).only_uniform
+        configured = context.session.settings_of(self.path)
         try:
             checker = checker_of(target, usable)
         except (FaultError, api.PropertyError) as error:
@@ -173,7 +173,15 @@ class _VerifyCommand:
                     self.reject(name, str(error))
             return None, {}
         is_exact = settings.exact_if_small
-        verifier = Verifier(target, checker, settings.options, settings.expectations, only_uniform, is_exact)
+        verifier = Verifier(
+            target,
+            checker,
+            settings.options,
+            settings.expectations,
+            configured.only_uniform,
+            is_exact,
+            uniform=configured.uniform,
+        )
         properties = {}
         for name in usable:
             try:

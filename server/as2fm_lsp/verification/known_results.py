@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from as2fm_lsp.verification.settings import verification_settings
-from roaml.comparison import Comparison
+from roaml.comparison import Comparison, UniformPolicy
 from roaml.ide.verifiable import Texts, expected_beside, fingerprint
 from roaml.project.analysis import Analysis
 from roaml.project.workspace import Snapshot
@@ -39,11 +39,13 @@ class ExpectedNow(Record, frozen=True):
         client_settings: the client's settings, as received.
         beside: property -> the expectation in the file of the property.
         configured: property -> the expectation in the configuration.
+        uniform: what an expectation is worth that is met under uniform choices only.
     """
 
     client_settings: object
     beside: Mapping[str, Comparison]
     configured: Mapping[str, Comparison]
+    uniform: UniformPolicy = UniformPolicy.WARN
 
     def with_expectations(self, known: KnownResult) -> KnownResult:
         """A known result, compared with the expectations that are valid now."""
@@ -51,12 +53,13 @@ class ExpectedNow(Record, frozen=True):
         given = verification_settings(self.client_settings, known.options).expectations
         written = (self.beside.get(name), self.configured.get(name))
         more = [expectation_of(name, comparison) for comparison in written if comparison is not None]
-        return replace(known, result=with_expectations(known.result, (*given, *more)))
+        return replace(known, result=with_expectations(known.result, (*given, *more), self.uniform))
 
 
 def expected_now(snapshot: Snapshot, system: str, client_settings: object) -> ExpectedNow:
     beside = expected_beside(snapshot.analysis, system)
-    return ExpectedNow(client_settings, beside, snapshot.checker.settings.expectations)
+    settings = snapshot.checker.settings
+    return ExpectedNow(client_settings, beside, settings.expectations, settings.uniform)
 
 
 class KnownResults(Record):

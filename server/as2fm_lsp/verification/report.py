@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from as2fm_lsp.verification import activity_report, ends, exact_report, scheduler_report, stuck_report
 from as2fm_lsp.verification.doubts import CAN_GET_STUCK, can_get_stuck, doubts
 from as2fm_lsp.verification.stuck_report import PROBABILITY
+from roaml.comparison import UniformPolicy
 from roaml.exhaustive import assert_never
 from roaml.smc.choices import Choices
 from roaml.smc.end import End
@@ -74,7 +75,7 @@ def as_text(
     ]
     unexpected = _without_expectation(results) if is_whole or any(result.verdicts for result in results) else []
     note = scheduler_report.note(open_, knows_reactions=any(result.conditional for result in results))
-    return "".join(f"{line}\n" for line in (*blocks, *unexpected, *_met_only_uniformly(results), *note))
+    return "".join(f"{line}\n" for line in (*blocks, *unexpected, *met_only_uniformly(results), *note))
 
 
 def as_brief_text(results: Sequence[Result], place_of: PlaceOf, level: StuckLevel = StuckLevel.WARNING) -> str:
@@ -96,11 +97,11 @@ def _without_expectation(results: Sequence[Result]) -> list[str]:
     return [f"{NO_EXPECTATION}: {', '.join(names)}"] if names else []
 
 
-def _met_only_uniformly(results: Sequence[Result]) -> list[str]:
-    """A line with the number of expectations that are met only under uniform choices, although the exit status is that
-    of met ones; empty if there are none."""
+def met_only_uniformly(results: Sequence[Result]) -> list[str]:
+    """A line with the number of expectations that are met only under uniform choices, unless these are accepted; empty
+    if there are none."""
     verdicts = [(result.name, verdict) for result in results for verdict in result.verdicts]
-    names = [name for name, verdict in verdicts if verdict.is_uniform]
+    names = [name for name, v in verdicts if v.is_uniform and v.policy is not UniformPolicy.ACCEPT]
     if not names:
         return []
     what = f"expectation{'' if len(verdicts) == 1 else 's'} {'is' if len(names) == 1 else 'are'}"
@@ -424,8 +425,9 @@ def row(result: Result) -> dict[str, Any]:
             "met": verdict.is_met,
             "certain": verdict.is_certain,
             "under_uniform_choices_only": verdict.is_uniform,
+            **({"uniform": str(verdict.policy)} if verdict.is_uniform else {}),
             **({"not_met": verdict.under} if verdict.under else {}),
-            **({"unanimous": verdict.unanimous[0]} if verdict.unanimous is not None and verdict.is_met else {}),
+            **({"unanimous": verdict.unanimous[0]} if verdict.unanimous is not None and verdict.unanimous_text else {}),
         }
         for verdict in result.verdicts
     ]
@@ -473,6 +475,7 @@ def warning(result: Result) -> str:
         parts.append(activity_report.warning(result.answer))
     if isinstance(result.outcome, Estimated):
         parts.append(scheduler_report.warning(result.outcome.answer.question, result.outcome.choices))
+    parts += [f"expected {v.expectation.text}: {v.text}" for v in result.verdicts if v.is_warned_about]
     parts += doubts(result)
     if can_get_stuck(result):
         parts.append(CAN_GET_STUCK)

@@ -24,7 +24,7 @@ class ResultMark(Enum):
     """The verdict on a result, which editors show as a symbol.
 
     Attributes:
-        UNIFORM: the expectation is met under uniform choices only.
+        UNIFORM: the expectation is met under uniform choices only, which a warning reports.
         OPEN: no expectation.
         UNDECIDED: neither an expectation nor a value for all schedulers.
         DOUBTFUL: traces got stuck.
@@ -53,7 +53,7 @@ def mark_of(result: Result) -> ResultMark:
         return ResultMark.DOUBTFUL
     if missed(result):
         return ResultMark.FAILED
-    if any(verdict.is_uniform for verdict in result.verdicts):
+    if any(verdict.is_warned_about for verdict in result.verdicts):
         return ResultMark.UNIFORM
     if result.verdicts:
         return ResultMark.PASSED

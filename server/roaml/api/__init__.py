@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     )
     from roaml.api.trees import propose_mocks
     from roaml.api.verifying import ConstantError, as_target, checker, target, verifier, verify
-    from roaml.comparison import Comparison
+    from roaml.comparison import Comparison, UniformPolicy
     from roaml.diagnostics import Diagnostic, Severity
     from roaml.expansion.draws import DrawnNumber
     from roaml.experiments.changes import ValueChange, ValueVerdict
@@ -129,7 +129,7 @@ if TYPE_CHECKING:
     from roaml.views.waiting import Wait
 else:
     _IMPORTED_ON_USE = {
-        "roaml.comparison": ("Comparison",),
+        "roaml.comparison": ("Comparison", "UniformPolicy"),
         "roaml.api.checking": ("CheckResult", "check", "fix"),
         "roaml.api.comparing": (
             "ComparedPicture",
@@ -366,6 +366,7 @@ __all__ = [
     "Trend",
     "Undecided",
     "UnderAssumption",
+    "UniformPolicy",
     "ValueChange",
     "ValueVerdict",
     "Verdict",

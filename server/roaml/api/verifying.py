@@ -9,6 +9,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from roaml.api.jani_files import read_jani
+from roaml.comparison import UniformPolicy
 from roaml.disk import MAX_DATA, required
 from roaml.durations import ReactionTime
 from roaml.jani.model import Model
@@ -197,11 +198,12 @@ def verifier(
     exact_if_small: bool = False,
     example_traces: int | None = None,
     limits: StateLimits | None = None,
+    uniform: UniformPolicy = UniformPolicy.WARN,
 ) -> Verifier:
     """A verifier, which verifies properties one by one. A verification can be observed, interrupted and continued.
 
     Args:
-        subject, properties, options, expectations, only_uniform, exact_if_small: as for `verify`.
+        subject, properties, options, expectations, only_uniform, exact_if_small, uniform: as for `verify`.
         example_traces: the number of traces for a result with exact values; `None` for the number that an estimate
             needs.
         limits: the limits of all searches for exact values together, with `exact_if_small`.
@@ -223,6 +225,7 @@ def verifier(
         exact_if_small=exact_if_small,
         example_traces=example_traces,
         limits=limits,
+        uniform=uniform,
     )
 
 
@@ -236,6 +239,7 @@ def verify(
     expectations: Iterable[str | Expectation] = (),
     only_uniform: bool = False,
     exact_if_small: bool = False,
+    uniform: UniformPolicy = UniformPolicy.WARN,
 ) -> Iterator[Result]:
     """Estimate the probabilities of properties by random traces with uniform choices. Properties share traces.
 
@@ -251,6 +255,8 @@ def verify(
             the verdicts state whether they lead to other values.
         exact_if_small: whether a result also has exact values (`Result.exact`), which decide its verdicts, if the model
             has few states.
+        uniform: what an expectation is worth that is met under uniform choices, but not known to be met under all
+            schedulers.
 
     Raises:
         PropertyError: a property does not exist.
@@ -261,7 +267,13 @@ def verify(
     from roaml.smc.pool import Pool  # noqa: PLC0415
 
     ready = verifier(
-        subject, properties, options, expectations, only_uniform=only_uniform, exact_if_small=exact_if_small
+        subject,
+        properties,
+        options,
+        expectations,
+        only_uniform=only_uniform,
+        exact_if_small=exact_if_small,
+        uniform=uniform,
     )
     with Pool(jobs, executor) as pool:
         yield from ready.verify_all(pool)

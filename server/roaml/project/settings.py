@@ -12,7 +12,7 @@ import os
 from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import Any
 
-from roaml.comparison import Comparison, read_comparison
+from roaml.comparison import Comparison, UniformPolicy, read_comparison
 from roaml.diagnostics import Severity, current_code
 from roaml.durations import REACTION_TIME, ReactionTime, reaction_time
 from roaml.forest.settings import NEWEST, TreeSettings
@@ -25,7 +25,7 @@ from roaml.project import exclude
 from roaml.project.exclude import NOTHING, Exclude
 from roaml.project.paths import full
 from roaml.record import Record, field, replace
-from roaml.suggest import close_names, did_you_mean
+from roaml.suggest import close_names, did_you_mean, listing
 from roaml.toml import Path
 
 SEVERITIES = {severity.label: severity for severity in Severity}
@@ -46,6 +46,7 @@ class Settings(Record, frozen=True):
         warnings_as_errors: whether warnings are reported as errors.
         only_uniform: whether `verify` assumes uniform choices even if a property requests the minimum or maximum over
             all schedulers.
+        uniform: what an expectation is worth that is met under uniform choices only.
         expectations: name of a property -> the result that `verify` expects.
         reaction_time: the reaction time of trees with mocks, and of systems that state none; `None` for `instant` in
             trees and `any` in systems.
@@ -65,6 +66,7 @@ class Settings(Record, frozen=True):
     severities: Mapping[str, Severity] = field(default_factory=dict)
     warnings_as_errors: bool = False
     only_uniform: bool = False
+    uniform: UniformPolicy = UniformPolicy.WARN
     expectations: Mapping[str, Comparison] = field(default_factory=dict)
     reaction_time: ReactionTime | None = None
     limits: Limits = DEFAULT_LIMITS
@@ -257,21 +259,31 @@ def _count(path: Path, value: Any, problems: list[SettingProblem]) -> int | None
 def _verify(path: Path, value: Any, problems: list[SettingProblem]) -> dict[str, Any] | None:
     """The fields of `Settings` that the table `verify` sets, by name."""
     if not isinstance(value, dict):
-        problems.append(SettingProblem(path, f"`{path[0]}` must be a table with `expect` or `scheduler`"))
+        problems.append(SettingProblem(path, f"`{path[0]}` must be a table with {_choice(_VERIFY)}"))
         return None
     fields: dict[str, Any] = {}
     for key, setting in value.items():
         if key == "expect":
             fields["expectations"] = _expectations((*path, key), setting, problems)
-        elif key != "scheduler":
-            close = close_names(key, ("scheduler", "expect"))
-            message = f"there is no setting `verify.{key}`; valid settings are `expect` and `scheduler`"
+        elif key not in VALUES_OF_VERIFY:
+            close = close_names(key, _VERIFY)
+            message = f"there is no setting `verify.{key}`; valid settings are {listing(_VERIFY)}"
             problems.append(SettingProblem((*path, key), message, is_key=True, instead=close))
-        elif setting != "uniform":
-            problems.append(SettingProblem((*path, key), "`verify.scheduler` must be `uniform`"))
-        else:
+        elif setting not in VALUES_OF_VERIFY[key]:
+            close = close_names(setting, VALUES_OF_VERIFY[key]) if isinstance(setting, str) else ()
+            message = f"`verify.{key}` must be {_choice(VALUES_OF_VERIFY[key])}"
+            problems.append(SettingProblem((*path, key), message, instead=close))
+        elif key == "scheduler":
             fields["only_uniform"] = True
+        else:
+            fields["uniform"] = UniformPolicy(setting)
     return fields
+
+
+def _choice(words: Collection[str]) -> str:
+    """The words in backquotes, as in `a`, `b` or `c`."""
+    *others, last = (f"`{word}`" for word in words)
+    return f"{', '.join(others)} or {last}" if others else last
 
 
 def _expectations(path: Path, value: Any, problems: list[SettingProblem]) -> dict[str, Comparison]:
@@ -326,6 +338,12 @@ def _semantics(path: Path, value: Any, problems: list[SettingProblem]) -> TreeSe
     return semantics
 
 
+VALUES_OF_VERIFY: Mapping[str, tuple[str, ...]] = {
+    "scheduler": ("uniform",),
+    "uniform": tuple(map(str, UniformPolicy)),
+}
+"""The values of the settings in the table `verify`, except `expect`."""
+_VERIFY = ("expect", *VALUES_OF_VERIFY)
 _SETS = ("select", "ignore")
 _TREES = {
     "tree-models": "models",
@@ -363,8 +381,37 @@ VALUES_OF_SETTINGS: Mapping[str, tuple[str, ...]] = {
     "warnings-as-errors": ("true", "false"),
     "tree-libraries": tuple(LIBRARIES),
     "tree-semantics": tuple(SEMANTICS),
+    **{f"verify.{name}": words for name, words in VALUES_OF_VERIFY.items()},
 }
-"""The values of those settings that have few."""
+"""The values of those settings that have few; the settings of the table `verify` have its name before theirs."""
+TABLES_OF_SETTINGS: Mapping[str, tuple[str, ...]] = {"": SETTING_NAMES, "verify": _VERIFY}
+"""Table -> the names of its settings; "" is the table of all settings."""
+SETTING_DOCUMENTATION: Mapping[str, str] = {
+    "roots": "Folders with systems. Without it, the whole folder is searched.",
+    "ros-path": "Folders with ROS interface packages.",
+    "exclude": "Files that are ignored. Patterns are written as in `.gitignore`.",
+    "select": "The rules that are reported. Without it, all rules are.",
+    "ignore": "Rules that are not reported.",
+    "severity": "The severities of rules: a table of rule codes and severities.",
+    "warnings-as-errors": "Whether warnings are reported as errors.",
+    "verify": "What `verify` expects and assumes: a table with `expect`, `scheduler` and `uniform`.",
+    "verify.expect": 'The expected values of properties, such as `alarm = ">= 0.95"`.',
+    "verify.scheduler": "With `uniform`, only uniform choices are considered, also for a property that asks for the "
+    "minimum or maximum over all schedulers.",
+    "verify.uniform": "What an expectation is worth that is met under uniform choices, but not known to be met under "
+    "all schedulers: it is met (`accept`), met with a warning (`warn`, the default), or not met (`fail`).",
+    "parameters": "Values for the parameters that models declare.",
+    "reaction-time": "The reaction time of trees with mocks, and of systems that state none: `any`, `instant`, or a "
+    "duration such as `20 ms`.",
+    "max-cells": "The maximum number of array cells of a system that is translated.",
+    "max-parts": "The maximum number of parts of a system that is translated.",
+    "tree-models": "Files with models of nodes, for trees without a system.",
+    "tree-libraries": "Libraries of nodes. The default is `nav2` for trees that use nodes of Nav2.",
+    "behaviortree-cpp": "The version of BehaviorTree.CPP. The default is the newest one.",
+    "tree-semantics": "The meaning of the nodes of BehaviorTree.CPP in systems: that of the library "
+    "(`behaviortree-cpp`, the default), or of AS2FM (`as2fm`).",
+}
+"""What each setting means, in one or two sentences of Markdown. Settings in a table have its name before theirs."""
 
 
 def enclosing_root(path: str) -> str | None:

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 
-from roaml.comparison import Comparison, as_written, read_comparison
+from roaml.comparison import Comparison, UniformPolicy, as_written, read_comparison
 from roaml.jani.operators import BinaryOperator
 from roaml.record import Record
 from roaml.regex import regex
@@ -56,8 +56,10 @@ class Verdict(Record, frozen=True):
     Attributes:
         is_certain: whether the verdict is the same for the whole interval.
         is_uniform: whether the expectation is met under uniform choices and not known to be met under all schedulers.
+            `policy` then decides `is_met`.
         uniform_only: what is known about the minimum or maximum if `is_uniform`, as a phrase for users; "" for nothing.
         under: a phrase that follows `NOT MET`, such as `under uniform choices` or `so far`; "" if there is none.
+        policy: what an expectation is worth that is met under uniform choices only.
         unanimous: the number of traces and the other bound of the interval, if no trace contradicts an expected 0 or 1.
     """
 
@@ -68,21 +70,35 @@ class Verdict(Record, frozen=True):
     under: str = ""
     unanimous: tuple[int, float] | None = None
     uniform_only: str = ""
+    policy: UniformPolicy = UniformPolicy.WARN
 
     @property
     def text(self) -> str:
         """A phrase for users that states whether the expectation is met."""
+        if self.is_uniform:
+            what = "met under uniform choices" if self.is_met else "NOT MET: known only under uniform choices"
+            return "; ".join(filter(None, (what, self.uniform_only)))
         if self.is_met:
-            if not self.is_uniform:
-                return "met"
-            return "; ".join(filter(None, ("met under uniform choices", self.uniform_only)))
+            return "met"
         return f"NOT MET {self.under}".rstrip()
 
     @property
     def unanimous_text(self) -> str:
         """A phrase that states that no trace contradicts an expected 0 or 1; "" if one does, and for other
         expectations."""
-        return f"no trace of {self.unanimous[0]:,} contradicts it" if self.unanimous is not None and self.is_met else ""
+        if self.unanimous is None or not self.is_met_in_traces:
+            return ""
+        return f"no trace of {self.unanimous[0]:,} contradicts it"
+
+    @property
+    def is_met_in_traces(self) -> bool:
+        """Whether the expectation is met under all schedulers, or under uniform choices."""
+        return self.is_met or self.is_uniform
+
+    @property
+    def is_warned_about(self) -> bool:
+        """Whether a warning reports that the expectation is met under uniform choices only."""
+        return self.is_uniform and self.policy is UniformPolicy.WARN
 
     def doubt(self, epsilon: float) -> str:
         """The reason why the interval leaves the verdict open; "" if it does not.
@@ -92,7 +108,8 @@ class Verdict(Record, frozen=True):
         """
         if self.is_certain:
             return ""
-        if self.unanimous is not None and self.is_met:
+        if self.unanimous_text:
+            assert self.unanimous is not None
             where = "down" if self.expectation.threshold.is_lower else "up"
             return f"{self.unanimous_text}; the interval reaches {where} to {_rounded(self.unanimous[1]):g}"
         number = as_written(self.expectation.threshold.number)
@@ -103,7 +120,7 @@ class Verdict(Record, frozen=True):
             BinaryOperator.LESS: (f"below {number}", f"of at least {number}"),
             BinaryOperator.EQUAL: (f"within {epsilon:g} of {number}", f"more than {epsilon:g} away from {number}"),
         }[self.expectation.threshold.relation]
-        return f"not certain: the interval includes values {missed if self.is_met else met}"
+        return f"not certain: the interval includes values {missed if self.is_met_in_traces else met}"
 
 
 def parse(text: str) -> Expectation:

@@ -9,6 +9,7 @@
 
 from __future__ import annotations
 
+from roaml.comparison import UniformPolicy
 from roaml.jani.operators import BinaryOperator
 from roaml.record import replace
 from roaml.smc.choices import Choices, Extreme, ExtremeMethod
@@ -55,6 +56,14 @@ def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | No
     if extreme is not None and threshold.met(extreme.bounds.upper if is_minimum else extreme.bounds.lower):
         return replace(verdict, is_met=True, is_certain=True, under="")
     return verdict
+
+
+def judged(verdict: Verdict, policy: UniformPolicy) -> Verdict:
+    """A verdict that `under_all_schedulers` has returned, with the worth of one that is met under uniform choices
+    only."""
+    if not verdict.is_uniform:
+        return verdict
+    return replace(verdict, policy=policy, is_met=policy is not UniformPolicy.FAIL)
 
 
 def _doubtful_by(threshold: Threshold, question: Question, extreme: Extreme | None) -> str:

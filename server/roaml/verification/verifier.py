@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from roaml.comparison import UniformPolicy
 from roaml.explicit.space import ExplorationProgress, ExplorationWatch, StateLimits
 from roaml.jani.properties import Property
 from roaml.jani.selection import PropertyError, select
@@ -40,7 +41,7 @@ from roaml.verification.results import (
     Traces,
     Undecided,
 )
-from roaml.verification.schedulers import is_minimised, under_all_schedulers
+from roaml.verification.schedulers import is_minimised, judged, under_all_schedulers
 from roaml.verification.small import (
     MAX_EXAMPLE_STEPS,
     SHARED_LIMITS,
@@ -113,6 +114,7 @@ def verifier_of(
     exact_if_small: bool = False,
     example_traces: int | None = None,
     limits: StateLimits | None = None,
+    uniform: UniformPolicy = UniformPolicy.WARN,
 ) -> Verifier:
     """A target prepared for verification.
 
@@ -121,6 +123,7 @@ def verifier_of(
         only_uniform: whether only uniform choices are considered, not the minimum or maximum over all schedulers.
         exact_if_small, example_traces: see `Verifier`.
         limits: those of all searches for exact values together; `None` for `small.SHARED_LIMITS`.
+        uniform: what an expectation is worth that is met under uniform choices only.
 
     Raises:
         PropertyError: a property, or the property of an expectation, does not exist.
@@ -152,6 +155,7 @@ def verifier_of(
         only_uniform,
         exact_if_small,
         example_traces,
+        uniform=uniform,
         budget=Budget(limits or SHARED_LIMITS),
     )
 
@@ -166,18 +170,21 @@ def expectations_of(property_: CompiledProperty, given: Iterable[Expectation]) -
     return (Expectation(name, threshold, is_own=True), *about_it)
 
 
-def with_expectations(result: Result, given: Iterable[Expectation]) -> Result:
+def with_expectations(
+    result: Result, given: Iterable[Expectation], uniform: UniformPolicy = UniformPolicy.WARN
+) -> Result:
     """The result of traces with uniform choices, or exact values, compared with other expectations, without new traces.
 
     Args:
         given: the expectations, also of other properties. Impossible ones (see `check_range`) are ignored.
+        uniform: what an expectation is worth that is met under uniform choices only.
     """
     estimated = result.estimated
     if estimated is None or estimated.traces is None:
         return result
     question = estimated.answer.question
     expectations = [e for e in expectations_of(estimated.traces.compiled_property, given) if is_possible(e, question)]
-    return replace(result, verdicts=_verdicts(estimated.traces.target, expectations, estimated, result.exact))
+    return replace(result, verdicts=_verdicts(estimated.traces.target, expectations, estimated, result.exact, uniform))
 
 
 def _comment(property_: CompiledProperty) -> str:
@@ -185,7 +192,11 @@ def _comment(property_: CompiledProperty) -> str:
 
 
 def _verdicts(
-    target: VerificationTarget, expectations: Iterable[Expectation], estimated: Estimated, exact: Exact | None
+    target: VerificationTarget,
+    expectations: Iterable[Expectation],
+    estimated: Estimated,
+    exact: Exact | None,
+    uniform: UniformPolicy,
 ) -> tuple[Verdict, ...]:
     answer, choices = estimated.answer, estimated.choices
     if exact is not None:
@@ -200,7 +211,8 @@ def _verdicts(
             for expectation in expectations
         )
     return tuple(
-        under_all_schedulers(check_expectation(expectation, answer), answer, choices) for expectation in expectations
+        judged(under_all_schedulers(check_expectation(expectation, answer), answer, choices), uniform)
+        for expectation in expectations
     )
 
 
@@ -218,6 +230,7 @@ class Verifier(Record, frozen=True):
             and if schedulers may disagree, those for machines that react at once (`reactions`).
         example_traces: the number of traces that are generated for a result with exact values; `None` for the number
             that an estimate needs.
+        uniform: what an expectation is worth that is met under uniform choices only.
         explorations: the exact values that several properties share.
         budget: the limits of all searches for exact values that are not requested.
         reaction_budget: those of all searches under the assumption that machines react at once.
@@ -230,6 +243,7 @@ class Verifier(Record, frozen=True):
     only_uniform: bool = False
     exact_if_small: bool = False
     example_traces: int | None = None
+    uniform: UniformPolicy = UniformPolicy.WARN
     explorations: Explorations = field(default_factory=Explorations)
     budget: Budget = field(default_factory=Budget)
     reaction_budget: Budget = field(default_factory=lambda: Budget(REACTION_LIMITS))
@@ -656,7 +670,7 @@ class Verifier(Record, frozen=True):
         got_stuck = stuck.stuck_in(self.target, self.checker, property_, answer)
         traces = Traces(self.target, self.checker, property_, self.options)
         estimated = Estimated(answer, choices, got_stuck, traces, is_interrupted)
-        verdicts = _verdicts(self.target, self.expected(property_), estimated, exact)
+        verdicts = _verdicts(self.target, self.expected(property_), estimated, exact, self.uniform)
         outcome: Outcome = estimated
         if exact is not None:
             reason = "" if choices is None else self._reason(property_, exact)

@@ -10,7 +10,7 @@ export type Outcome =
           readonly kind: "passed";
           readonly short: string;
           readonly milliseconds: number;
-          /** The expectation that is met under uniform choices, but not known to be met under all schedulers. */
+          /** The expectations that are met under uniform choices, but not known to be met under all schedulers. */
           readonly uniform: readonly string[];
           /** The number of traces, if none of them contradicts an expected 0 or 1 that the interval leaves open. */
           readonly unanimous: number;
@@ -50,7 +50,7 @@ export function outcomeOf(verified: Verified, known?: Stuckness | null): Outcome
     if (verified.verdict === NO_EXPECTATION && !isWrong) return { kind: "unjudged", short, ...warning, ...stuck };
     if (missed.length === 0 && !isWrong) {
         const onlyUniform = (verified.expectations ?? []).filter(
-            (expectation) => expectation.under_uniform_choices_only,
+            (expectation) => expectation.under_uniform_choices_only && expectation.uniform !== "accept",
         );
         const uniform = onlyUniform.map(({ expected }) => expected);
         const unanimous = Math.max(

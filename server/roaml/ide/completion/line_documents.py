@@ -17,7 +17,7 @@ from roaml.model.kinds import MOCKS_EXTENSION, FileKind
 from roaml.model.tree import nodes
 from roaml.project.analysis import Analysis
 from roaml.project.paths import name_of
-from roaml.project.settings import SETTING_NAMES, SEVERITIES, VALUES_OF_SETTINGS
+from roaml.project.settings import SETTING_DOCUMENTATION, SEVERITIES, TABLES_OF_SETTINGS, VALUES_OF_SETTINGS
 from roaml.regex import regex
 from roaml.roles import SymbolKind
 from roaml.rules import RULES
@@ -27,7 +27,7 @@ _IN_SUPPRESSION = regex(r"as2fm:\s*ignore\s*\[[^\]<>]*\Z")
 _WORD_BEFORE = regex(r"[\w/-]*\Z", re.ASCII)
 _WORD_AFTER = regex(r"[\w/-]*", re.ASCII)
 _KEY = regex(r"\s*([\w-]*)\Z", re.ASCII)
-_VALUE = regex(r"^\s*([\w-]+)\s*=[^=]*\Z", re.ASCII)
+_VALUE = regex(r"^\s*([\w.-]+)\s*=[^=]*\Z", re.ASCII)
 _DURATION = regex(r":.*\sin\s+\w*\Z")
 _CODE_SETTINGS = ("select", "ignore", "severity")
 
@@ -74,7 +74,7 @@ def _in_configuration(before: str, line: str) -> Iterator[CompletionItem]:
     if value is not None:
         if value[1] in _CODE_SETTINGS:
             yield from _codes()
-        for word in VALUES_OF_SETTINGS.get(value[1], ()):
+        for word in VALUES_OF_SETTINGS.get(_within(section, value[1]), ()):
             insert = word if '"' in line or word in ("true", "false") else f'"{word}"'
             yield CompletionItem(word, ItemKind.VALUE, insert)
         if section == "severity":
@@ -83,9 +83,13 @@ def _in_configuration(before: str, line: str) -> Iterator[CompletionItem]:
     elif _KEY.fullmatch(line):
         if section == "severity":
             yield from _codes()
-        elif not section:
-            for name in SETTING_NAMES:
-                yield CompletionItem(name, ItemKind.ATTRIBUTE)
+        for name in TABLES_OF_SETTINGS.get(section, ()):
+            yield CompletionItem(name, ItemKind.ATTRIBUTE, detail=SETTING_DOCUMENTATION[_within(section, name)])
+
+
+def _within(section: str, name: str) -> str:
+    """The whole name of a setting in a table; "" is the table of all settings."""
+    return f"{section}.{name}" if section else name
 
 
 def _statement(before: str) -> str:

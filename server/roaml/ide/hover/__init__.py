@@ -19,10 +19,13 @@ from roaml.ide.hover.markup import in_markup
 from roaml.ide.hover.place import Place, place_at
 from roaml.ide.hover.possible_values import possible_values
 from roaml.ide.hover.property_file import global_variable, in_json
+from roaml.ide.hover.setting import setting_at
 from roaml.ide.hover.tree import tree_node
 from roaml.ide.hover.xml_property_file import compared_number, property_tag
+from roaml.model.config_files import CONFIG_FILES
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
+from roaml.project.paths import name_of
 from roaml.record import Record
 from roaml.text import Span
 
@@ -41,6 +44,10 @@ class Hover(Record, frozen=True):
 
 def hover(analysis: Analysis, path: str, offset: int) -> Hover | None:
     """The hover at a place; `None` if there is none."""
+    if name_of(path) in CONFIG_FILES:
+        source = analysis.source(path)
+        setting = None if source is None else setting_at(path, source.text, offset)
+        return None if setting is None else Hover(*setting)
     place = place_at(analysis, path, offset)
     if place is None:
         return None
