@@ -86,7 +86,7 @@ def test_expectations_decide_the_exit_status(command: Command, tmp_path: Path) -
     (judged,) = rows(missed.out)["heads"]["expectations"]
     assert judged == {"expected": "≥ 0.4", "met": False, "certain": True, "under_uniform_choices_only": False}
     exactly = rows(command("verify", name, "--expect", "heads >= 0.4", "--format", "json").out)["heads"]
-    assert exactly["expectations"] == [{**judged, "not_met": "by the least value, which is 0.3"}]
+    assert exactly["expectations"] == [{**judged, "not_met": "by the value, which is 0.3"}]
     assert command("verify", name, "--expect", "heads = 0.3").status == 0
     assert command("verify", name, "--expect", "heads = 0.305").status == 1
     assert command("verify", name, "--expect", "heads = 0.305", "--method", "adaptive").status == 0, "within epsilon"

@@ -311,7 +311,7 @@ def test_an_expectation_that_is_not_met_names_the_scheduler(command: Command, tm
     assert "  expected ≥ 0.9: NOT MET by the minimum over all schedulers, which is 0\n" in done.out
     for options in ((), ("--exhaustive",)):
         exact = command("verify", few, "--expect", "p >= 0.9", *options)
-        assert "  expected ≥ 0.9: NOT MET by the least value, which is 0\n" in exact.out
+        assert "  expected ≥ 0.9: NOT MET by the minimum over all schedulers, which is 0\n" in exact.out
     assert command("verify", few, "--expect", "p <= 0.1", "--exhaustive").status == 0
     searched = command("verify", few, "--expect", "p >= 0.9", "--scheduler", "lss", "--epsilon", "0.1")
     assert "  expected ≥ 0.9: NOT MET under sampled scheduler " in searched.out

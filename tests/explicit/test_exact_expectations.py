@@ -56,7 +56,7 @@ def test_one_of_two_opposite_expectations_is_met(number: float) -> None:
 def test_a_difference_of_less_than_a_millionth_counts() -> None:
     assert not verdict("<= 0.9999993", exact(1 - 1e-9, 1 - 1e-9)).is_met
     found = verdict("== 0.5", exact(0.5000001, 0.5000001))
-    assert found.text == "NOT MET by the least value, which is 0.5000001"
+    assert found.text == "NOT MET by the value, which is 0.5000001"
 
 
 def test_rounding_is_no_difference() -> None:

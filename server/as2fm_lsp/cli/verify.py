@@ -65,7 +65,7 @@ from roaml.verification import stuck
 from roaml.verification.exhaustive import ExplorationInterruptedError
 from roaml.verification.expectations import Expectation
 from roaml.verification.refusal import fault_message
-from roaml.verification.results import Computed, CutShort, Exact, Refused, Result, Sampled
+from roaml.verification.results import Computed, CutShort, Exact, Refused, Result, Sampled, Traces
 from roaml.verification.small import EXAMPLE_TRACES
 from roaml.verification.target import VerificationTarget
 from roaml.verification.verifier import NoThresholdError, Verifier
@@ -682,10 +682,15 @@ class _Verification:
             self.partings[story.property] = near
 
     def _shortest(self, result: Result, exact: Exact) -> Iterator[Story]:
-        """The explanation of the shortest trace that contradicts an expectation."""
+        """The explanation of the shortest trace that contradicts an expectation. For a property about a number of
+        steps, which states do not contain, it is a random one."""
         if self.options.traces is not None:
             complain(f"{result.name}: --traces writes random traces only, not those of --exhaustive")
-        from roaml.verification.counterexample import unwanted_verdict  # noqa: PLC0415
+        from roaml.verification.counterexample import (  # noqa: PLC0415
+            MAX_SEARCHED_TRACES,
+            random_trace,
+            unwanted_verdict,
+        )
 
         verdict = unwanted_verdict(result)
         trace = exact.shortest(verdict)
@@ -694,9 +699,17 @@ class _Verification:
         elif self.options.explain:
             verb = "fails" if verdict == FALSE else "holds"
             is_possible = exact.least < 1 if verdict == FALSE else exact.greatest > 0
-            is_reward = self.verifier.question(result.name).question.is_reward
+            property_ = self.verifier.question(result.name)
+            is_reward = property_.question.is_reward
             text = f"there is no trace in which it {verb}"
-            if is_possible and not is_reward:
+            if is_possible and property_.goal.is_bounded == 1 and not is_reward:
+                traces = Traces(self.target, self.verifier.checker, property_, self.limits)
+                number = random_trace(traces, verdict)
+                if number is not None:
+                    yield traces.story(number)
+                    return
+                text = f"it {verb} in none of {MAX_SEARCHED_TRACES:,} random traces, and states do not count steps"
+            elif is_possible and not is_reward:
                 text = f"every trace in which it {verb} repeats some states for ever, so none can be shown to its end"
                 if isinstance(result.outcome, Computed) and result.outcome.reason:
                     text += f"; {result.outcome.reason}"
@@ -726,7 +739,8 @@ class _Verification:
         from roaml.views.story import as_html, as_mermaid  # noqa: PLC0415
 
         if file.endswith(".html"):
-            text = as_html(stories, self._place, shown_path(self.options.main))
+            near = {name: (near.parting, near.story) for name, near in self.partings.items()}
+            text = as_html(stories, self._place, shown_path(self.options.main), near)
         elif file.endswith(".mmd"):
             text = "\n".join(as_mermaid(story, self._place) for story in stories)
         else:

@@ -10,7 +10,7 @@ from roaml.smc.end import End
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
 from roaml.smc.names import Storage
-from roaml.smc.record import Plain, Recorder, Recording, TraceStep
+from roaml.smc.record import Plain, Recorder, Recording
 
 
 class PathRecorder(Recorder):
@@ -24,13 +24,13 @@ class PathRecorder(Recorder):
         self._kernel.root(self._path.root)
         return self.values(storages)
 
-    def walk(self, recording: Recording) -> Iterator[TraceStep]:
+    def _run(self, recording: Recording) -> Iterator[int]:
         kernel = self._kernel
         kernel.root(self._path.root)
-        self._steps.start()
+        yield 0
         for number, (vector, edges, ways) in enumerate(self._path.steps, 1):
             kernel.go(vector, edges, ways)
-            yield self._steps.read(number)
+            yield number
         recording.verdict = self._path.verdict
         recording.end = End(kernel.standstill()) if self._path.is_end else End.DECIDED
 

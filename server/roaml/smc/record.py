@@ -4,8 +4,10 @@ which they come."""
 
 from __future__ import annotations
 
+import math
 from array import array
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import NamedTuple, TypeAlias
 
 from roaml.exhaustive import Vocabulary
@@ -255,6 +257,24 @@ class Recorder:
         for number in self._run(recording):
             if number > 0:
                 yield kernel.vector, kernel.taken()
+
+    def options(self, trace: int, steps: Collection[int]) -> Mapping[int, Mapping[int, int]]:
+        """Among how many steps the scheduler chose for each instance: index of a step -> number of an instance -> the
+        number of enabled steps in which it takes part. Instances with one step are left out.
+
+        Args:
+            steps: the indices of the steps that are considered.
+        """
+        wanted = frozenset(steps)
+        return {i: self._options() for i in self._run(Recording(trace)) if i in wanted}
+
+    def _options(self) -> Mapping[int, int]:
+        counts = Counter[int]()
+        for vector, _, slots in self._kernel.choices():
+            number = math.prod(map(len, slots))
+            for slot in self.legend.vectors[vector][0]:
+                counts[self.legend.slots[slot].instance] += number
+        return {instance: count for instance, count in counts.items() if count > 1}
 
     def _run(self, recording: Recording) -> Iterator[int]:
         """Simulate a trace: 0 at its start, then the number of each step that was taken."""

@@ -3,13 +3,16 @@
 
 The relevant steps are the last one, or the one that finished the tree if the trace ended because of it, those that
 change a variable of the property, and those on which these steps depend, back to the start: the last change of each
-variable that a step reads, and the step that triggered the automaton that takes it.
+variable that a step reads, and the step that triggered the automaton that takes it. In a model without a clock, which
+is no translated system, they also depend on the step with which the automaton entered its location; and if such a trace
+ends before the property is decided, the last step of each automaton that could change a variable of the property is
+relevant.
 """
 
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from roaml.jani.model import Automaton
 from roaml.jani.semantics import Value
@@ -17,6 +20,10 @@ from roaml.record import Record, field
 from roaml.smc.end import End
 from roaml.smc.record import Plain, RecordedVariable, Recorder, Recording, TraceStep
 from roaml.smc.standstill import Standstill
+
+MAX_STEPS_WITH_OPTIONS = 5_000
+"""The maximum number of steps of a trace in which the choices of the scheduler are known for all steps. In longer ones,
+they are known for the relevant steps."""
 
 
 class Story(Record, frozen=True):
@@ -34,6 +41,8 @@ class Story(Record, frozen=True):
         is_whole: whether all steps are shown, not only the relevant ones.
         constants: the values of the constants of the model.
         comment: a description of what the property requires, if the model contains one.
+        options: among how many steps the scheduler chose (`roaml.smc.record.Recorder.options`); empty if that is not
+            known.
     """
 
     property: str
@@ -49,13 +58,17 @@ class Story(Record, frozen=True):
     is_whole: bool = False
     comment: str = ""
     constants: Mapping[str, Value] = field(default_factory=dict)
+    options: Mapping[int, Mapping[int, int]] = field(default_factory=dict)
 
 
-def build_story(recorder: Recorder, trace: int, clock: tuple[str, str] | None = None) -> Story:
+def build_story(
+    recorder: Recorder, trace: int, clock: tuple[str, str] | None = None, *, has_options: bool = True
+) -> Story:
     """The trace with the number `trace`, and its relevant steps.
 
     Args:
         clock: the variables for the seconds and nanoseconds of the model's time.
+        has_options: whether the story contains the choices of the scheduler, for which the trace is simulated again.
     """
     recording = Recording(trace)
     shared = recorder.shared
@@ -64,8 +77,14 @@ def build_story(recorder: Recorder, trace: int, clock: tuple[str, str] | None = 
     variables = recorder.compiled_property.question.variables
     finished = recorder.causes_of(End.FINISHED) if recording.end is End.FINISHED else []
     ends = _last_steps(steps, finished) or [len(steps) - 1] * bool(steps)
-    relevant = _relevant(recorder, steps, variables, ends)
     automata = tuple(instance.automaton for instance in recorder.legend.layout.instances)
+    if clock is None and recording.end is not End.DECIDED:
+        writers = [number for number, automaton in enumerate(automata) if _writes(automaton, variables)]
+        ends = _last_steps(steps, writers) or ends
+    relevant = _relevant(recorder, steps, variables, ends, follows_locations=clock is None)
+    standstill = recorder.standstill() if recording.end is End.STUCK else None
+    considered = range(len(steps)) if len(steps) <= MAX_STEPS_WITH_OPTIONS else relevant
+    options = recorder.options(trace, considered) if has_options else {}
     return Story(
         recorder.compiled_property.question.name,
         recording,
@@ -76,9 +95,10 @@ def build_story(recorder: Recorder, trace: int, clock: tuple[str, str] | None = 
         variables,
         automata,
         start,
-        recorder.standstill() if recording.end is End.STUCK else None,
+        standstill,
         comment=recorder.compiled_property.property.comment or "",
         constants=recorder.constants,
+        options=options,
     )
 
 
@@ -105,12 +125,34 @@ def _last_steps(steps: list[TraceStep], instances: list[int]) -> list[int]:
     return sorted({last[instance] for instance in instances if instance in last})
 
 
-def _relevant(recorder: Recorder, steps: list[TraceStep], variables: tuple[str, ...], ends: list[int]) -> list[int]:
+def _writes(automaton: Automaton, variables: Collection[str]) -> bool:
+    """Whether an automaton has an assignment to one of these variables of the model."""
+    own = {variable.name for variable in automaton.variables}
+    return any(
+        assignment.variable in variables and assignment.variable not in own
+        for edge in automaton.edges
+        for destination in edge.destinations
+        for assignment in destination.assignments
+    )
+
+
+def _relevant(
+    recorder: Recorder,
+    steps: list[TraceStep],
+    variables: tuple[str, ...],
+    ends: list[int],
+    *,
+    follows_locations: bool,
+) -> list[int]:
     changes: dict[RecordedVariable, list[int]] = {}
     joint_steps: dict[int, list[int]] = {}
+    moves: dict[int, list[int]] = {}
     for i, step in enumerate(steps):
         for change in step.changes:
             changes.setdefault(change.variable, []).append(i)
+        for part in step.parts if follows_locations else ():
+            if part.source != part.destination.location:
+                moves.setdefault(part.instance, []).append(i)
         if len(step.parts) > 1:
             for part in step.parts:
                 joint_steps.setdefault(part.instance, []).append(i)
@@ -126,6 +168,7 @@ def _relevant(recorder: Recorder, steps: list[TraceStep], variables: tuple[str, 
             causes = [_before(changes.get(variable, ()), i) for variable in recorder.reads(part)]
             # The automaton was triggered by the latest step that it took together with another one.
             causes.append(_before(joint_steps.get(part.instance, ()), i))
+            causes.append(_before(moves.get(part.instance, ()), i))
             waiting += (cause for cause in causes if cause is not None)
     return sorted(kept)
 

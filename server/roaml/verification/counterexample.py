@@ -8,14 +8,18 @@ from typing import TYPE_CHECKING
 
 from roaml.record import Record
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
-from roaml.smc.record import VERDICTS, TraceVerdict
+from roaml.smc.record import VERDICTS, Recording, TraceVerdict
 from roaml.smc.tally import StoredTrace
 from roaml.text import Location
-from roaml.verification.results import Result
+from roaml.verification.results import Result, Traces
 from roaml.verification.target import VerificationTarget
 
 if TYPE_CHECKING:
     from roaml.views.story import StoryLine
+
+
+MAX_SEARCHED_TRACES = 1_000
+"""The maximum number of random traces that `random_trace` generates."""
 
 
 class Counterexample(Record, frozen=True):
@@ -65,6 +69,17 @@ def witness_trace(result: Result) -> StoredTrace | None:
     return result.answer.tally.shortest.get(FALSE if unwanted_verdict(result) == TRUE else TRUE)
 
 
+def random_trace(traces: Traces, verdict: int) -> int | None:
+    """The number of the first random trace with a verdict; `None` if there is none among `MAX_SEARCHED_TRACES`."""
+    recorder = traces.recorder()
+    for number in range(MAX_SEARCHED_TRACES):
+        recording = Recording(number)
+        recorder.rush(recording)
+        if recording.verdict == verdict:
+            return number
+    return None
+
+
 def counterexample(result: Result, place_of: Callable[[Location], str] | None = None) -> Counterexample | None:
     """Simulate the shortest trace that contradicts an expectation again; `None` if there is none.
 
@@ -87,11 +102,13 @@ def _counterexample(
         return None
     story = traces.story(seen.trace)
     verdict = VERDICTS[story.recording.verdict]
+    from roaml.verification.nearest import nearest  # noqa: PLC0415
     from roaml.views.cause import cause  # noqa: PLC0415 - most verifications do not need a story
     from roaml.views.story import heading, lines  # noqa: PLC0415
 
     place = place_of or _path_and_line(traces.target)
-    why = cause(story, place)
+    near = nearest(result, story, traces.target.clock)
+    why = cause(story, place, None if near is None else (near.parting, near.story))
     words = f"{why}. {heading(story)}" if why else heading(story)
     return Counterexample(words, verdict, seen.trace, tuple(lines(story, place)))
 

@@ -27,7 +27,7 @@ from roaml.verification.conditional import of_condition, parts_of, quotient
 from roaml.verification.expectations import Expectation, Verdict, holds_exactly
 from roaml.verification.number_text import distinct
 from roaml.verification.results import Exact, Proof, ShortestTrace, is_close
-from roaml.verification.schedulers import is_minimised
+from roaml.verification.schedulers import extreme_of, is_minimised
 
 if TYPE_CHECKING:
     from roaml.explicit.path import EndlessTrace
@@ -217,11 +217,20 @@ def _proof(space: Space, values: GoalValues) -> Proof | None:
     return Proof.ALL if values.minimum.lower == 1.0 and is_negated else None
 
 
-def check_exactly(expectation: Expectation, exact: Exact, question: Question, *, only_uniform: bool = False) -> Verdict:
+def check_exactly(
+    expectation: Expectation,
+    exact: Exact,
+    question: Question,
+    *,
+    only_uniform: bool = False,
+    over_intervals: bool = False,
+) -> Verdict:
     """Whether the value that a property asks for, its minimum or its maximum, satisfies an expectation.
 
     Args:
         only_uniform: whether the value under uniform choices is checked instead.
+        over_intervals: whether the value is the worst one of those that intervals of parameters allow
+            (`Exact.worst_for`).
     """
     threshold = expectation.threshold
     bounds, value = exact.asked_value(question, only_uniform=only_uniform)
@@ -232,8 +241,10 @@ def check_exactly(expectation: Expectation, exact: Exact, question: Question, *,
         relation = "less than 1" if side < 0 else "greater than 0"
         met, under = False, f"by an example trace; the value is {relation}"
     else:
-        extreme = "least" if is_minimised(question) else "greatest"
-        text = f"by the {extreme} value, which is {distinct(value, threshold.number)}"
+        which = "worst value" if over_intervals else "value"
+        if not exact.agrees:
+            which = f"{extreme_of(question)} over all schedulers"
+        text = f"by the {which}, which is {distinct(value, threshold.number)}"
         met, under = False, "" if only_uniform else text
     ends = {holds_exactly(threshold, Bounds(end, end), end) for end in bounds}
     return Verdict(expectation, met, exact.is_precise or side != 0 or len(ends) == 1, under=under)

@@ -63,7 +63,7 @@ def _others(result: Result, verdict: int, clock: tuple[str, str] | None) -> Iter
             steps += seen.steps
             if steps > MAX_COMPARED_STEPS:
                 break
-            yield result.traces.story(seen.trace)
+            yield result.traces.story(seen.trace, has_options=False)
     shortest = None if result.exact is None else result.exact.shortest(verdict)
     if shortest is not None:
         yield shortest.story(clock)

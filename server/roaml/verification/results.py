@@ -232,11 +232,15 @@ class Traces(Record, frozen=True):
 
         return self.recorder().walk(Recording(trace))
 
-    def story(self, trace: int) -> Story:
-        """A whole trace, with the steps that are relevant for the property."""
+    def story(self, trace: int, *, has_options: bool = True) -> Story:
+        """A whole trace, with the steps that are relevant for the property.
+
+        Args:
+            has_options: see `roaml.smc.story.build_story`.
+        """
         from roaml.smc.story import build_story  # noqa: PLC0415
 
-        return build_story(self.recorder(), trace, self.target.clock)
+        return build_story(self.recorder(), trace, self.target.clock, has_options=has_options)
 
 
 class Refused(PartlyCompared, frozen=True):

@@ -207,6 +207,7 @@ def _verdicts(
                 _compared(target, expectation, exact),
                 answer.question,
                 only_uniform=only_uniform,
+                over_intervals=target.has_intervals,
             )
             for expectation in expectations
         )
@@ -626,7 +627,12 @@ class Verifier(Record, frozen=True):
             undecided = Undecided(str(error), error.growing)
             return Result(property_.question.name, undecided, open_, seconds(), _comment(property_))
         verdicts = tuple(
-            check_exactly(expectation, _compared(self.target, expectation, exact), property_.question)
+            check_exactly(
+                expectation,
+                _compared(self.target, expectation, exact),
+                property_.question,
+                over_intervals=self.target.has_intervals,
+            )
             for expectation in expectations
         )
         outcome = Computed(property_.question, exact, reason=self._reason(property_, exact))

@@ -40,16 +40,21 @@ def cause(story: Story, place_of: Callable[[Origin], str], near: tuple[Parting, 
         near: where the trace parts from one with the opposite verdict, and that trace.
     """
     all_turns = turns(story)
-    if near is None or not _is_last(near[0], all_turns):
+    if near is None or not _is_last(near[0], all_turns, can_end=story.recording.end in _OTHER_ENDS):
         return _why(story, all_turns, place_of, 0)
     why = _why(story, all_turns, place_of, near[0].here.number)
     return f"{other_course(*near, place_of)}; {why}" if why else ""
 
 
-def _is_last(difference: Parting, all_turns: Sequence[Turn]) -> bool:
-    """Whether the turn in which traces part comes before the end, and chance decides nothing after it."""
+def _is_last(difference: Parting, all_turns: Sequence[Turn], *, can_end: bool) -> bool:
+    """Whether the turn in which traces part comes before the end, and chance decides nothing after it.
+
+    Args:
+        can_end: whether it may also be one of the last turns, because the sentence about the end does not name these.
+    """
     number = difference.here.number
-    if difference.there is None or any(turn.ends and turn.number <= number for turn in all_turns):
+    last = number if can_end else number + 1
+    if difference.there is None or any(turn.ends and turn.number < last for turn in all_turns):
         return False
     root = _ended_root(all_turns)
     node = None if root is None else _responsible(all_turns[: all_turns.index(root)])

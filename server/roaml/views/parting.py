@@ -15,7 +15,7 @@ from roaml.record import Record, replace
 from roaml.smc.record import SELECTED, VERDICTS
 from roaml.smc.story import Story
 from roaml.views.trace_names import trace_name
-from roaml.views.turn_words import chances, details, what
+from roaml.views.turn_words import chances, details, scheduling, what
 from roaml.views.turns import Turn, turns
 
 MAX_NAMED_EFFECTS = 3
@@ -109,8 +109,8 @@ def parting_heading(difference: Parting, other: Story) -> str:
     """The verdict of the second trace, what both traces have in common, and the automaton that then differs."""
     turn, count = difference.here, difference.common
     at = "" if turn.time is None else f" at {turn.time:.3f} s"
-    same = f"the first {count:,} {'turn is' if count == 1 else 'turns are'} the same"
-    return f"{trace_name(other)} {VERDICTS[other.recording.verdict].value}: {same}, then {turn.who}{at}"
+    same = f"the first {f'{count:,} turns are' if count > 1 else 'turn is'} the same, then " if count else ""
+    return f"{trace_name(other)} {VERDICTS[other.recording.verdict].value}: {same}{turn.who}{at}"
 
 
 def other_course(difference: Parting, other: Story, place_of: PlaceOf) -> str:
@@ -129,6 +129,10 @@ def other_course(difference: Parting, other: Story, place_of: PlaceOf) -> str:
     if odds:
         number = odds[-1].removeprefix("by chance").removeprefix(", ")
         by = f"by chance ({number}), " if number else "by chance, "
+    elif here.options:
+        by = "by choice of the scheduler, "
+    elif here.ready is not None or here.until is not None:
+        by = f"{scheduling(here)[0]}, "
     at = "" if here.time is None else f" at {here.time:.3f} s"
     place = "" if here.origin is None else place_of(here.origin)
     name = trace_name(other)
@@ -166,6 +170,6 @@ def _listed(effects: Sequence[str]) -> str:
 
 
 def _turn(turn: Turn, place_of: PlaceOf) -> str:
-    effects = ", ".join(details(turn))
+    effects = ", ".join((*scheduling(turn), *details(turn)))
     place = "" if turn.origin is None else place_of(turn.origin)
     return f"{what(turn)}{f' and {effects}' if effects else ''}{f' ({place})' if place else ''}"

@@ -5,7 +5,8 @@ page."""
 from __future__ import annotations
 
 import html
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from types import MappingProxyType
 from typing import NamedTuple
 
 from roaml.jani.node import Origin
@@ -20,7 +21,7 @@ from roaml.views.folding import LeftOut, Repetition, Shown, folded, without_midd
 from roaml.views.observed import reads_observer
 from roaml.views.parting import Parting
 from roaml.views.trace_names import trace_name
-from roaml.views.turn_words import chances, details, message_text, what
+from roaml.views.turn_words import chances, details, message_text, scheduling, what
 from roaml.views.turns import Turn, turns
 from roaml.views.waiting import Wait, help_line, waits
 
@@ -101,7 +102,7 @@ def turn_line(turn: Turn, place_of: PlaceOf) -> StoryLine:
         turn.who,
         what(turn),
         "" if turn.origin is None else place_of(turn.origin),
-        tuple(details(turn)),
+        (*scheduling(turn), *details(turn)),
         turn.automaton,
         turn.origin,
         turn.destination,
@@ -193,7 +194,7 @@ def _mermaid(story: Story, place_of: PlaceOf, first: int) -> Iterator[str]:
             body.append(f"{arrow}: {_escaped(event_phrase + place)}")
         else:
             body.append(f"Note over {actor(turn)}: {_escaped(what(turn) + place)}")
-        effects = "<br/>".join(_escaped(effect) for effect in details(turn))
+        effects = "<br/>".join(_escaped(effect) for effect in (*scheduling(turn), *details(turn)))
         if effects:
             body.append(f"Note over {actor(turn)}: {effects}")
     for wait in waits_of(story):
@@ -206,13 +207,22 @@ def _mermaid(story: Story, place_of: PlaceOf, first: int) -> Iterator[str]:
     yield from (f"    {line}" for line in body)
 
 
-def as_html(stories: Sequence[Story], place_of: PlaceOf, title: str) -> str:
-    """A self-contained HTML page. Each line of an explanation contains the place of its turn in the sources."""
-    parts = [_section(story, place_of) for story in stories]
+def as_html(
+    stories: Sequence[Story],
+    place_of: PlaceOf,
+    title: str,
+    near: Mapping[str, tuple[Parting, Story]] = MappingProxyType({}),
+) -> str:
+    """A self-contained HTML page. Each line of an explanation contains the place of its turn in the sources.
+
+    Args:
+        near: name of a property -> where its trace parts from one with the opposite verdict, and that trace.
+    """
+    parts = [_section(story, place_of, near.get(story.property)) for story in stories]
     return _PAGE.format(title=html.escape(title), body="\n".join(parts))
 
 
-def _section(story: Story, place_of: PlaceOf) -> str:
+def _section(story: Story, place_of: PlaceOf, near: tuple[Parting, Story] | None) -> str:
     table = lines(story, place_of)
     lanes = list(dict.fromkeys(row.who for row in table if row.who))
     head = "".join(f"<th>{html.escape(name)}</th>" for name in lanes)
@@ -229,7 +239,7 @@ def _section(story: Story, place_of: PlaceOf) -> str:
         rows.append(f"<tr><th>{row.step}</th><th>{html.escape(row.time)}</th>{''.join(cells)}</tr>")
     return (
         f"<h2>{html.escape(story.property)}</h2><p>{html.escape(story.comment)}</p>"
-        f"<p><strong>{html.escape(cause(story, place_of))}</strong></p><p>{html.escape(heading(story))}</p>"
+        f"<p><strong>{html.escape(cause(story, place_of, near))}</strong></p><p>{html.escape(heading(story))}</p>"
         f"<table><thead><tr><th>step</th><th>time</th>{head}</tr></thead><tbody>{''.join(rows)}</tbody></table>"
         f"<details><summary>Mermaid</summary><pre>{html.escape(as_mermaid(story, place_of))}</pre></details>"
     )
@@ -264,7 +274,7 @@ def _key(turn: Turn) -> str | None:
     observers observe, which are never folded."""
     if turn.ends or turn.observed:
         return None
-    texts = (_NUMBER.sub("#", text) for text in (what(turn), *details(turn)))
+    texts = (_NUMBER.sub("#", text) for text in (what(turn), *scheduling(turn), *details(turn)))
     return "\n".join((turn.who, *chances(turn), *texts))
 
 

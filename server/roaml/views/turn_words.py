@@ -71,6 +71,20 @@ def chances(turn: Turn) -> list[str]:
     return [_chance(part.destination.probability, turn.constants) for part in draws(turn)]
 
 
+def scheduling(turn: Turn) -> list[str]:
+    """Phrases for what the scheduler has decided in a turn: to begin it late, or to choose it among several steps."""
+    if turn.observed or turn.automaton == CLOCK:
+        return []
+    phrases = []
+    if turn.ready is not None:
+        phrases.append(f"delayed by the scheduler since {turn.ready:.3f} s")
+    if turn.until is not None:
+        phrases.append(f"delayed by the scheduler until {turn.until:.3f} s, before its effects are complete")
+    if turn.options:
+        phrases.append(f"chosen by the scheduler among {turn.options:,} steps")
+    return phrases
+
+
 def _chance(probability: Clause | None, constants: Mapping[str, Value]) -> str:
     known = probability.exp if probability is not None else None
     if known is None:

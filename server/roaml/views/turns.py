@@ -68,6 +68,11 @@ class Turn(Record):
         is_library_node: whether the automaton is a node of the tree whose behaviour is that of a library or of a mock,
             so that its states are not those of a machine of the user.
         constants: the values of the constants of the model.
+        options: among how many steps in which the automaton takes part the scheduler chose the first one; 0 if there
+            was no choice.
+        ready: the time from which on the automaton could have received the event, in s, if that is before `time`;
+            otherwise `None`.
+        until: the time until which the automaton paused between two steps of the turn, in s; `None` if it did not.
         actor: the phrase of `roaml.views.actors.actors_of` for the automaton.
     """
 
@@ -89,6 +94,9 @@ class Turn(Record):
     is_library_node: bool = False
     actor: str = ""
     constants: Mapping[str, Value] = field(default_factory=dict)
+    options: int = 0
+    ready: float | None = None
+    until: float | None = None
 
     @property
     def automaton(self) -> str:
@@ -186,12 +194,14 @@ class Message(Record, frozen=True):
     Attributes:
         name: a short phrase for the event, such as `/level`, `a request to /adder`, or the name of a plain event.
         sender: the turn that sent the event; `None` if no automaton has sent it.
+        time: when it was sent, in s; `None` if that is not known.
     """
 
     event: str
     name: str
     values: Mapping[str, DeclaredValue]
     sender: Turn | None = None
+    time: float | None = None
 
 
 def turns(story: Story) -> list[Turn]:
@@ -267,11 +277,15 @@ class _Reader:
                 turn.constants = self._story.constants
                 turn.actor = self._actors[part.automaton]
                 turn.is_library_node = part.instance in self._library_nodes
+                turn.options = self._story.options.get(index, {}).get(part.instance, 0)
+                turn.ready = self._ready(turn, self._current.get(part.instance))
                 if is_observer(part.automaton):
                     turn.observed = observed_property(part.automaton, self._story.property)
                     turn.observation = observation(step.action, self._automata)
                 self._current[part.instance] = turn
                 self.turns.append(turn)
+            elif self._story.clock[turn.last - 1] != self._story.clock[index] and not turn.is_library_node:
+                turn.until = self._story.clock[index]
             turn.parts.append(part)
             turn.last = step.number
             if part.instance not in self.inner:
@@ -280,7 +294,15 @@ class _Reader:
             turn.ends |= index in self._story.ends
         event = sent_by(step.action or "")
         if event:
-            self._send(event, self._current[actors[0].instance] if actors else None)
+            self._send(event, self._current[actors[0].instance] if actors else None, self._story.clock[index])
+
+    def _ready(self, turn: Turn, previous: Turn | None) -> float | None:
+        """See `Turn.ready`: the event had been sent, and the automaton had ended its previous turn."""
+        if turn.heard is None or turn.heard.time is None or turn.time is None or turn.observed:
+            return None
+        idle = self._story.clock[previous.last - 1] if previous is not None else None
+        ready = max(turn.heard.time, idle or 0.0)
+        return ready if ready < turn.time else None
 
     def _phrases(self, instance: int) -> Mapping[str, str]:
         if instance not in self._known_phrases:
@@ -293,8 +315,8 @@ class _Reader:
             self._known_states[instance] = states_of(self._story.automata[instance])
         return self._known_states[instance]
 
-    def _send(self, event: str, sender: Turn | None) -> None:
-        self._messages[event] = Message(event, self._name(event), self._events.parameters(event), sender)
+    def _send(self, event: str, sender: Turn | None, time: float | None) -> None:
+        self._messages[event] = Message(event, self._name(event), self._events.parameters(event), sender, time)
         if sender is not None:
             sender.messages.append(self._messages[event])
 
