@@ -4,8 +4,13 @@
 import * as path from "node:path";
 import * as vscode from "vscode";
 import { experimentForm, newParameter, type AskedNumber, type AskedParameter, type ExperimentForm } from "../protocol";
-import type { Experiment } from "./experiments";
 import type { LanguageServer } from "./server";
+
+/** What is run: a file of arguments, or the arguments with which the command is called. */
+export interface Experiment {
+    readonly title: string;
+    readonly arguments: readonly string[];
+}
 
 const COMPARISON = /^\s*(>=|<=|==|>|<)\s*\S+\s*$/;
 

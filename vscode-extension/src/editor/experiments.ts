@@ -8,7 +8,7 @@ import * as vscode from "vscode";
 import type { FromExperiment, Live, Point, ToExperiment } from "../experiment/contract";
 import { run } from "../server/run";
 import { ON_STAGE, type Debugging } from "./debugging";
-import { askForExperiment } from "./experimentQuestions";
+import { askForExperiment, type Experiment } from "./experimentQuestions";
 import type { LanguageServer } from "./server";
 import { isTrusted } from "./trust";
 import { webviewPage, webviewPanel } from "./webviewPage";
@@ -17,12 +17,6 @@ export const EXPERIMENT_FILE = ".experiment.toml";
 const ERROR_LINES = 6;
 /** A greater probability is met by nearly all runs, so that a run that contradicts it would take long to find. */
 const NEARLY_CERTAIN = 0.999;
-
-/** What is run: a file of arguments, or the arguments with which the command is called. */
-export interface Experiment {
-    readonly title: string;
-    readonly arguments: readonly string[];
-}
 
 export class Experiments implements vscode.Disposable {
     private readonly panels = new Set<ExperimentPanel>();
