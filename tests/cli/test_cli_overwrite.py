@@ -68,7 +68,7 @@ NOTHING = {
     "translate": "main --tree-semantics --indent --property --max-array-size --max-time "
     "--reaction-time --ros-path --format --stdin-filename --set --params-file",
     "verify": "main --max-transitions --property --expect --confidence --epsilon --method "
-    "--max-traces --max-steps --seed --jobs "
+    "--max-traces --max-steps --seed --jobs --uniform "
     "--scheduler --exhaustive --max-states --max-memory --no-reductions --stuck --separate --traces-limit --dask "
     "--over-time --band --quantiles "
     f"--format {MODEL} --stdin-filename",

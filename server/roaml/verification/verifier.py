@@ -655,7 +655,7 @@ class Verifier(Record, frozen=True):
         match result.outcome, under.outcome:
             case Estimated(choices=Choices() as known) as estimated, Computed(exact=exact):
                 estimated = replace(estimated, choices=with_reactions(known, exact))
-                verdicts = _verdicts(self.target, self.expected(property_), estimated, None)
+                verdicts = _verdicts(self.target, self.expected(property_), estimated, None, self.uniform)
                 result = replace(result, outcome=estimated, verdicts=verdicts)
         return replace(result, conditional=(*result.conditional, under), seconds=time.monotonic() - began)
 
