@@ -110,7 +110,7 @@ def own(modules: set[str]) -> set[str]:
     return {name for name in names if not (name.startswith("roaml.rules.") and name.count(".") == 3)}
 
 
-EXPENSIVE = {"asyncio", "dataclasses", "hashlib", "importlib.resources", "inspect", "locale", "logging", "tempfile"}
+EXPENSIVE = {"asyncio", "dataclasses", "hashlib", "importlib.resources", "inspect", "logging", "tempfile"}
 """Modules of Python that take 2 to 12 ms each, and that no short command needs."""
 
 

@@ -4,8 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import functools
-import os
 import sys
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
@@ -17,30 +15,6 @@ from roaml.suggest import close_names, did_you_mean
 if TYPE_CHECKING:
     from _typeshed import SupportsWrite
 
-argparse._ = str  # type: ignore[attr-defined]
-"""`argparse` looks for translations of its messages, which Python does not contain. The search imports `locale` and
-reads folders for each message, which takes 3 ms at each start."""
-
-
-def _help_formatter() -> functools.partial[argparse.RawDescriptionHelpFormatter]:
-    """A class for `formatter_class` that formats help in the width of the terminal.
-
-    `argparse` creates a formatter for each option that is declared. Its own formatter imports `shutil` to measure the
-    terminal, which takes 5 ms at each start.
-    """
-    return functools.partial(argparse.RawDescriptionHelpFormatter, width=_columns() - 2)
-
-
-def _columns() -> int:
-    """The width of the terminal: `COLUMNS`, or that of standard output, or 80."""
-    columns = os.environ.get("COLUMNS", "")
-    if columns.isdecimal() and int(columns) > 0:
-        return int(columns)
-    try:
-        return os.get_terminal_size(sys.__stdout__.fileno()).columns if sys.__stdout__ else 80
-    except (OSError, ValueError):  # it is closed, or not a terminal
-        return 80
-
 
 class ArgumentParser(argparse.ArgumentParser):
     """An `argparse.ArgumentParser` whose errors for unknown arguments contain suggestions. Descriptions keep their
@@ -48,7 +22,11 @@ class ArgumentParser(argparse.ArgumentParser):
 
     def __init__(self, *, prog: str, description: str, epilog: str, usage: str | None = None) -> None:
         super().__init__(
-            prog=prog, description=description, epilog=epilog, usage=usage, formatter_class=_help_formatter()
+            prog=prog,
+            description=description,
+            epilog=epilog,
+            usage=usage,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
         )
         amount = self.add_mutually_exclusive_group()
         for short, name, verbosity, help_ in (
