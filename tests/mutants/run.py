@@ -61,7 +61,8 @@ _DECLARED = (
     (re.compile(r'(?<=min=")-?[0-9]+(?=")'), "+1"),
     (re.compile(r'(?<=above=")-?[0-9]+(?=")'), "+1"),
     (re.compile(r'(?<=children=")[0-9]+'), "+1"),
-    (re.compile(r' (?:names-entry|program-only|needs-ports)="true"'), ""),
+    (re.compile(r' (?:names-entry|program-only|needs-ports|required)="true"'), ""),
+    (re.compile(r' use="\w+"'), ""),
     (re.compile(r' special="[^"]*"'), ""),
     (re.compile(r' system-direction="[^"]*"'), ""),
     (re.compile(r'(?<=running=")true(?=")'), "false"),
@@ -74,9 +75,9 @@ _DECLARED = (
 """Part of a tag in a declaration -> what replaces it. `+1` is the number plus one."""
 
 _DIRECTIONS = (
-    (re.compile(r"^<in (.*)</in>", re.DOTALL), r"<out \1</out>"),
-    (re.compile(r"^<out (.*)</out>", re.DOTALL), r"<in \1</in>"),
-    (re.compile(r"^<inout (.*)</inout>", re.DOTALL), r"<in \1</in>"),
+    (re.compile(r"<in (.*)</in>", re.DOTALL), r"<out \1</out>"),
+    (re.compile(r"<out (.*)</out>", re.DOTALL), r"<in \1</in>"),
+    (re.compile(r"<inout (.*)</inout>", re.DOTALL), r"<in \1</in>"),
 )
 """The declaration of a port -> a declaration with another direction."""
 
@@ -113,10 +114,9 @@ class Mutant(NamedTuple):
 def mutants() -> Iterator[Mutant]:
     """All mutants."""
     folder = SERVER / "libraries"
-    yield from _replaced(folder / "behaviortree_cpp.xml", _DECLARED, re.compile(r"<[^!>]*>"))
-    yield from _replaced(
-        folder / "behaviortree_cpp.xml", _DIRECTIONS, re.compile(r"<(in|out|inout) [^<]*</\1>", re.DOTALL)
-    )
+    for name in ("behaviortree_cpp.xml", "nav2.xml"):
+        yield from _replaced(folder / name, _DECLARED, re.compile(r"<[^!>]*>"))
+        yield from _replaced(folder / name, _DIRECTIONS, re.compile(r"<(in|out|inout) [^<]*</\1>", re.DOTALL))
     for path in sorted((ROOT / folder / "programs" / "definitions").glob("*.txt")):
         yield from _replaced(path.relative_to(ROOT), _STATEMENTS, re.compile(r"^(?!#).*$", re.MULTILINE))
     for name, tables in PYTHON.items():
