@@ -7,6 +7,7 @@ the same results. The wheel then also contains the kernel as C source, which `py
 compiles in the installation.
 """
 
+import ast
 import os
 from pathlib import Path
 
@@ -28,6 +29,10 @@ COMPILED = (
     "roaml.explicit.solver",
 )
 """The modules that Cython translates, each after those whose types it uses."""
+TYPES = Path("build/cython/kernel_types.pxi")
+"""The part of `kernel.pxd` that follows from declarations in Python."""
+C_TYPES = {"int": "int", "Ints": "int[::1]", "Longs": "long long[::1]", "Reals": "double[::1]"}
+"""The types of tables in `roaml.smc.program`, in C."""
 IS_PURE = os.environ.get("AS2FM_PURE_PYTHON") == "1"
 DIRECTIVES = {
     "annotation_typing": False,
@@ -54,13 +59,38 @@ def translated_modules() -> list[Extension]:
         return []
     # No contraction: one instruction that multiplies and adds would round differently from Python.
     flags = [] if os.name == "nt" else ["-O3", "-g0", "-fwrapv", "-ffp-contract=off"]
+    write_kernel_types()
     modules = [Extension(name, [f"server/{name.replace('.', '/')}.py"], extra_compile_args=flags) for name in COMPILED]
     translated: list[Extension] = cythonize(
-        modules, compiler_directives=DIRECTIVES, include_path=["server"], build_dir="build/cython", quiet=True
+        modules,
+        compiler_directives=DIRECTIVES,
+        include_path=["server", str(TYPES.parent)],
+        build_dir="build/cython",
+        quiet=True,
     )
     for module in translated:
         module.optional = True  # Cython does not copy this attribute from `modules`.
     return translated
+
+
+def write_kernel_types() -> None:
+    """Write the codes of instructions of `roaml.smc.opcodes` as constants of C, so that a C compiler creates a jump
+    table, and the tables of `roaml.smc.program` as attributes of the class that the kernel extends."""
+    opcodes = ast.parse(Path("server/roaml/smc/opcodes.py").read_text(encoding="utf-8")).body
+    program = ast.parse(Path("server/roaml/smc/program.py").read_text(encoding="utf-8")).body
+    lines = ["cdef enum:"]
+    for node in opcodes:
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant):
+            lines.append(f"    {ast.unparse(node)}")
+    lines.append("cdef class KernelTables:")
+    for node in program:
+        if isinstance(node, ast.ClassDef) and node.name in ("ProgramTables", "Goal"):
+            fields = [field for field in node.body if isinstance(field, ast.AnnAssign)]
+            lines += [f"    cdef {C_TYPES[ast.unparse(f.annotation)]} {ast.unparse(f.target)}" for f in fields]
+    text = "\n".join(lines) + "\n"
+    if not TYPES.exists() or TYPES.read_text(encoding="utf-8") != text:  # A new file would be compiled again.
+        TYPES.parent.mkdir(parents=True, exist_ok=True)
+        TYPES.write_text(text, encoding="utf-8")
 
 
 class BuildWithMore(build_py):

@@ -45,7 +45,7 @@ make_environment() {
 
 # Prints the files on which the installed extension modules depend. An old module might give wrong results.
 compiled_from() {
-    cat pyproject.toml setup.py
+    cat pyproject.toml setup.py server/roaml/smc/opcodes.py server/roaml/smc/program.py
     for types in server/roaml/*/*.pxd; do
         cat "$types" "${types%.pxd}.py"
     done

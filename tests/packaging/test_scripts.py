@@ -77,6 +77,7 @@ def test_changes_of_all_compiled_modules_are_noticed(tmp_path: Path, tools: Path
         shutil.copy(ROOT / name, tree / name)
     modules = re.findall(r'"(roaml\.\w+\.\w+)"', (ROOT / "setup.py").read_text())
     files = [tree / f"server/{name.replace('.', '/')}{suffix}" for name in modules for suffix in (".py", ".pxd")]
+    files += [tree / f"server/roaml/smc/{name}.py" for name in ("opcodes", "program")]  # `setup.py` reads types there
     for file in files:
         file.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / file.relative_to(tree), file)

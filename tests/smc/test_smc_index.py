@@ -15,9 +15,8 @@ from both_kernels import difference
 from examples import examples
 from roaml.explicit.space import StateLimits, explore
 from roaml.smc import compile as compilation
-from roaml.smc import index, kernel
+from roaml.smc import index, kernel, opcodes
 from roaml.smc.model import ModelChecker
-from roaml.smc.opcodes import Op
 from roaml.smc.program import UNKNOWN
 
 VARIABLES = ("x", "y", "z")
@@ -154,7 +153,7 @@ def test_few_guards_of_a_grid_are_evaluated() -> None:
 
 def test_values_after_another_instruction_are_not_used() -> None:
     """Its evaluation might fail, which an index must not hide."""
-    code = [Op.FAIL_NE, 0, 0, 2, 0, Op.DIVIDE, 0, 0, 0, 0, Op.IS_EQ, 0, 1, 2, 0]
+    code = [opcodes.FAIL_NE, 0, 0, 2, 0, opcodes.DIVIDE, 0, 0, 0, 0, opcodes.IS_EQ, 0, 1, 2, 0]
     assert index.fixed_values(code, 0, [0, 0, 7], 2, {2}) == {0: 7}
     assert index.fixed_values(code, 10, [0, 0, 7], 2, {2}) == {1: 7}
     assert index.fixed_values(code, -1, [0, 0, 7], 2, {2}) == {}

@@ -32,11 +32,10 @@ from roaml.jani.expressions import (
 from roaml.jani.node import Origin
 from roaml.jani.operators import BinaryOperator, Signature, UnaryOperator
 from roaml.jani.types import ArrayType
-from roaml.smc import shapes
+from roaml.smc import opcodes, shapes
 from roaml.smc.cells import CellAssembler
-from roaml.smc.fault import FaultError
+from roaml.smc.fault import FaultCode, FaultError
 from roaml.smc.names import Meaning, Storage, StorageNames, unsupported
-from roaml.smc.opcodes import FaultCode, Op
 from roaml.smc.operations import ARITHMETIC, COMPARISONS, MAX_INT64, OperatorAssembler
 from roaml.smc.registers import BOOL, INT, REAL, Label, Operand, Region, product
 from roaml.smc.shapes import kind_of
@@ -59,16 +58,16 @@ class ExpressionAssembler:
         start = self.tape.begin(expression.origin or origin)
         otherwise = Label()
         self.jump(expression, names, otherwise, False)
-        self.tape.emit(Op.RETURN, a=self.tape.constant(INT, 1).register)
+        self.tape.emit(opcodes.RETURN, a=self.tape.constant(INT, 1).register)
         self.tape.mark(otherwise)
-        self.tape.emit(Op.RETURN, a=self.tape.constant(INT, 0).register)
+        self.tape.emit(opcodes.RETURN, a=self.tape.constant(INT, 0).register)
         self.tape.shorten(otherwise)
         return start
 
     def integer(self, expression: Expression, names: StorageNames) -> int:
         """Write code that returns the value of an integer `expression`. Return the address of the code."""
         start = self.tape.begin(expression.origin)
-        self.tape.emit(Op.RETURN, a=self.value(expression, names).register)
+        self.tape.emit(opcodes.RETURN, a=self.value(expression, names).register)
         return start
 
     def real_register(self, expression: Expression, names: StorageNames, origin: Origin | None = None) -> int:
@@ -76,7 +75,7 @@ class ExpressionAssembler:
         the code."""
         start = self.tape.begin(expression.origin or origin)
         value = self.cells.as_real(self.value(expression, names))
-        self.tape.emit(Op.RETURN, a=self.tape.constant(INT, value.register).register)
+        self.tape.emit(opcodes.RETURN, a=self.tape.constant(INT, value.register).register)
         return start
 
     # ------------------------------------------------------------ scalars
@@ -170,7 +169,7 @@ class ExpressionAssembler:
         no, end = Label(), Label()
         self.jump(test, names, no, False)
         self.stored(then, kind, names, register)
-        self.tape.jump(Op.JUMP, end)
+        self.tape.jump(opcodes.JUMP, end)
         self.tape.mark(no)
         self.stored(otherwise, kind, names, register)
         self.tape.mark(end)
@@ -180,10 +179,10 @@ class ExpressionAssembler:
         register = self.tape.temporary(BOOL)
         no, end = Label(), Label()
         self.jump(node, names, no, False)
-        self.tape.emit(Op.MOVE, register, self.tape.constant(INT, 1).register)
-        self.tape.jump(Op.JUMP, end)
+        self.tape.emit(opcodes.MOVE, register, self.tape.constant(INT, 1).register)
+        self.tape.jump(opcodes.JUMP, end)
         self.tape.mark(no)
-        self.tape.emit(Op.MOVE, register, self.tape.constant(INT, 0).register)
+        self.tape.emit(opcodes.MOVE, register, self.tape.constant(INT, 0).register)
         self.tape.mark(end)
         return self.cells.moved(Operand(BOOL, register), into)
 
@@ -202,7 +201,7 @@ class ExpressionAssembler:
                 no, end = Label(), Label()
                 self.jump(test, names, no, False)
                 self.jump(then, names, label, when)
-                self.tape.jump(Op.JUMP, end)
+                self.tape.jump(opcodes.JUMP, end)
                 self.tape.mark(no)
                 self.jump(otherwise, names, label, when)
                 self.tape.mark(end)
@@ -210,9 +209,9 @@ class ExpressionAssembler:
                 value = self.value(node, names)
                 if value.value is not None:
                     if bool(value.value) is when:
-                        self.tape.jump(Op.JUMP, label)
+                        self.tape.jump(opcodes.JUMP, label)
                 else:
-                    self.tape.jump(Op.JUMP_TRUE if when else Op.JUMP_FALSE, label, value.register)
+                    self.tape.jump(opcodes.JUMP_TRUE if when else opcodes.JUMP_FALSE, label, value.register)
 
     def logical(self, node: Binary, names: StorageNames, label: Label, when: bool) -> None:
         """Like `jump`, for a logical operator. Chains of one operator may have any length."""
@@ -249,17 +248,17 @@ class ExpressionAssembler:
         shape, other = shapes.shape(node.left, names), shapes.shape(node.right, names)
         if shape != other:
             if equal is not when:
-                self.tape.jump(Op.JUMP, label)
+                self.tape.jump(opcodes.JUMP, label)
             return
         kind = REAL if REAL in (shapes.kind(node.left, names), shapes.kind(node.right, names)) else INT
         left, right = (self.materialized(operand, kind, shape, names) for operand in (node.left, node.right))
         unequal = Label()
         goes = label if equal is not when else unequal
-        code = Op.JUMP_NE_REAL if kind == REAL else Op.JUMP_NE
+        code = opcodes.JUMP_NE_REAL if kind == REAL else opcodes.JUMP_NE
         for i in range(product(shape)):
             self.tape.jump(code, goes, left.base + i, right.base + i)
         if equal is when:
-            self.tape.jump(Op.JUMP, label)
+            self.tape.jump(opcodes.JUMP, label)
         self.tape.mark(unequal)
 
     # ------------------------------------------------------------ arrays
@@ -293,14 +292,14 @@ class ExpressionAssembler:
                     fixed += int(index.value) * size
                 continue
             self.tape.place(access.origin)
-            self.tape.emit(Op.INDEX, a=index.register, b=length)
+            self.tape.emit(opcodes.INDEX, a=index.register, b=length)
             step = self.tape.temporary(INT)
-            self.tape.emit(Op.MOVE, step, index.register)
+            self.tape.emit(opcodes.MOVE, step, index.register)
             zero = self.tape.constant(INT, 0).register
             if size != 1:
-                self.tape.emit(Op.OFFSET, step, zero, size)
+                self.tape.emit(opcodes.OFFSET, step, zero, size)
             if offset >= 0:
-                self.tape.emit(Op.ADD, step, step, offset)
+                self.tape.emit(opcodes.ADD, step, step, offset)
             offset = step
         return Region(array.kind, shape, base + fixed, offset)
 
@@ -356,7 +355,7 @@ class ExpressionAssembler:
                 no, end = Label(), Label()
                 self.jump(test, names, no, False)
                 self.fill(then, into, names, watch)
-                self.tape.jump(Op.JUMP, end)
+                self.tape.jump(opcodes.JUMP, end)
                 self.tape.mark(no)
                 self.fill(otherwise, into, names, watch)
                 self.tape.mark(end)

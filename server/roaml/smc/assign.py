@@ -12,10 +12,10 @@ from collections.abc import Sequence
 from roaml.jani.expressions import ArrayAccess, ArrayConstructor, ArrayValue, Conditional, Expression, Name
 from roaml.jani.node import Origin
 from roaml.record import Record
+from roaml.smc import opcodes
 from roaml.smc.assemble import ExpressionAssembler
 from roaml.smc.fault import FaultError
 from roaml.smc.names import Storage, StorageNames, unsupported
-from roaml.smc.opcodes import Op
 from roaml.smc.operations import MAX_INT64
 from roaml.smc.registers import INT, REAL, Number, Operand, Region, product
 
@@ -81,12 +81,12 @@ class AssignmentAssembler:
         if not place.shape:
             self.cells.write(Operand(place.kind, register), place, watch)
         elif place.offset < 0:
-            self.tape.emit(Op.COPY_REAL if is_real else Op.COPY, place.base, register, watch, place.size)
+            self.tape.emit(opcodes.COPY_REAL if is_real else opcodes.COPY, place.base, register, watch, place.size)
         else:
-            code = Op.STORE_MANY_REAL if is_real else Op.STORE_MANY
+            code = opcodes.STORE_MANY_REAL if is_real else opcodes.STORE_MANY
             self.tape.emit(code, place.base, place.offset, register, place.size)
             if watch >= 0:
-                self.tape.emit(Op.NOTE, watch)
+                self.tape.emit(opcodes.NOTE, watch)
 
     def early(self, target: Expression, value: Expression, names: StorageNames, origin: Origin | None = None) -> Later:
         """Write code that computes the value and the target of an assignment. `finish` stores the value."""
@@ -95,7 +95,7 @@ class AssignmentAssembler:
         place = self.expressions.indexed(Region(storage.kind, storage.shape, storage.base), accesses, names)
         if place.offset >= 0:
             offset = self.tape.reserve(INT, 1)
-            self.tape.emit(Op.MOVE, offset, place.offset)
+            self.tape.emit(opcodes.MOVE, offset, place.offset)
             place = Region(place.kind, place.shape, place.base, offset)
         self.tape.place(value.origin or target.origin or origin)
         if place.shape:
@@ -125,4 +125,4 @@ class AssignmentAssembler:
         low = (-float("inf") if is_real else -MAX_INT64 - 1) if low is None else low
         high = (float("inf") if is_real else MAX_INT64) if high is None else high
         ends = [self.tape.constant(storage.kind, end).register for end in (low, high)]
-        self.tape.emit(Op.RANGE_REAL if is_real else Op.RANGE, 0, operand.register, *ends)
+        self.tape.emit(opcodes.RANGE_REAL if is_real else opcodes.RANGE, 0, operand.register, *ends)

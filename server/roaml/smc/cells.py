@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 from roaml.jani.node import Node
-from roaml.smc.fault import FaultError
-from roaml.smc.opcodes import FaultCode, Op
+from roaml.smc import opcodes
+from roaml.smc.fault import FaultCode, FaultError
 from roaml.smc.registers import INT, REAL, Operand, Region, Tape, product
 
 
@@ -18,12 +18,12 @@ class CellAssembler:
 
     def end(self) -> None:
         """Write the end of a piece of code whose result is not used."""
-        self.tape.emit(Op.RETURN, a=self.tape.constant(INT, 0).register)
+        self.tape.emit(opcodes.RETURN, a=self.tape.constant(INT, 0).register)
 
     def failing(self, node: Node, code: FaultCode, kind: str, value: int = 0, size: int = 0) -> Operand:
         """Write code for an expression that has no value: the code fails if it is executed."""
         self.tape.place(node.origin)
-        self.tape.emit(Op.FAULT, code, value, size)
+        self.tape.emit(opcodes.FAULT, code, value, size)
         return Operand(kind, self.tape.temporary(kind))
 
     # ------------------------------------------------------------ scalars
@@ -31,7 +31,7 @@ class CellAssembler:
     def moved(self, operand: Operand, into: int) -> Operand:
         if into < 0 or operand.register == into:
             return operand
-        self.tape.emit(Op.MOVE_REAL if operand.kind == REAL else Op.MOVE, into, operand.register)
+        self.tape.emit(opcodes.MOVE_REAL if operand.kind == REAL else opcodes.MOVE, into, operand.register)
         return Operand(operand.kind, into)
 
     def target(self, kind: str, into: int) -> int:
@@ -43,7 +43,7 @@ class CellAssembler:
         if operand.value is not None:
             return self.moved(self.tape.constant(REAL, float(operand.value)), into)
         register = self.target(REAL, into)
-        self.tape.emit(Op.REAL, register, operand.register)
+        self.tape.emit(opcodes.REAL, register, operand.register)
         return Operand(REAL, register)
 
     def load(self, cell: Region, into: int = -1) -> Operand:
@@ -51,16 +51,16 @@ class CellAssembler:
         if cell.offset < 0:
             return self.moved(Operand(cell.kind, cell.base), into)
         register = self.target(cell.kind, into)
-        self.tape.emit(Op.LOAD_REAL if cell.kind == REAL else Op.LOAD, register, cell.base, cell.offset)
+        self.tape.emit(opcodes.LOAD_REAL if cell.kind == REAL else opcodes.LOAD, register, cell.base, cell.offset)
         return Operand(cell.kind, register)
 
     def write(self, value: Operand, cell: Region, watch: int) -> None:
         is_real = cell.kind == REAL
         if cell.offset >= 0:
-            code = Op.STORE_REAL if is_real else Op.STORE
+            code = opcodes.STORE_REAL if is_real else opcodes.STORE
             self.tape.emit(code, cell.base, cell.offset, value.register, watch)
         elif watch >= 0:
-            self.tape.emit(Op.SET_REAL if is_real else Op.SET, cell.base, value.register, watch)
+            self.tape.emit(opcodes.SET_REAL if is_real else opcodes.SET, cell.base, value.register, watch)
         else:
             self.moved(value, cell.base)
 
@@ -103,10 +103,10 @@ class CellAssembler:
     def copy_block(self, source: Region, into: Region, watch: int) -> None:
         is_real = into.kind == REAL
         if source.offset < 0:
-            code = Op.COPY_REAL if is_real else Op.COPY
+            code = opcodes.COPY_REAL if is_real else opcodes.COPY
             self.tape.emit(code, into.base, source.base, watch, source.size)
             return
-        code = Op.COPY_INDEXED_REAL if is_real else Op.COPY_INDEXED
+        code = opcodes.COPY_INDEXED_REAL if is_real else opcodes.COPY_INDEXED
         self.tape.emit(code, into.base, source.base, source.offset, source.size)
         if watch >= 0:
-            self.tape.emit(Op.NOTE, watch)
+            self.tape.emit(opcodes.NOTE, watch)

@@ -322,7 +322,6 @@ class Compilation:
                 marks.get((self.layout.instances[number].automaton.name, location), 0)
                 for number, location in self.network.locations
             ),
-            **self._zero_tables(),
         )
 
     @property
@@ -417,15 +416,6 @@ class Compilation:
             "first_list": _ints(indexes.first_list),
             "list_start": _ints(indexes.list_start),
             "list_item": _ints(indexes.items),
-        }
-
-    def _zero_tables(self) -> dict[str, Any]:
-        """The members of `Program` with which a kernel clears its tables."""
-        return {
-            "zero_slots": _ints([0] * len(self.network.slots)),
-            "zero_vectors": _ints([0] * len(self.network.vectors)),
-            "zero_variables": _ints([0] * len(self.watched)),
-            "zero_instances": _ints([0] * len(self.layout.instances)),
         }
 
     def _initial_tables(self) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import enum
 from typing import Any
 
 from roaml.jani.node import Origin
@@ -32,3 +33,31 @@ class FaultError(Exception):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self.message, self.origin, self.trace, self.code)
+
+
+class FaultCode(enum.IntEnum):
+    """The reason why a trace cannot continue."""
+
+    NONE = 0
+    OVERFLOW = 1
+    DIVISION = 2
+    INDEX = 3
+    RANGE = 4
+    DOMAIN = 5
+    PROBABILITY = 6
+    EMPTY = 7
+    TOO_LARGE = 8
+    NEGATIVE = 9
+
+
+MESSAGES = {
+    FaultCode.OVERFLOW: "integer overflow: the result does not fit into 64 bits",
+    FaultCode.DIVISION: "division by zero",
+    FaultCode.INDEX: "index {value} is outside of the array, whose length is {size}",
+    FaultCode.RANGE: "{value} is outside of the bounds of the variable's type",
+    FaultCode.DOMAIN: "this function has no value for {value}",
+    FaultCode.PROBABILITY: "the probabilities of this edge do not add up to 1, or one is negative",
+    FaultCode.EMPTY: "the array has no elements",
+    FaultCode.TOO_LARGE: "the result is too large for a real number",
+    FaultCode.NEGATIVE: "a reward is negative, so bounds on its sum are not supported",
+}

@@ -13,7 +13,8 @@ from collections.abc import Container, Mapping, Sequence
 from typing import TypeAlias
 
 from roaml.record import Record
-from roaml.smc.opcodes import WIDTH, Op
+from roaml.smc import opcodes
+from roaml.smc.opcodes import WIDTH
 
 MIN_INDEXED = 4
 """With fewer guards, an index is not faster."""
@@ -22,7 +23,14 @@ MAX_LISTS_PER_GUARD = 4
 MIN_SHARE = 0.5
 """The least share of the guards that an index must contain."""
 
-_COMPARISONS = (Op.FAIL_EQ, Op.FAIL_NE, Op.FAIL_LT, Op.FAIL_LE, Op.FAIL_TRUE, Op.FAIL_FALSE)
+_COMPARISONS = (
+    opcodes.FAIL_EQ,
+    opcodes.FAIL_NE,
+    opcodes.FAIL_LT,
+    opcodes.FAIL_LE,
+    opcodes.FAIL_TRUE,
+    opcodes.FAIL_FALSE,
+)
 
 Fixed: TypeAlias = Mapping[int, int]
 """The values that registers must have for a guard to be true."""
@@ -60,7 +68,7 @@ def is_fixed(
         equal = _equality(code, at, ints, int_count, constants)
         if not equal or any(fixed.get(register) != value for register, value in equal):
             return False
-        if code[at] == Op.IS_EQ:
+        if code[at] == opcodes.IS_EQ:
             return True
         at += WIDTH
     return False
@@ -71,7 +79,7 @@ def _equality(
 ) -> list[tuple[int, int]]:
     """The register of a variable and its value, if the instruction at `at` requires that they are equal."""
     op, a, b = code[at], code[at + 2], code[at + 3]
-    if op in (Op.FAIL_NE, Op.IS_EQ):
+    if op in (opcodes.FAIL_NE, opcodes.IS_EQ):
         if b < int_count and a in constants:
             a, b = b, a
         if a < int_count and b in constants:

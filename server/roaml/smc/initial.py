@@ -18,9 +18,8 @@ from roaml.jani.node import Origin
 from roaml.jani.operators import BinaryOperator
 from roaml.jani.semantics import EvaluationError, Value, evaluate
 from roaml.record import Record
-from roaml.smc.fault import FaultError
+from roaml.smc.fault import MESSAGES, FaultCode, FaultError
 from roaml.smc.names import Storage, variables_in
-from roaml.smc.opcodes import MESSAGES, FaultCode
 from roaml.smc.registers import BOOL, INT, REAL, Number
 
 MAX_ROWS = 1_000_000

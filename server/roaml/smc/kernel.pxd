@@ -5,6 +5,8 @@
 
 cimport cython
 
+include "kernel_types.pxi"  # the class KernelTables and the codes of instructions; see setup.py
+
 ctypedef unsigned long long u64
 ctypedef long long i64
 
@@ -16,43 +18,26 @@ cdef int FALSE, TRUE, UNKNOWN, FAULTY, GOES_ON, ASKED
 cdef int DECIDED, TIME, FINISHED, STUCK, QUIET, DEADLOCK, IDLE, ROUND
 
 @cython.final
-cdef class Kernel:
-    cdef int[::1] code
+cdef class Kernel(KernelTables):
     cdef list functions
     cdef list arguments
     cdef i64[::1] ints_0, ints, ints_before
     cdef double[::1] reals_0, reals, reals_before
-    cdef int int_count, real_count, instances, settle
-    cdef int[::1] place_0, place, first_location
-    cdef int[::1] root_start, root_cell, root_first
-    cdef i64[::1] root_count, root_int
+    cdef int[::1] place_0, place
     cdef int[::1] place_mark
     cdef i64[::1] ints_mark
     cdef double[::1] reals_mark
-    cdef double[::1] root_real
     cdef public u64 roots
-    cdef int[::1] group_start, group_slot, group_way, edge_start, guard, way_start, way_target, way_code, way_chance, way_move
-    cdef double[::1] way_sum
-    cdef int[::1] way_update, vector_update, group_update, updates
-    cdef int[::1] slot_instance, slot_vector, gate_start, gate_vector
-    cdef int[::1] active_start, active_slot, all_start, all_slot, entangled
-    cdef int[::1] phase_start, phase_index, phase_read, phase_write
-    cdef int[::1] watch_start, watch_instance, watch_table, watched_start, watched_group, watched_index
-    cdef int[::1] indexed_start, indexed_register
-    cdef int[::1] group_index, dimension_start, dimension_register, dimension_size
-    cdef int[::1] first_list, list_start, list_item, visited, visits, location_code, location_mark
-    cdef int[::1] seen_start, seen_leaf, left, right, formula, formula_start, leaf_start, activity
+    cdef int[::1] visited, visits
     cdef int[::1] verdict, holds_left, holds_right, stale, stack, asked, known, known_end, known_activity
     cdef i64[::1] known_steps
-    cdef i64[::1] lower, upper, dimension_low, value_before
-    cdef int visit_count, leaves, questions, status, is_bounded, step_reward, exit_reward
-    cdef int[::1] sum_register, sum_watch, sum_step, sum_exit, kept_slot, kept_way
-    cdef double[::1] sum_limit
+    cdef i64[::1] value_before
+    cdef int visit_count, leaves, questions, status
+    cdef int[::1] kept_slot, kept_way
     cdef int sums, lasts, is_plain
     cdef u64 tried
     cdef int[::1] ready, ready_0, slot_group, slot_group_0, gate_missing, gate_missing_0, vector_missing, vector_missing_0
     cdef int[::1] enabled, enabled_0
-    cdef int first_held
     cdef int enabled_count, enabled_count_0, plural, plural_0, fault_0
     cdef int[::1] noted, notes, part_slot, part_way
     cdef public int parts, vector

@@ -20,10 +20,12 @@
 
 from __future__ import annotations
 
+from array import array
 from typing import TYPE_CHECKING, Any
 
+from roaml.smc.opcodes import *
+
 if TYPE_CHECKING:
-    from array import array
     from collections.abc import Sequence
 
     from roaml.smc.program import Goal, Program
@@ -56,35 +58,20 @@ def compiled() -> bool:
     return not __file__.endswith(".py")
 
 
-class Kernel:
-    """A compiled model and a goal, and the state of one trace."""
+class KernelTables:
+    """The tables of a model and a goal. Their C types follow from `roaml.smc.program`, see `setup.py`."""
 
     def __init__(self, program: Program, goal: Goal) -> None:
         self.code = program.code
-        self.functions = [operator.function for operator in program.functions]
-        self.ints_0 = program.ints[:]
-        self.reals_0 = program.reals[:]
-        self.ints = program.ints[:]
-        self.reals = program.reals[:]
-        self.place_mark = program.initial[:]
-        self.ints_mark = program.ints[:]
-        self.reals_mark = program.reals[:]
-        self.ints_before = program.ints[:]
-        self.reals_before = program.reals[:]
         self.int_count = program.int_count
         self.real_count = program.real_count
         self.instances = program.instances
-        self.place_0 = program.initial
-        self.place = program.initial[:]
         self.root_start = program.root_start
         self.root_cell = program.root_cell
         self.root_count = program.root_count
         self.root_first = program.root_first
         self.root_int = program.root_int
         self.root_real = program.root_real
-        self.roots = 1
-        for i in range(len(program.root_count)):
-            self.roots *= program.root_count[i]
         self.first_location = program.first_location
         self.group_start = program.group_start
         self.group_slot = program.group_slot
@@ -105,6 +92,7 @@ class Kernel:
         self.slot_vector = program.slot_vector
         self.gate_start = program.gate_start
         self.gate_vector = program.gate_vector
+        self.first_held = program.first_held
         self.active_start = program.active_start
         self.active_slot = program.active_slot
         self.all_start = program.all_start
@@ -130,16 +118,9 @@ class Kernel:
         self.first_list = program.first_list
         self.list_start = program.list_start
         self.list_item = program.list_item
-        self.value_before = program.ints[: program.int_count]
-        self.visited = program.first_list[:]
-        self.visits = program.first_list[:]
-        for i in range(len(self.visited)):
-            self.visited[i] = 0
-        self.visit_count = 0
         self.settle = program.settle
         self.location_code = program.location_code
         self.location_mark = program.location_mark
-
         self.seen_start = goal.seen_start
         self.seen_leaf = goal.seen_leaf
         self.left = goal.left
@@ -150,8 +131,6 @@ class Kernel:
         self.formula_start = goal.formula_start
         self.leaf_start = goal.leaf_start
         self.activity = goal.activity
-        self.questions = len(goal.activity)
-        self.leaves = len(goal.left)
         self.is_bounded = goal.is_bounded
         self.step_reward = goal.step_reward
         self.exit_reward = goal.exit_reward
@@ -160,6 +139,37 @@ class Kernel:
         self.sum_step = goal.sum_step
         self.sum_exit = goal.sum_exit
         self.sum_limit = goal.sum_limit
+
+
+class Kernel(KernelTables):
+    """A compiled model and a goal, and the state of one trace."""
+
+    def __init__(self, program: Program, goal: Goal) -> None:
+        super().__init__(program, goal)
+        self.functions = [operator.function for operator in program.functions]
+        self.ints_0 = program.ints[:]
+        self.reals_0 = program.reals[:]
+        self.ints = program.ints[:]
+        self.reals = program.reals[:]
+        self.place_mark = program.initial[:]
+        self.ints_mark = program.ints[:]
+        self.reals_mark = program.reals[:]
+        self.ints_before = program.ints[:]
+        self.reals_before = program.reals[:]
+        self.place_0 = program.initial
+        self.place = program.initial[:]
+        self.roots = 1
+        for i in range(len(program.root_count)):
+            self.roots *= program.root_count[i]
+        self.value_before = program.ints[: program.int_count]
+        self.visited = program.first_list[:]
+        self.visits = program.first_list[:]
+        for i in range(len(self.visited)):
+            self.visited[i] = 0
+        self.visit_count = 0
+
+        self.questions = len(goal.activity)
+        self.leaves = len(goal.left)
         self.sums = len(goal.sum_register)
         self.is_plain = 1 if self.sums == 0 and self.settle < 0 and self.step_reward < 0 else 0
         self.lasts = 1 if goal.upper[0] >= 0 and (goal.step_reward >= 0 or goal.exit_reward >= 0) else 0
@@ -172,30 +182,29 @@ class Kernel:
         self.known = goal.activity[:]
         self.known_end = goal.activity[:]
         self.known_activity = goal.activity[:]
-        self.known_steps = goal.zero_steps[:]
+        self.known_steps = array("q", [0]) * len(goal.activity)
         for i in range(self.questions):
             self.asked[i] = 1
 
-        self.ready = program.zero_slots[:]
-        self.ready_0 = program.zero_slots[:]
-        self.slot_group = program.zero_slots[:]
-        self.slot_group_0 = program.zero_slots[:]
+        self.ready = array("i", [0]) * len(program.slot_instance)
+        self.ready_0 = array("i", [0]) * len(program.slot_instance)
+        self.slot_group = array("i", [0]) * len(program.slot_instance)
+        self.slot_group_0 = array("i", [0]) * len(program.slot_instance)
         self.gate_missing = program.gate_missing[:]
         self.gate_missing_0 = program.gate_missing[:]
-        self.first_held = program.first_held
         self.vector_missing = program.vector_missing[:]
         self.vector_missing_0 = program.vector_missing[:]
-        self.enabled = program.zero_vectors[:]
-        self.enabled_0 = program.zero_vectors[:]
+        self.enabled = array("i", [0]) * len(program.vector_missing)
+        self.enabled_0 = array("i", [0]) * len(program.vector_missing)
         self.enabled_count = 0
         self.plural = 0
-        self.noted = program.zero_variables[:]
-        self.notes = program.zero_variables[:]
+        self.noted = array("i", [0]) * (len(goal.seen_start) - 1)
+        self.notes = array("i", [0]) * (len(goal.seen_start) - 1)
         self.note_count = 0
-        self.part_slot = program.zero_instances[:]
-        self.part_way = program.zero_instances[:]
-        self.kept_slot = program.zero_instances[:]
-        self.kept_way = program.zero_instances[:]
+        self.part_slot = array("i", [0]) * program.instances
+        self.part_way = array("i", [0]) * program.instances
+        self.kept_slot = array("i", [0]) * program.instances
+        self.kept_way = array("i", [0]) * program.instances
         self.tried = 0
         self.parts = 0
         self.vector = -1
@@ -406,7 +415,7 @@ class Kernel:
 
     def save(self) -> tuple[Any, ...]:
         """All data that determine how the trace continues; `load` restores them."""
-        arrays = [list(array) for array in self._changing()]
+        arrays = [list(table) for table in self._changing()]
         counts = (self.enabled_count, self.plural, self.fault, self.end, self.vector, self.looped, self.moved)
         goal = (self.status, self.must_look, self.steps, self.still, self.reward)
         draws = (self.key, self.drawn, self.scheduler)
@@ -417,9 +426,9 @@ class Kernel:
         """Go back to a state of the same model and goal that `save` has returned."""
         arrays, counts, goal, draws, loop = saved
         self._reset()
-        for array, values in zip(self._changing(), arrays, strict=True):
+        for table, values in zip(self._changing(), arrays, strict=True):
             for i, value in enumerate(values):
-                array[i] = value
+                table[i] = value
         self._keep_values()
         self.enabled_count, self.plural, self.fault, self.end, self.vector, self.looped, self.moved = counts
         self.status, self.must_look, self.steps, self.still, self.reward = goal
@@ -702,7 +711,7 @@ class Kernel:
             if op >= 57:
                 return result
             if result == 0:
-                pc += 5
+                pc += WIDTH
             elif op >= 51:
                 return 0
             else:
@@ -1648,49 +1657,49 @@ class Kernel:
         return 1
 
     def _execute(self, pc: int) -> int:
-        """Execute the bytecode from `pc` on; return the operand of its RETURN. The codes are those of `opcodes.Op`."""
+        """Execute the bytecode from `pc` on; return the operand of its RETURN. The codes are those of `opcodes`."""
         while True:
             op = self.code[pc]
             d = self.code[pc + 1]
             a = self.code[pc + 2]
             b = self.code[pc + 3]
             c = self.code[pc + 4]
-            if op == 0:  # RETURN
+            if op == RETURN:
                 return self.ints[a]
-            if op == 1:  # JUMP
+            if op == JUMP:
                 pc = d
                 continue
-            if op == 2:  # JUMP_TRUE
+            if op == JUMP_TRUE:
                 if self.ints[a] != 0:
                     pc = d
                     continue
-            elif op == 3:  # JUMP_FALSE
+            elif op == JUMP_FALSE:
                 if self.ints[a] == 0:
                     pc = d
                     continue
-            elif op == 4:  # JUMP_EQ
+            elif op == JUMP_EQ:
                 if self.ints[a] == self.ints[b]:
                     pc = d
                     continue
-            elif op == 5:  # JUMP_NE
+            elif op == JUMP_NE:
                 if self.ints[a] != self.ints[b]:
                     pc = d
                     continue
-            elif op == 6:  # JUMP_LT
+            elif op == JUMP_LT:
                 if self.ints[a] < self.ints[b]:
                     pc = d
                     continue
-            elif op == 7:  # JUMP_LE
+            elif op == JUMP_LE:
                 if self.ints[a] <= self.ints[b]:
                     pc = d
                     continue
-            elif op == 8:  # MOVE
+            elif op == MOVE:
                 self.ints[d] = self.ints[a]
-            elif op == 9:  # SET
+            elif op == SET:
                 if self.ints[d] != self.ints[a]:
                     self.ints[d] = self.ints[a]
                     self._note(b)
-            elif op == 10:  # ADD
+            elif op == ADD:
                 x = self.ints[a]
                 y = self.ints[b]
                 z = x + y
@@ -1698,7 +1707,7 @@ class Kernel:
                     self._fail(1, pc)
                     return 0
                 self.ints[d] = z
-            elif op == 11:  # SUB
+            elif op == SUB:
                 x = self.ints[a]
                 y = self.ints[b]
                 z = x - y
@@ -1706,7 +1715,7 @@ class Kernel:
                     self._fail(1, pc)
                     return 0
                 self.ints[d] = z
-            elif op == 12:  # MUL
+            elif op == MUL:
                 x = self.ints[a]
                 y = self.ints[b]
                 if x == 0 or y == 0:
@@ -1720,17 +1729,17 @@ class Kernel:
                         self._fail(1, pc)
                         return 0
                 self.ints[d] = z
-            elif op == 13:  # MIN
+            elif op == MIN:
                 self.ints[d] = self.ints[a] if self.ints[a] <= self.ints[b] else self.ints[b]
-            elif op == 14:  # MAX
+            elif op == MAX:
                 self.ints[d] = self.ints[a] if self.ints[a] >= self.ints[b] else self.ints[b]
-            elif op == 15:  # ABS
+            elif op == ABS:
                 x = self.ints[a]
                 if x == MIN_INT64:
                     self._fail(1, pc)
                     return 0
                 self.ints[d] = x if x >= 0 else -x
-            elif op == 16:  # REM
+            elif op == REM:
                 x = self.ints[a]
                 y = self.ints[b]
                 if y == 0:
@@ -1744,24 +1753,24 @@ class Kernel:
                     if z < 0:
                         z += y
                 self.ints[d] = z
-            elif op == 17:  # REAL
+            elif op == REAL:
                 self.reals[d] = self.ints[a]
-            elif op == 18:  # INDEX
+            elif op == INDEX:
                 x = self.ints[a]
                 if x < 0 or x >= b:
                     self._fail_with(3, pc, x, b, 0.0)
                     return 0
-            elif op == 19:  # OFFSET
+            elif op == OFFSET:
                 self.ints[d] = self.ints[d] * b + self.ints[a]
-            elif op == 20:  # LOAD
+            elif op == LOAD:
                 self.ints[d] = self.ints[a + self.ints[b]]
-            elif op == 21:  # STORE
+            elif op == STORE:
                 at = d + self.ints[a]
                 if self.ints[at] != self.ints[b]:
                     self.ints[at] = self.ints[b]
                     if c >= 0:
                         self._note(c)
-            elif op == 22:  # COPY
+            elif op == COPY:
                 changed = 0
                 for i in range(c):
                     if self.ints[d + i] != self.ints[a + i]:
@@ -1769,71 +1778,71 @@ class Kernel:
                         changed = 1
                 if changed != 0 and b >= 0:
                     self._note(b)
-            elif op == 23:  # COPY_INDEXED
+            elif op == COPY_INDEXED:
                 at = a + self.ints[b]
                 for i in range(c):
                     self.ints[d + i] = self.ints[at + i]
-            elif op == 24:  # STORE_MANY
+            elif op == STORE_MANY:
                 at = d + self.ints[a]
                 for i in range(c):
                     self.ints[at + i] = self.ints[b + i]
-            elif op == 25:  # NOTE
+            elif op == NOTE:
                 self._note(d)
-            elif op == 26:  # RANGE
+            elif op == RANGE:
                 if self.ints[a] < self.ints[b] or self.ints[a] > self.ints[c]:
                     self._fail_with(4, pc, self.ints[a], 0, 0.0)
                     return 0
-            elif op == 27:  # FAULT
+            elif op == FAULT:
                 self._fail_with(d, pc, a, b, 0.0)
                 return 0
-            elif op == 28:  # JUMP_EQ_REAL
+            elif op == JUMP_EQ_REAL:
                 if self.reals[a] == self.reals[b]:
                     pc = d
                     continue
-            elif op == 29:  # JUMP_NE_REAL
+            elif op == JUMP_NE_REAL:
                 if self.reals[a] != self.reals[b]:
                     pc = d
                     continue
-            elif op == 30:  # JUMP_LT_REAL
+            elif op == JUMP_LT_REAL:
                 if self.reals[a] < self.reals[b]:
                     pc = d
                     continue
-            elif op == 31:  # JUMP_LE_REAL
+            elif op == JUMP_LE_REAL:
                 if self.reals[a] <= self.reals[b]:
                     pc = d
                     continue
-            elif op == 32:  # MOVE_REAL
+            elif op == MOVE_REAL:
                 self.reals[d] = self.reals[a]
-            elif op == 33:  # SET_REAL
+            elif op == SET_REAL:
                 if self.reals[d] != self.reals[a]:
                     self.reals[d] = self.reals[a]
                     self._note(b)
-            elif op == 34:  # ADD_REAL
+            elif op == ADD_REAL:
                 self.reals[d] = self.reals[a] + self.reals[b]
-            elif op == 35:  # SUB_REAL
+            elif op == SUB_REAL:
                 self.reals[d] = self.reals[a] - self.reals[b]
-            elif op == 36:  # MUL_REAL
+            elif op == MUL_REAL:
                 self.reals[d] = self.reals[a] * self.reals[b]
-            elif op == 37:  # MIN_REAL
+            elif op == MIN_REAL:
                 self.reals[d] = self.reals[b] if self.reals[b] < self.reals[a] else self.reals[a]
-            elif op == 38:  # MAX_REAL
+            elif op == MAX_REAL:
                 self.reals[d] = self.reals[b] if self.reals[b] > self.reals[a] else self.reals[a]
-            elif op == 39:  # ABS_REAL
+            elif op == ABS_REAL:
                 self.reals[d] = -self.reals[a] if self.reals[a] < 0.0 else self.reals[a]
-            elif op == 40:  # DIVIDE
+            elif op == DIVIDE:
                 if self.reals[b] == 0.0:
                     self._fail(2, pc)
                     return 0
                 self.reals[d] = self.reals[a] / self.reals[b]
-            elif op == 41:  # LOAD_REAL
+            elif op == LOAD_REAL:
                 self.reals[d] = self.reals[a + self.ints[b]]
-            elif op == 42:  # STORE_REAL
+            elif op == STORE_REAL:
                 at = d + self.ints[a]
                 if self.reals[at] != self.reals[b]:
                     self.reals[at] = self.reals[b]
                     if c >= 0:
                         self._note(c)
-            elif op == 43:  # COPY_REAL
+            elif op == COPY_REAL:
                 changed = 0
                 for i in range(c):
                     if self.reals[d + i] != self.reals[a + i]:
@@ -1841,52 +1850,52 @@ class Kernel:
                         changed = 1
                 if changed != 0 and b >= 0:
                     self._note(b)
-            elif op == 44:  # COPY_INDEXED_REAL
+            elif op == COPY_INDEXED_REAL:
                 at = a + self.ints[b]
                 for i in range(c):
                     self.reals[d + i] = self.reals[at + i]
-            elif op == 45:  # STORE_MANY_REAL
+            elif op == STORE_MANY_REAL:
                 at = d + self.ints[a]
                 for i in range(c):
                     self.reals[at + i] = self.reals[b + i]
-            elif op == 46:  # RANGE_REAL
+            elif op == RANGE_REAL:
                 if self.reals[a] < self.reals[b] or self.reals[a] > self.reals[c]:
                     self._fail_with(4, pc, 0, 0, self.reals[a])
                     return 0
-            elif op == 47:  # CALL_INT
+            elif op == CALL_INT:
                 if self._call(c, 0, d, pc) == 0:
                     return 0
-            elif op == 48:  # CALL_REAL
+            elif op == CALL_REAL:
                 if self._call(c, 1, d, pc) == 0:
                     return 0
-            elif op == 49:  # ARGUMENT
+            elif op == ARGUMENT:
                 self.arguments.append(self.ints[a])
-            elif op == 50:  # ARGUMENT_REAL
+            elif op == ARGUMENT_REAL:
                 self.arguments.append(self.reals[a])
-            elif op == 51:  # FAIL_TRUE
+            elif op == FAIL_TRUE:
                 if self.ints[a] != 0:
                     return 0
-            elif op == 52:  # FAIL_FALSE
+            elif op == FAIL_FALSE:
                 if self.ints[a] == 0:
                     return 0
-            elif op == 53:  # FAIL_EQ
+            elif op == FAIL_EQ:
                 if self.ints[a] == self.ints[b]:
                     return 0
-            elif op == 54:  # FAIL_NE
+            elif op == FAIL_NE:
                 if self.ints[a] != self.ints[b]:
                     return 0
-            elif op == 55:  # FAIL_LT
+            elif op == FAIL_LT:
                 if self.ints[a] < self.ints[b]:
                     return 0
-            elif op == 56:  # FAIL_LE
+            elif op == FAIL_LE:
                 if self.ints[a] <= self.ints[b]:
                     return 0
-            elif op == 57:  # IS_EQ
+            elif op == IS_EQ:
                 return 1 if self.ints[a] == self.ints[b] else 0
-            elif op == 58:  # IS_NE
+            elif op == IS_NE:
                 return 1 if self.ints[a] != self.ints[b] else 0
-            elif op == 59:  # IS_LT
+            elif op == IS_LT:
                 return 1 if self.ints[a] < self.ints[b] else 0
-            elif op == 60:  # IS_LE
+            elif op == IS_LE:
                 return 1 if self.ints[a] <= self.ints[b] else 0
-            pc += 5
+            pc += WIDTH

@@ -16,7 +16,7 @@ from roaml.smc.batch import Payload, TraceProblem
 from roaml.smc.choices import Choices, check_choices
 from roaml.smc.compile import Compilation, Legend
 from roaml.smc.end import Marks
-from roaml.smc.fault import FaultError
+from roaml.smc.fault import MESSAGES, FaultCode, FaultError
 from roaml.smc.goal import (
     NO_OUTPUTS,
     CompiledProperty,
@@ -27,7 +27,6 @@ from roaml.smc.goal import (
 )
 from roaml.smc.lss import Search, candidates, search
 from roaml.smc.names import variables_in
-from roaml.smc.opcodes import MESSAGES, FaultCode
 from roaml.smc.pool import Pool, Pulse, Runner
 from roaml.smc.program import Compiled, Program, merged
 from roaml.smc.run import Answer, Inquiry, Options, TraceFaultError, Watch, answer, answer_together, columns_of, summary

@@ -12,33 +12,34 @@ from roaml.jani.expressions import Binary, Boolean, Expression, Integer, Real, U
 from roaml.jani.node import Node
 from roaml.jani.operators import BinaryOperator, Operator, Signature, UnaryOperator
 from roaml.jani.semantics import DivisionByZeroError, EvaluationError, evaluate
+from roaml.smc import opcodes
 from roaml.smc.cells import CellAssembler
-from roaml.smc.opcodes import FaultCode, Op
+from roaml.smc.fault import FaultCode
 from roaml.smc.registers import BOOL, INT, REAL, Label, Operand
 
 MAX_INT64 = (1 << 63) - 1
 
 COMPARISONS = {
     # operator: for ints: (the jump if it holds, the jump if it does not, whether the operands are exchanged for each)
-    BinaryOperator.EQUAL: ((Op.JUMP_EQ, False), (Op.JUMP_NE, False)),
-    BinaryOperator.NOT_EQUAL: ((Op.JUMP_NE, False), (Op.JUMP_EQ, False)),
-    BinaryOperator.LESS: ((Op.JUMP_LT, False), (Op.JUMP_LE, True)),
-    BinaryOperator.LESS_EQUAL: ((Op.JUMP_LE, False), (Op.JUMP_LT, True)),
-    BinaryOperator.GREATER: ((Op.JUMP_LT, True), (Op.JUMP_LE, False)),
-    BinaryOperator.GREATER_EQUAL: ((Op.JUMP_LE, True), (Op.JUMP_LT, False)),
+    BinaryOperator.EQUAL: ((opcodes.JUMP_EQ, False), (opcodes.JUMP_NE, False)),
+    BinaryOperator.NOT_EQUAL: ((opcodes.JUMP_NE, False), (opcodes.JUMP_EQ, False)),
+    BinaryOperator.LESS: ((opcodes.JUMP_LT, False), (opcodes.JUMP_LE, True)),
+    BinaryOperator.LESS_EQUAL: ((opcodes.JUMP_LE, False), (opcodes.JUMP_LT, True)),
+    BinaryOperator.GREATER: ((opcodes.JUMP_LT, True), (opcodes.JUMP_LE, False)),
+    BinaryOperator.GREATER_EQUAL: ((opcodes.JUMP_LE, True), (opcodes.JUMP_LT, False)),
 }
 _REAL_JUMPS = {
-    Op.JUMP_EQ: Op.JUMP_EQ_REAL,
-    Op.JUMP_NE: Op.JUMP_NE_REAL,
-    Op.JUMP_LT: Op.JUMP_LT_REAL,
-    Op.JUMP_LE: Op.JUMP_LE_REAL,
+    opcodes.JUMP_EQ: opcodes.JUMP_EQ_REAL,
+    opcodes.JUMP_NE: opcodes.JUMP_NE_REAL,
+    opcodes.JUMP_LT: opcodes.JUMP_LT_REAL,
+    opcodes.JUMP_LE: opcodes.JUMP_LE_REAL,
 }
 ARITHMETIC = {
-    BinaryOperator.ADD: (Op.ADD, Op.ADD_REAL),
-    BinaryOperator.SUBTRACT: (Op.SUB, Op.SUB_REAL),
-    BinaryOperator.MULTIPLY: (Op.MUL, Op.MUL_REAL),
-    BinaryOperator.MINIMUM: (Op.MIN, Op.MIN_REAL),
-    BinaryOperator.MAXIMUM: (Op.MAX, Op.MAX_REAL),
+    BinaryOperator.ADD: (opcodes.ADD, opcodes.ADD_REAL),
+    BinaryOperator.SUBTRACT: (opcodes.SUB, opcodes.SUB_REAL),
+    BinaryOperator.MULTIPLY: (opcodes.MUL, opcodes.MUL_REAL),
+    BinaryOperator.MINIMUM: (opcodes.MIN, opcodes.MIN_REAL),
+    BinaryOperator.MAXIMUM: (opcodes.MAX, opcodes.MAX_REAL),
 }
 
 
@@ -59,7 +60,7 @@ class OperatorAssembler:
         if op is UnaryOperator.ABS:
             self.tape.place(node.origin)
             register = self.cells.target(value.kind, into)
-            self.tape.emit(Op.ABS if is_int else Op.ABS_REAL, register, value.register)
+            self.tape.emit(opcodes.ABS if is_int else opcodes.ABS_REAL, register, value.register)
             return Operand(value.kind, register)
         if op in (UnaryOperator.FLOOR, UnaryOperator.CEIL, UnaryOperator.TRUNCATE) and is_int:
             return self.cells.moved(value, into)
@@ -76,7 +77,7 @@ class OperatorAssembler:
         if op in ARITHMETIC or (op is BinaryOperator.REMAINDER and not is_real) or op is BinaryOperator.DIVIDE:
             if is_real:
                 first, second = self.cells.as_real(first), self.cells.as_real(second)
-            code = ARITHMETIC[op][is_real] if op in ARITHMETIC else Op.DIVIDE if is_real else Op.REM
+            code = ARITHMETIC[op][is_real] if op in ARITHMETIC else opcodes.DIVIDE if is_real else opcodes.REM
             self.tape.place(node.origin)
             register = self.cells.target(kind, into)
             self.tape.emit(code, register, first.register, second.register)
@@ -87,7 +88,7 @@ class OperatorAssembler:
         """Write code that jumps to `label` if the comparison of two scalars is `when`, and continues otherwise."""
         if first.value is not None and second.value is not None:
             if bool(op.function(first.value, second.value)) is when:
-                self.tape.jump(Op.JUMP, label)
+                self.tape.jump(opcodes.JUMP, label)
             return
         (code, swapped), (opposite, opposite_swapped) = COMPARISONS[op]
         if REAL not in (first.kind, second.kind):
@@ -106,15 +107,15 @@ class OperatorAssembler:
         # The opposite comparison cannot be used, because with NaN neither holds.
         holds = Label()
         self.tape.jump(_REAL_JUMPS[code], holds, first.register, second.register)
-        self.tape.jump(Op.JUMP, label)
+        self.tape.jump(opcodes.JUMP, label)
         self.tape.mark(holds)
 
     def call(self, node: Node, op: Operator, arguments: Sequence[Operand], kind: str, into: int) -> Operand:
         for argument in arguments:
-            self.tape.emit(Op.ARGUMENT_REAL if argument.kind == REAL else Op.ARGUMENT, a=argument.register)
+            self.tape.emit(opcodes.ARGUMENT_REAL if argument.kind == REAL else opcodes.ARGUMENT, a=argument.register)
         register = self.cells.target(kind, into)
         self.tape.place(node.origin)
-        code = Op.CALL_REAL if kind == REAL else Op.CALL_INT
+        code = opcodes.CALL_REAL if kind == REAL else opcodes.CALL_INT
         self.tape.emit(code, register, c=self.tape.function(op))
         return Operand(kind, register)
 

@@ -23,17 +23,18 @@ AT_END = -1
 """The lower bound of a formula that is decided at the end of a trace; see `Goal`."""
 
 Ints: TypeAlias = "array[int]"
+"""Numbers with the type `int` of C; the type code is `i`."""
+Longs: TypeAlias = "array[int]"
+"""Integers with 64 bits; the type code is `q`."""
 Reals: TypeAlias = "array[float]"
 
 
-class Program(Record, frozen=True, eq=False):
-    """A compiled model.
+class ProgramTables(Record, frozen=True, eq=False):
+    """The tables of a compiled model that the kernel reads. `setup.py` takes their C types from these declarations.
 
     Attributes:
-        code, functions: the bytecode, and the operators whose functions it calls.
-        ints, reals: the initial values of all registers: variables, then constants, then intermediate results.
+        code: the bytecode.
         int_count, real_count: the numbers of registers that are variables.
-        initial: the location of each instance in the first initial state.
         root_start, root_cell: the independent choices between initial values, and the cells that each sets: an
             instance for its location; the number of instances plus a register for an integer variable; for a real one,
             also plus the number of integer variables.
@@ -61,8 +62,6 @@ class Program(Record, frozen=True, eq=False):
             edges, which is encoded as in `updates.UpdateTables`.
         slot_vector: the vector of each slot; -1 if there is none; -2 - g if there are several, where g is the gate of
             the slot (`roaml.smc.kernel` defines gates). gate_vector: the vectors of a gate.
-        gate_missing, vector_missing: the number of slots of each gate; for each vector, the number of its slots that
-            are in no other vector, plus the number of its gates.
         first_held: the first of the vectors that are enabled only if no vector before it is: the steps of the clock in
             a model that holds them. The number of vectors if there are none.
         active_slot: the slots of a vector that have an effect; all_slot: all slots.
@@ -79,26 +78,19 @@ class Program(Record, frozen=True, eq=False):
         group_index: the index of the edges of each group, -1 if there is none.
         dimension_start, first_list, list_start, list_item: the indexes and their lists, see `index.Indexes`.
         dimension_register, dimension_low, dimension_size: the dimensions of the indexes.
-        cell_watch: for each variable register, integers first, the number of its variable among the watched variables,
-            or -1.
         settle: code that resets transient variables; location_code: code that sets their values in a location.
         location_mark: why a trace that stays in a location ends (`end.End`); 0 if unknown.
-        zero_*: a zero for each slot, vector, watched variable and instance, which the kernel copies.
     """
 
     code: Ints
-    functions: list[Operator]
-    ints: Ints
-    reals: Reals
     int_count: int
     real_count: int
     instances: int
-    initial: Ints
     root_start: Ints
     root_cell: Ints
-    root_count: Ints
+    root_count: Longs
     root_first: Ints
-    root_int: Ints
+    root_int: Longs
     root_real: Reals
     first_location: Ints
     group_start: Ints
@@ -120,8 +112,6 @@ class Program(Record, frozen=True, eq=False):
     slot_vector: Ints
     gate_start: Ints
     gate_vector: Ints
-    gate_missing: Ints
-    vector_missing: Ints
     first_held: int
     active_start: Ints
     active_slot: Ints
@@ -137,14 +127,13 @@ class Program(Record, frozen=True, eq=False):
     watch_table: Ints
     watched_start: Ints
     watched_group: Ints
-    cell_watch: Ints
     watched_index: Ints
     indexed_start: Ints
     indexed_register: Ints
     group_index: Ints
     dimension_start: Ints
     dimension_register: Ints
-    dimension_low: Ints
+    dimension_low: Longs
     dimension_size: Ints
     first_list: Ints
     list_start: Ints
@@ -152,15 +141,33 @@ class Program(Record, frozen=True, eq=False):
     settle: int
     location_code: Ints
     location_mark: Ints
-    zero_slots: Ints
-    zero_vectors: Ints
-    zero_variables: Ints
-    zero_instances: Ints
+
+
+class Program(ProgramTables, frozen=True, eq=False):
+    """A compiled model.
+
+    Attributes:
+        functions: the operators whose functions the bytecode calls.
+        ints, reals: the initial values of all registers: variables, then constants, then intermediate results.
+        initial: the location of each instance in the first initial state.
+        gate_missing, vector_missing: the number of slots of each gate; for each vector, the number of its slots that
+            are in no other vector, plus the number of its gates.
+        cell_watch: for each variable register, integers first, the number of its variable among the watched variables,
+            or -1.
+    """
+
+    functions: list[Operator]
+    ints: Longs
+    reals: Reals
+    initial: Ints
+    gate_missing: Ints
+    vector_missing: Ints
+    cell_watch: Ints
 
 
 class Goal(Record, frozen=True, eq=False):
     """The questions about a trace: a formula over untils for each question, and rewards. A goal with rewards, or with a
-    deadlock in a condition, has one question.
+    deadlock in a condition, has one question. The kernel reads all of these tables, like `ProgramTables`.
 
     Attributes:
         seen_start, seen_leaf: for each watched variable, the untils with a condition that reads it.
@@ -172,7 +179,6 @@ class Goal(Record, frozen=True, eq=False):
         formula: reverse Polish notation: the number of an until, or -1 not, -2 and, -3 or.
         formula_start, leaf_start: the formula and the untils of each question.
         activity: for each question, code that computes its `goal.Activity`; -1 if that is always `TRIGGERED`.
-        zero_steps: a zero for each question, which the kernel copies.
         is_bounded: what the evaluation depends on: 0 changes of variables, 1 also the number of steps, 2 also the
             enabled edges.
         step_reward, exit_reward: code that returns the register of the reward of a step.
@@ -186,13 +192,12 @@ class Goal(Record, frozen=True, eq=False):
     seen_leaf: Ints
     left: Ints
     right: Ints
-    lower: Ints
-    upper: Ints
+    lower: Longs
+    upper: Longs
     formula: Ints
     formula_start: Ints
     leaf_start: Ints
     activity: Ints
-    zero_steps: Ints
     is_bounded: int
     step_reward: int
     exit_reward: int
@@ -222,25 +227,24 @@ def merged(goals: Sequence[Goal]) -> Goal:
         leaf_start.extend(offset + end for end in goal.leaf_start[1:])
         formula.extend(item + offset if item >= 0 else item for item in goal.formula)
     return Goal(
-        seen_start,
-        seen_leaf,
-        _joined("i", [goal.left for goal in goals]),
-        _joined("i", [goal.right for goal in goals]),
-        _joined("q", [goal.lower for goal in goals]),
-        _joined("q", [goal.upper for goal in goals]),
-        formula,
-        formula_start,
-        leaf_start,
-        _joined("i", [goal.activity for goal in goals]),
-        _joined("q", [goal.zero_steps for goal in goals]),
-        max(goal.is_bounded for goal in goals),
-        -1,
-        -1,
-        _joined("i", [goal.sum_register for goal in goals]),
-        _joined("i", [goal.sum_watch for goal in goals]),
-        _joined("i", [goal.sum_step for goal in goals]),
-        _joined("i", [goal.sum_exit for goal in goals]),
-        array("d", [limit for goal in goals for limit in goal.sum_limit]),
+        seen_start=seen_start,
+        seen_leaf=seen_leaf,
+        left=_joined("i", [goal.left for goal in goals]),
+        right=_joined("i", [goal.right for goal in goals]),
+        lower=_joined("q", [goal.lower for goal in goals]),
+        upper=_joined("q", [goal.upper for goal in goals]),
+        formula=formula,
+        formula_start=formula_start,
+        leaf_start=leaf_start,
+        activity=_joined("i", [goal.activity for goal in goals]),
+        is_bounded=max(goal.is_bounded for goal in goals),
+        step_reward=-1,
+        exit_reward=-1,
+        sum_register=_joined("i", [goal.sum_register for goal in goals]),
+        sum_watch=_joined("i", [goal.sum_watch for goal in goals]),
+        sum_step=_joined("i", [goal.sum_step for goal in goals]),
+        sum_exit=_joined("i", [goal.sum_exit for goal in goals]),
+        sum_limit=array("d", [limit for goal in goals for limit in goal.sum_limit]),
     )
 
 

@@ -8,27 +8,28 @@ from typing import TypeAlias
 from roaml.jani.node import Origin
 from roaml.jani.operators import Operator
 from roaml.record import Record
-from roaml.smc.opcodes import ORDERS, WIDTH, Op
+from roaml.smc import opcodes
+from roaml.smc.opcodes import ORDERS, WIDTH
 
 BOOL, INT, REAL = "bool", "int", "real"
 """Kinds of values. Bools and ints share the same registers."""
 
 _FAILING = {
-    Op.JUMP_TRUE: Op.FAIL_TRUE,
-    Op.JUMP_FALSE: Op.FAIL_FALSE,
-    Op.JUMP_EQ: Op.FAIL_EQ,
-    Op.JUMP_NE: Op.FAIL_NE,
-    Op.JUMP_LT: Op.FAIL_LT,
-    Op.JUMP_LE: Op.FAIL_LE,
+    opcodes.JUMP_TRUE: opcodes.FAIL_TRUE,
+    opcodes.JUMP_FALSE: opcodes.FAIL_FALSE,
+    opcodes.JUMP_EQ: opcodes.FAIL_EQ,
+    opcodes.JUMP_NE: opcodes.FAIL_NE,
+    opcodes.JUMP_LT: opcodes.FAIL_LT,
+    opcodes.JUMP_LE: opcodes.FAIL_LE,
 }
 """A jump -> the instruction that returns 0 instead of jumping."""
 _DECIDING = {
-    Op.FAIL_TRUE: (Op.IS_NE, False),
-    Op.FAIL_FALSE: (Op.IS_NE, False),
-    Op.FAIL_EQ: (Op.IS_NE, False),
-    Op.FAIL_NE: (Op.IS_EQ, False),
-    Op.FAIL_LT: (Op.IS_LE, True),
-    Op.FAIL_LE: (Op.IS_LT, True),
+    opcodes.FAIL_TRUE: (opcodes.IS_NE, False),
+    opcodes.FAIL_FALSE: (opcodes.IS_NE, False),
+    opcodes.FAIL_EQ: (opcodes.IS_NE, False),
+    opcodes.FAIL_NE: (opcodes.IS_EQ, False),
+    opcodes.FAIL_LT: (opcodes.IS_LE, True),
+    opcodes.FAIL_LE: (opcodes.IS_LT, True),
 }
 """An instruction that returns 0 -> the one that returns 1 otherwise, and whether its operands are swapped."""
 
@@ -92,7 +93,7 @@ class Tape:
     def here(self) -> int:
         return len(self.code)
 
-    def emit(self, op: Op, d: int = 0, a: int = 0, b: int = 0, c: int = 0) -> None:
+    def emit(self, op: int, d: int = 0, a: int = 0, b: int = 0, c: int = 0) -> None:
         self.code += (op, d, a, b, c)
 
     def place(self, origin: Origin | None) -> None:
@@ -100,10 +101,10 @@ class Tape:
         if origin is not None:
             self.origins.append((len(self.code), origin))
 
-    def jump(self, op: Op, label: Label, a: int = 0, b: int = 0) -> None:
+    def jump(self, op: int, label: Label, a: int = 0, b: int = 0) -> None:
         label.uses.append(len(self.code) + 1)
-        if op in (Op.JUMP_TRUE, Op.JUMP_FALSE):
-            b = self.constant(INT, 1 if op is Op.JUMP_TRUE else 0).register
+        if op in (opcodes.JUMP_TRUE, opcodes.JUMP_FALSE):
+            b = self.constant(INT, 1 if op is opcodes.JUMP_TRUE else 0).register
         self.emit(op, label.at, a, b, ORDERS.get(op, 0))
 
     def mark(self, label: Label) -> None:
@@ -117,7 +118,7 @@ class Tape:
         returns_1 = otherwise.at - WIDTH
         for use in otherwise.uses:
             at = use - 1
-            op = _FAILING.get(Op(self.code[at]))
+            op = _FAILING.get(self.code[at])
             if op is None:
                 continue
             self.code[at : at + 2] = op, 0
