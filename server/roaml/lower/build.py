@@ -25,8 +25,8 @@ def event_data(parameter: str, span: Span = NO_SPAN) -> Expr:
     return Member(span, Member(span, Name(span, EVENT_DATA), "data", span), parameter, span)
 
 
-def random_number(span: Span = NO_SPAN) -> Expr:
-    return Call(span, Member(span, name("Math", span), "random", span), ())
+def random_number() -> Expr:
+    return math_call("random")
 
 
 def math_call(function: str, *arguments: Expr) -> Expr:

@@ -203,12 +203,10 @@ class _FlowBuilder:
                     destination = self.choose(statement, destination, stem, tag, scope)
         destination.location = final
 
-    def next_destination(
-        self, source: str, action: str, origin: Origin, guard: Expression | None = None
-    ) -> _Destination:
+    def next_destination(self, source: str, action: str, origin: Origin) -> _Destination:
         """Add an edge with one destination, and return the destination."""
         destination = _Destination(None, origin)
-        self.drafts.append(_Draft(source, action, guard, [destination], origin))
+        self.drafts.append(_Draft(source, action, None, [destination], origin))
         return destination
 
     def assign(self, statement: Assign, destination: _Destination, stem: str, scope: JaniScope) -> _Destination:
