@@ -270,7 +270,7 @@ def mocked_system_texts(
     """The texts of a system's files with the declared mocks.
 
     Raises:
-        MockError: a mock is not valid, or leaves have none.
+        MockError: a mock is not valid, or cannot be used for the nodes that it matches, or leaves have none.
         OSError: the file with mocks cannot be read.
         PathError: the path is not a system file.
     """
@@ -285,7 +285,7 @@ def mocked_system_texts(
     if mocked.missing:
         raise _missing_mocks(path, mocked.missing, messages)
     _report_unused(mocked.unused, messages)
-    leaves = len(mocked.planned)
+    leaves = len({mock.leaf.type for mock in mocked.planned})
     parts = [f"{leaves} {'type' if leaves == 1 else 'types'} of leaves"]
     if mocked.events:
         nodes = "1 node that depends" if mocked.events == 1 else f"{mocked.events} nodes that depend"

@@ -12,19 +12,22 @@ from pathlib import Path
 import pytest
 
 from as2fm_lsp.cli.main import run
+from mending import applied
 from roaml import api
 from roaml.api.mocked_systems import mock_system
 from roaml.debugging.sources import Sources
 from roaml.debugging.start import Start, start
 from roaml.diagnostics import Severity, Symbol
+from roaml.ide.code_actions import actions
 from roaml.ide.describe import describe
 from roaml.ide.diagrams.ros import ros_picture
 from roaml.ide.diagrams.tree import tree_picture
 from roaml.ide.names.lookup import symbol_group
 from roaml.ide.rename import RenameRefusal, Renaming, rename
 from roaml.jani.writer import write
+from roaml.mocks.mock import MockError, read_mock
 from roaml.roles import SymbolKind
-from roaml.text import apply_edits
+from roaml.text import Span, apply_edits
 
 FLEET = Path(__file__).resolve().parents[2] / "examples" / "fleet"
 DELIVERS = {"anna": 0.9 * 0.99, "bert": 0.9 * 0.99, "carl": 0.9 * 0.75}
@@ -339,9 +342,124 @@ def test_files_with_different_trees_of_one_name_are_reported(fleet: Path) -> Non
     assert [found for found in problems(main) if "two trees are called `Deliver`" in found]
 
 
-def test_mocks_are_refused(fleet: Path) -> None:
-    with pytest.raises(api.PathError, match="several trees"):
-        mock_system(str(fleet / "main.xml"), ())
+# ------------------------------------------------------------------------- mocks
+
+HAND_OVER = '        <input type="bt-plugin-ascxml" src="plugins/hand_over.ascxml" />\n'
+VALUE = """            <param name="slips" value="0.5" />
+"""
+
+
+def without_hand_over(fleet: Path) -> Path:
+    """The fleet without the plugin that hands over, with a property for each tree: it succeeds."""
+    replaced(fleet / "main.xml", (HAND_OVER, ""), (VALUE, ""), ("delivers.xml", "ignored.xml"))
+    text = (fleet / "main.xml").read_text(encoding="utf-8")
+    text = re.sub(r'<input type="xml" src="ignored.xml">.*?</input>', "", text, flags=re.DOTALL)
+    (fleet / "main.xml").write_text(text, encoding="utf-8")
+    properties = [
+        {
+            "name": robot,
+            "expression": {
+                "op": "filter",
+                "fun": "values",
+                "values": {
+                    "op": "Pmin",
+                    "exp": {
+                        "op": "F",
+                        "exp": {"op": "=", "left": f"bt_{number}_response__status", "right": 1},
+                    },
+                },
+                "states": {"op": "initial"},
+            },
+        }
+        for number, robot in ((1000, "anna"), (2000, "bert"), (3000, "carl"))
+    ]
+    (fleet / "all_deliver.jani").write_text(json.dumps({"properties": properties}), encoding="utf-8")
+    return fleet / "main.xml"
+
+
+def test_mocks_are_for_all_trees_or_for_one(fleet: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main = without_hand_over(fleet)
+    one = ("--mock", "HandOver: 0.9", "--mock", "carl/HandOver: 0.5")
+    values = exact(capsys, main, *one)
+    for robot, expected in DELIVERS.items():
+        assert values[robot] == pytest.approx((expected, expected), abs=1e-9), robot
+    whole = ("--mock", "carl/*: 0.5", "--mock", "*: 0.9")
+    assert exact(capsys, main, *whole) == values
+
+
+def test_the_duration_of_a_mock_has_the_rate_of_each_tree(fleet: Path) -> None:
+    """Bert is ticked twice as often, so its mock is another plugin; the others share one."""
+    main = without_hand_over(fleet)
+    planned = mock_system(str(main), (read_mock("HandOver: 1 in 2 s"),)).planned
+    assert {(mock.trees, Path(mock.path).name) for mock in planned} == {
+        (("anna", "carl"), "mock_anna_hand_over.ascxml"),
+        (("bert",), "mock_bert_hand_over.ascxml"),
+    }
+    texts = {mock.trees[0]: mock.text for mock in planned}
+    assert "for 2 ticks" in texts["anna"]
+    assert "for 4 ticks" in texts["bert"]
+
+
+def test_a_mock_belongs_to_the_trees_without_a_plugin(fleet: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main = without_hand_over(fleet)
+    replaced(main, ("    </behavior_tree>", HAND_OVER.replace(" />", ' tree="anna" />') + "    </behavior_tree>"))
+    values = exact(capsys, main, "--mock", "HandOver: 1")
+    assert values["anna"] == pytest.approx((DELIVERS["anna"],) * 2, abs=1e-9)
+    assert values["bert"] == values["carl"] == pytest.approx((0.9, 0.9), abs=1e-9)
+
+
+def test_defaults_of_mocks_are_declared_in_the_files_of_all_trees(fleet: Path) -> None:
+    """In one of the trees, a node sets a port that the others do not set."""
+    main = without_hand_over(fleet)
+    text = (fleet / "deliver.xml").read_text(encoding="utf-8").replace('ID="Deliver"', 'ID="Other"')
+    (fleet / "other.xml").write_text(text.replace("<HandOver ", '<HandOver gently="true" '), encoding="utf-8")
+    replaced(main, ('src="deliver.xml" name="carl"', 'src="other.xml" name="carl"'))
+    mocked = mock_system(str(main), (read_mock("*: 1"),))
+    api.to_jani(api.load(str(main), texts=mocked.texts))
+
+
+def test_a_mock_that_matches_nothing_in_its_tree_is_named(fleet: Path) -> None:
+    mocks = tuple(map(read_mock, ("*: 1", "anna/HandOver: 1", "ana/*: 1", "a*: 1", "anna/Lift: 1", "c*/Hand*: 1")))
+    unused = mock_system(str(without_hand_over(fleet)), mocks).unused
+    assert [mock.pattern for mock in unused] == ["ana/*", "a*", "anna/Lift"]
+
+
+def test_an_event_of_a_shared_node_has_one_probability(fleet: Path) -> None:
+    main = without_hand_over(fleet)
+    replaced(
+        fleet / "deliver.xml",
+        ("<HandOver ", "<GoalUpdatedController><HandOver "),
+        ('"{place}" />\n            </R', '"{place}" /></GoalUpdatedController>\n            </R'),
+    )
+    mocks = tuple(map(read_mock, ("HandOver: 1", "anna/GoalUpdatedController: 0.5", "GoalUpdatedController: 0.5")))
+    assert mock_system(str(main), mocks).events == 1
+    with pytest.raises(
+        MockError, match="`anna/GoalUpdatedController` and `GoalUpdatedController` give different probabilities"
+    ):
+        mock_system(str(main), (*mocks[:2], read_mock("GoalUpdatedController: 0.4")))
+
+
+def test_an_action_creates_mocks_for_all_trees(fleet: Path) -> None:
+    """The plugins of a type that only some trees lack belong to these."""
+    main, tree = without_hand_over(fleet), fleet / "deliver.xml"
+    replaced(main, ("    </behavior_tree>", HAND_OVER.replace(" />", ' tree="anna" />') + "    </behavior_tree>"))
+    snapshot = api.check([str(main)]).snapshot
+    at = tree.read_text(encoding="utf-8").index("<HandOver") + 1
+    offered = actions(snapshot, str(tree), Span(at, at), lambda _: True)
+    (action,) = (action for action in offered if action.title == "Create a mock of `HandOver`")
+    for path, text in applied(snapshot, action.make()).items():
+        Path(path).write_text(text, encoding="utf-8")
+    listed = re.findall(r'src="(mock_[a-z_]*.ascxml)" tree="([a-z]*)"', main.read_text(encoding="utf-8"))
+    assert listed == [("mock_bert_hand_over.ascxml", "bert"), ("mock_carl_hand_over.ascxml", "carl")]
+    api.load(str(main))
+
+
+def test_mocks_in_an_experiment(fleet: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main = without_hand_over(fleet)
+    options = ["--property", "carl", "--mock", "*: 0.5", "--set", "carl_base.blocked=0.1,0.2", "--format", "json"]
+    assert run(["experiment", str(main), "--jobs", "1", *options]) == 0
+    points = json.loads(capsys.readouterr().out)["points"]
+    assert [point["value"] for point in points] == pytest.approx([0.9 * 0.75, 0.8 * 0.75], abs=1e-9)
 
 
 # ----------------------------------------------------------------------- meaning

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -198,7 +199,7 @@ def _digest(
     """The digest of the contents of files, of options, and of values from outside of the files."""
     given = () if settings is None else settings.parameters
     digest = hashlib.sha256(repr((options, overrides, mocks, given)).encode())
-    for file in files:
+    for file in filter(os.path.isfile, files):  # the plugins of mocks are not written; the mocks determine them
         with open(file, "rb") as content:
             digest.update(hashlib.sha256(content.read()).digest())
     return digest.hexdigest()

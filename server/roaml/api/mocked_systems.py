@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from roaml.api.checking import check
@@ -50,11 +49,12 @@ def mock_system(
         settings, ros_paths, texts: as for `check`.
 
     Raises:
-        PathError: the path cannot be read, is not a system file, or the system has several trees.
+        PathError: the path cannot be read, or is not a system file.
+        MockError: a mock cannot be used for the nodes that it matches.
     """
-    from roaml.mocks.mock import unused  # noqa: PLC0415 - a check starts faster without these
-    from roaml.mocks.system_mocks import defaults, event_edits, listing, plan  # noqa: PLC0415
-    from roaml.project.system_leaves import missing_leaves, plugin_paths  # noqa: PLC0415
+    from roaml.mocks.mock import node_words, unused  # noqa: PLC0415 - a check starts faster without these
+    from roaml.mocks.system_mocks import all_defaults, event_edits, inputs, listing, plan  # noqa: PLC0415
+    from roaml.project.system_leaves import missing_leaves, plugin_paths, tick_rates  # noqa: PLC0415
     from roaml.text import apply_edits  # noqa: PLC0415
 
     analysis = check([path], ros_paths, settings, texts).snapshot.analysis
@@ -62,25 +62,22 @@ def mock_system(
     system, document = analysis.system(main), analysis.document(main)
     if analysis.kind(main) is not FileKind.SYSTEM or system is None or document is None or document.root is None:
         raise PathError(f"{path}: not a system file")
-    if len(system.roots) > 1:
-        raise PathError(f"{path}: the leaves of a system with several trees cannot be mocked; write plugins for them")
     leaves = missing_leaves(analysis, system)
-    paths = plugin_paths(analysis, main, [leaf.type for leaf in leaves])
-    planned, missing = plan(leaves, mocks, Fraction(str(system.parameters.tick_rate)), paths)
+    planned, missing = plan(leaves, mocks, tick_rates(system), plugin_paths(analysis, main))
     changed = {mock.path: mock.text for mock in planned}
     edits = event_edits(system, {p: tree for p in system.tree_paths if (tree := analysis.tree(p))}, mocks)
     events = sum(map(len, edits.values()))
     section = document.root.find("behavior_tree")
     if planned and section is not None:
-        edits.setdefault(main, []).append(listing(section, [os.path.basename(mock.path) for mock in planned]))
-    tree = analysis.tree(system.tree_paths[0]) if system.tree_paths else None
-    given = defaults(tree.element, [mock.leaf for mock in planned]) if tree is not None else None
-    if given is not None:
-        edits.setdefault(system.tree_paths[0], []).append(given)
+        names = {tree.name for tree in system.trees}
+        entries = [entry for mock in planned for entry in inputs(mock, os.path.basename(mock.path), names)]
+        edits.setdefault(main, []).append(listing(section, entries))
+    roots = {p: tree.element for p in system.tree_paths if (tree := analysis.tree(p)) is not None}
+    for file, edit in all_defaults(system, roots.get, planned).items():
+        edits.setdefault(file, []).append(edit)
     for file, changes in edits.items():
         source = analysis.source(file)
         assert source is not None
         changed[file] = apply_edits(source.text, tuple(changes))
-    nodes = [(name, leaf.type) for leaf in leaves for name in leaf.names]
-    nodes += [(instance.name, instance.plugin) for instance in system.instances]
+    nodes = [(*node_words(i.name, i.tree), *node_words(i.plugin, i.tree)) for i in system.instances]
     return SystemMocks(changed, tuple(planned), tuple(leaf.type for leaf in missing), events, unused(mocks, nodes))

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 _MOCK = regex(r"(?P<name>.+?)\s*:\s*(?P<probability>[^\s:]+)(?:\s+in\s+(?P<duration>.+))?\Z")
 ALL = "*"
+TREE_MARK = "/"
+"""Separates the name of a tree from that of a node."""
 
 
 class MockError(ValueError):
@@ -48,7 +50,8 @@ class Mock(Record, frozen=True):
     """A mock: the behaviour of the leaves whose name or type matches a pattern.
 
     Attributes:
-        pattern: the name of a node or of its type; `*` matches any text and `?` any character.
+        pattern: the name of a node or of its type; `*` matches any text and `?` any character. In a system with several
+            trees, the name of a tree can precede it: `anna/Grasp`.
         probability: the probability of SUCCESS or, for nodes that depend on the world, of their event at a tick.
         duration: the time for which an action is RUNNING, in ms or as a distribution.
     """
@@ -125,32 +128,42 @@ def named_mocks(mocks: Mapping[str, str]) -> tuple[Mock, ...]:
     return tuple(read_mock(f"{node}: {mock}") for node, mock in mocks.items())
 
 
-def mock_for(mocks: Sequence[Mock], name: str, type_: str, succeeds: bool = False) -> Mock | None:
+def mock_for(mocks: Sequence[Mock], name: str, type_: str, succeeds: bool = False, tree: str = "") -> Mock | None:
     """The mock for a node: the mock with the name of the node as pattern, otherwise the mock with the type of the node
-    as pattern, otherwise the first mock whose pattern matches, otherwise the mock `*`. `None` if no mock matches.
+    as pattern, otherwise the first mock whose pattern matches, otherwise the mock `*`. `None` if no mock matches. Of
+    mocks for the same name or type, the one that begins with the name of the tree is used.
 
     Args:
         succeeds: whether the node is known to always succeed. Then a mock with the probability 1 replaces the mock `*`.
+        tree: the name of the executed tree; "" if it has none.
     """
-    for exact in (name, type_):
+    for exact in node_words(name, tree) + node_words(type_, tree):
         for mock in mocks:
             if mock.pattern == exact:
                 return mock
     patterns = [mock for mock in mocks if mock.pattern != ALL]
     for mock in patterns:
-        if any(fnmatchcase(word, mock.pattern) for word in (name, type_)):
+        if matches(mock.pattern, node_words(name, tree) + node_words(type_, tree)):
             return mock
     if succeeds:
         return Mock(type_, 1.0)
     return next((mock for mock in mocks if mock.pattern == ALL), None)
 
 
-def unused(mocks: Sequence[Mock], nodes: Iterable[tuple[str, str]]) -> tuple[Mock, ...]:
-    """The mocks, except `*`, that match none of the nodes. Nodes are pairs of name and type."""
+def node_words(word: str, tree: str) -> tuple[str, ...]:
+    """What mocks can call the nodes with a name or type in a tree, the most specific name first."""
+    return (f"{tree}{TREE_MARK}{word}", word) if tree else (word,)
+
+
+def unused(mocks: Sequence[Mock], nodes: Iterable[Iterable[str]]) -> tuple[Mock, ...]:
+    """The mocks, except `*`, that match none of the nodes. A node is given by its name, its type, and further
+    `node_words`."""
     words = {word for node in nodes for word in node}
     return tuple(mock for mock in mocks if mock.pattern != ALL and not matches(mock.pattern, words))
 
 
 def matches(pattern: str, words: Iterable[str]) -> bool:
-    """Whether a pattern of a mock matches one of the names or types of nodes."""
-    return any(fnmatchcase(word, pattern) for word in words)
+    """Whether a pattern of a mock matches one of the names or types of nodes. Only a pattern that names a tree matches
+    a word that names one: `a*` does not match all nodes of the tree `anna`."""
+    names_tree = TREE_MARK in pattern
+    return any(fnmatchcase(word, pattern) for word in words if names_tree or TREE_MARK not in word)

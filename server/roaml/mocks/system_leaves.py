@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The leaves of a system's tree that have no plugin, with the ports that their mocks need
+"""The leaves of a system's trees that have no plugin, with the ports that their mocks need
 (docs/spec/mocks.md#systems)."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
 from typing import TypeAlias
 
@@ -28,7 +28,9 @@ class SystemLeaf(Record, frozen=True):
     """A type of leaves without a plugin.
 
     Attributes:
-        names: the names of its nodes; a node without a name has the name of the type.
+        names: the name of each tree that has no plugin for the type, with the names of its nodes; a node without a name
+            has the name of the type.
+        is_shared: whether a plugin for it belongs to all trees, because none has one.
         is_condition: whether the leaves never return RUNNING.
         succeeds: whether a declaration states that the leaves always succeed.
         ports: all ports that nodes of the type set.
@@ -36,11 +38,16 @@ class SystemLeaf(Record, frozen=True):
     """
 
     type: str
-    names: tuple[str, ...]
+    names: tuple[tuple[str, tuple[str, ...]], ...]
+    is_shared: bool
     is_condition: bool
     succeeds: bool
     ports: tuple[MockPort, ...]
     optional: frozenset[str]
+
+    @property
+    def trees(self) -> frozenset[str]:
+        return frozenset(tree for tree, _ in self.names)
 
 
 _Slot: TypeAlias = tuple[str, str]
@@ -48,7 +55,7 @@ _Slot: TypeAlias = tuple[str, str]
 
 
 def leaves_without_plugins(system: System, declared: Callable[[str], Node | None]) -> tuple[SystemLeaf, ...]:
-    """The types of leaves without a plugin, in the order of the tree, except types whose names are not valid names of
+    """The types of leaves without a plugin, in the order of the trees, except types whose names are not valid names of
     machines.
 
     Args:
@@ -56,7 +63,7 @@ def leaves_without_plugins(system: System, declared: Callable[[str], Node | None
     """
     by_type: dict[str, list[Instance]] = {}
     for instance in system.instances:
-        if system.plugin(instance.plugin)[1] is None and safe_name(instance.plugin) == instance.plugin:
+        if system.plugin(instance.plugin, instance.tree)[1] is None and safe_name(instance.plugin) == instance.plugin:
             by_type.setdefault(instance.plugin, []).append(instance)
     leaves = {name: nodes for name, nodes in by_type.items() if not any(node.children for node in nodes)}
     known = {name: declared(name) or node_in_libraries(name) for name in leaves}
@@ -64,7 +71,8 @@ def leaves_without_plugins(system: System, declared: Callable[[str], Node | None
     return tuple(
         SystemLeaf(
             name,
-            tuple(dict.fromkeys(node.name for node in nodes)),
+            _names(nodes),
+            all(outline.name != name for _, outline in system.plugins),
             _is_condition(nodes, known[name]),
             bool((declaration := known[name]) and declaration.succeeds),
             tuple(types.ports(name)),
@@ -72,6 +80,14 @@ def leaves_without_plugins(system: System, declared: Callable[[str], Node | None
         )
         for name, nodes in leaves.items()
     )
+
+
+def _names(nodes: Iterable[Instance]) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    """The names of trees, each with the names of its nodes among `nodes`."""
+    names: dict[str, dict[str, None]] = {}
+    for node in nodes:
+        names.setdefault(node.tree, {})[node.name] = None
+    return tuple((tree, tuple(own)) for tree, own in names.items())
 
 
 def _is_condition(nodes: list[Instance], known: Node | None) -> bool:

@@ -1,19 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mocks for a system: plugins for the leaves of its tree that have none (docs/spec/mocks.md#systems)."""
+"""Mocks for a system: plugins for the leaves of its trees that have none (docs/spec/mocks.md#systems)."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from xml.sax.saxutils import quoteattr
 
 from roaml.libraries.node import EVENT_ATTRIBUTE
 from roaml.libraries.programs.assembly import reads_world
-from roaml.mocks.mock import ALL, Mock, mock_for
+from roaml.mocks.mock import ALL, Mock, MockError, mock_for
 from roaml.mocks.plugin import mock_plugin
 from roaml.mocks.system_leaves import SystemLeaf
 from roaml.model.expand import node_at
 from roaml.model.system import System
+from roaml.model.system_file import TREE_ATTRIBUTE
 from roaml.model.tree import TreeFile
 from roaml.record import Record
 from roaml.text import Span, TextEdit
@@ -21,43 +22,101 @@ from roaml.xml_syntax import Element
 
 
 class PlannedMock(Record, frozen=True):
-    """A plugin for a type of leaves. `path` is the path of its file, which need not exist; `text` is its content."""
+    """A plugin for a type of leaves.
+
+    Attributes:
+        trees: the names of the trees to which it belongs; empty if it belongs to all trees.
+        path: the path of its file, which need not exist.
+        text: the content of the file.
+    """
 
     leaf: SystemLeaf
     mock: Mock
+    trees: tuple[str, ...]
     path: str
     text: str
 
 
 def plan(
-    leaves: Iterable[SystemLeaf], mocks: Sequence[Mock], rate: Fraction, paths: Mapping[str, str]
+    leaves: Iterable[SystemLeaf],
+    mocks: Sequence[Mock],
+    rate: Callable[[str], Fraction],
+    path: Callable[[str], str],
 ) -> tuple[list[PlannedMock], list[SystemLeaf]]:
-    """The plugins for leaves, and the leaves without a matching mock.
+    """The plugins for leaves, and the leaves without a matching mock. Trees whose plugins would be the same share one.
 
     Args:
-        rate: the ticks of the tree per second.
-        paths: type of a leaf -> the path of its plugin.
+        rate: returns the ticks per second of the tree with a name.
+        path: returns the path for a plugin with a name.
     """
     planned: list[PlannedMock] = []
     missing: list[SystemLeaf] = []
     for leaf in leaves:
-        name = leaf.names[0] if len(leaf.names) == 1 else leaf.type
-        mock = mock_for(mocks, name, leaf.type, leaf.succeeds)
-        if mock is None:
+        chosen = {tree: _mock_in(tree, names, leaf, mocks) for tree, names in leaf.names}
+        trees: dict[str, list[str]] = {}
+        used: dict[str, Mock] = {}
+        for tree, mock in chosen.items():
+            if mock is not None:
+                text = mock_plugin(leaf.type, mock, rate(tree), leaf.ports, is_condition=leaf.is_condition)
+                trees.setdefault(text, []).append(tree)
+                used.setdefault(text, mock)
+        if None in chosen.values():
             missing.append(leaf)
-            continue
-        text = mock_plugin(leaf.type, mock, rate, leaf.ports, is_condition=leaf.is_condition)
-        planned.append(PlannedMock(leaf, mock, paths[leaf.type], text))
+        is_shared = leaf.is_shared and len(trees) == 1 and None not in chosen.values()
+        for text, owners in trees.items():
+            name = leaf.type if len(trees) == 1 else f"{owners[0]}_{leaf.type}"
+            planned.append(PlannedMock(leaf, used[text], () if is_shared else tuple(owners), path(name), text))
     return planned, missing
 
 
-def listing(section: Element, sources: Iterable[str]) -> TextEdit:
-    """The edit that adds plugins to the `<behavior_tree>` section of a system file. It inserts them on the line where
+def _mock_in(tree: str, names: tuple[str, ...], leaf: SystemLeaf, mocks: Sequence[Mock]) -> Mock | None:
+    """The mock for the leaves of one type in a tree, in which they have `names`."""
+    return mock_for(mocks, names[0] if len(names) == 1 else leaf.type, leaf.type, leaf.succeeds, tree)
+
+
+def inputs(mock: PlannedMock, source: str, trees: Container[str]) -> Iterator[str]:
+    """The elements that list a plugin in a system file.
+
+    Args:
+        source: the path of the plugin in the file.
+        trees: the names of the trees of the system.
+    """
+    written = f'<input type="bt-plugin-ascxml" src={quoteattr(source)}'
+    owners = [tree for tree in mock.trees if tree in trees]
+    if not owners:
+        yield f"{written} />"
+    for tree in owners:
+        yield f'{written} {TREE_ATTRIBUTE}="{tree}" />'
+
+
+def listing(section: Element, entries: Iterable[str]) -> TextEdit:
+    """The edit that adds elements to the `<behavior_tree>` section of a system file. It inserts them on the line where
     the section ends, so that all lines keep their numbers."""
     close = section.close_name_span
     at = section.open_span.end if close is None else close.start - len("</")
-    entries = "".join(f'<input type="bt-plugin-ascxml" src={quoteattr(source)} />' for source in sources)
-    return TextEdit(Span(at, at), entries)
+    return TextEdit(Span(at, at), "".join(entries))
+
+
+def all_defaults(
+    system: System, root: Callable[[str], Element | None], planned: Iterable[PlannedMock]
+) -> dict[str, TextEdit]:
+    """The edits, by file, that declare defaults for the ports of mocks that only some nodes set: in the listed file of
+    each tree with these nodes.
+
+    Args:
+        root: returns the root of a tree file.
+    """
+    leaves = dict.fromkeys(mock.leaf for mock in planned)
+    edits: dict[str, TextEdit] = {}
+    for path in dict.fromkeys(tree.path for tree in system.trees):
+        names = {tree.name for tree in system.trees if tree.path == path}
+        element = root(path)
+        if element is None:
+            continue
+        edit = defaults(element, [leaf for leaf in leaves if names & leaf.trees])
+        if edit is not None:
+            edits[path] = edit
+    return edits
 
 
 def defaults(root: Element, leaves: Iterable[SystemLeaf]) -> TextEdit | None:
@@ -86,16 +145,27 @@ _DEFAULTS = {"bool": "false", "string": "", "float32": "0.0", "float64": "0.0"}
 
 def event_edits(system: System, files: Mapping[str, TreeFile], mocks: Sequence[Mock]) -> dict[str, list[TextEdit]]:
     """The edits, by file, that set the probabilities of the events of the world that nodes read, such as a new goal, to
-    those of the mocks."""
+    those of the mocks.
+
+    Raises:
+        MockError: several trees share a node, and the mocks give it different probabilities.
+    """
     exact = [mock for mock in mocks if mock.pattern != ALL]
     edits: dict[str, dict[int, TextEdit]] = {}
+    chosen: dict[tuple[str, int], Mock] = {}
     for instance in system.instances:
-        mock = mock_for(exact, instance.name, instance.plugin)
-        if mock is None or not reads_world(instance.plugin) or system.plugin(instance.plugin)[0]:
+        mock = mock_for(exact, instance.name, instance.plugin, tree=instance.tree)
+        if mock is None or not reads_world(instance.plugin) or system.plugin(instance.plugin, instance.tree)[0]:
             continue
         node = node_at(files[instance.source.path], instance.source)
         if node is None:
             continue
+        first = chosen.setdefault((instance.source.path, node.element.span.start), mock)
+        if first.probability != mock.probability:
+            raise MockError(
+                f"the mocks `{first.pattern}` and `{mock.pattern}` give different probabilities to one node of a file "
+                "that several trees share; use the same probability, or list a copy of the file"
+            )
         given = node.element.get(EVENT_ATTRIBUTE)
         at = node.element.name_span.end
         edit = TextEdit(Span(at, at), f' {EVENT_ATTRIBUTE}="{mock.probability!r}"')

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The leaves of a system's tree that have no plugin, and paths for their mocks."""
+"""The leaves of a system's trees that have no plugin, and paths for their mocks."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable
+from fractions import Fraction
 
 from roaml.forest.forest import node_of
 from roaml.libraries import Node
@@ -28,14 +29,23 @@ def missing_leaves(analysis: Analysis, system: System) -> tuple[SystemLeaf, ...]
     return leaves_without_plugins(system, models.get)
 
 
-def plugin_paths(analysis: Analysis, system: str, types: Iterable[str]) -> dict[str, str]:
-    """Type of node -> a path beside the system file at which there is no file."""
-    paths: dict[str, str] = {}
-    for name in types:
+def plugin_paths(analysis: Analysis, system: str) -> Callable[[str], str]:
+    """A function that returns a path beside the system file for the plugin with a name. There is no file at the path,
+    and no path is returned twice."""
+    taken: set[str] = set()
+
+    def path_of(name: str) -> str:
         stem, number = f"mock_{_CAMEL.sub('_', name).lower()}", 1
         path = full(folder_of(system), f"{stem}.ascxml")
-        while isinstance(analysis.files.read(path), SourceFile) or path in paths.values():
+        while isinstance(analysis.files.read(path), SourceFile) or path in taken:
             number += 1
             path = full(folder_of(system), f"{stem}_{number}.ascxml")
-        paths[name] = path
-    return paths
+        taken.add(path)
+        return path
+
+    return path_of
+
+
+def tick_rates(system: System) -> Callable[[str], Fraction]:
+    """A function that returns the ticks per second of the tree with a name."""
+    return lambda tree: Fraction(str(system.tick_rate(tree)))

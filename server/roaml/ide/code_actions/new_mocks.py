@@ -12,7 +12,7 @@ from roaml.ide.code_actions.action import EXTRACT, CodeAction, WorkspaceEdit
 from roaml.ide.code_actions.new_file import free_path, relative
 from roaml.mocks.mock import ALL, Mock
 from roaml.mocks.system_leaves import SystemLeaf
-from roaml.mocks.system_mocks import PlannedMock, defaults, plan
+from roaml.mocks.system_mocks import PlannedMock, all_defaults, inputs, plan
 from roaml.model.expand import ROOT_NUMBER
 from roaml.model.system import System
 from roaml.model.tree import TreeNode
@@ -20,7 +20,7 @@ from roaml.model.tree_paths import instance_of, nodes_called, short_paths
 from roaml.project.analysis import Analysis
 from roaml.project.edits import in_layout
 from roaml.project.paths import folder_of, name_of, split_name
-from roaml.project.system_leaves import missing_leaves, plugin_paths
+from roaml.project.system_leaves import missing_leaves, plugin_paths, tick_rates
 from roaml.project.workspace import Snapshot
 from roaml.text import TextEdit, apply_edits
 from roaml.xml_syntax.escapes import escape
@@ -73,16 +73,13 @@ def _in_systems(
 
 
 def _defaults(analysis: Analysis, system: System, planned: Iterable[PlannedMock]) -> dict[str, tuple[TextEdit, ...]]:
-    """An edit of the tree file that declares a default for each port that some nodes do not set."""
-    path = system.tree_paths[0] if system.tree_paths else ""
-    tree = analysis.tree(path)
-    edit = defaults(tree.element, [mock.leaf for mock in planned]) if tree is not None else None
-    return {} if edit is None else {path: (edit,)}
+    """Edits of tree files that declare a default for each port that some nodes do not set."""
+    roots = {path: tree.element for path in system.tree_paths if (tree := analysis.tree(path)) is not None}
+    return {path: (edit,) for path, edit in all_defaults(system, roots.get, planned).items()}
 
 
 def _planned(analysis: Analysis, path: str, system: System, leaves: Sequence[SystemLeaf]) -> list[PlannedMock]:
-    paths = plugin_paths(analysis, path, [leaf.type for leaf in leaves])
-    return plan(leaves, (DEFAULT,), Fraction(str(system.parameters.tick_rate)), paths)[0]
+    return plan(leaves, (DEFAULT,), tick_rates(system), plugin_paths(analysis, path))[0]
 
 
 def _listed(analysis: Analysis, path: str, planned: Iterable[PlannedMock]) -> tuple[TextEdit, ...]:
@@ -91,12 +88,10 @@ def _listed(analysis: Analysis, path: str, planned: Iterable[PlannedMock]) -> tu
     if file is None or document is None or source is None or section is None:
         return ()
     written = [entry.src.value for entry in file.inputs if entry.src]
-    lines = [_input(relative(mock.path, path, written)) for mock in planned]
+    listed = analysis.system(path)
+    trees = {tree.name for tree in listed.trees} if listed is not None else set()
+    lines = [entry for mock in planned for entry in inputs(mock, relative(mock.path, path, written), trees)]
     return tuple(in_layout(source, (last_in(document, section, *lines),)))
-
-
-def _input(source: str) -> str:
-    return f'<input type="bt-plugin-ascxml" src="{escape(source, chr(34))}" />'
 
 
 # ------------------------------------------------------------ trees without a system
@@ -117,7 +112,7 @@ def _new_system(snapshot: Snapshot, path: str) -> WorkspaceEdit:
     leaves = missing_leaves(without, system)
     planned = _planned(without, main, system, leaves)
     texts |= {mock.path: mock.text for mock in planned}
-    texts[main] = _system_text(name_of(path), name_of(properties), [name_of(mock.path) for mock in planned])
+    texts[main] = _system_text(name_of(path), name_of(properties), planned)
     edits = _defaults(without, system, planned)
     source = without.source(path)
     changed = {path: apply_edits(source.text, edits[path])} if source is not None and path in edits else {}
@@ -130,8 +125,9 @@ def _new_system(snapshot: Snapshot, path: str) -> WorkspaceEdit:
 _EMPTY = '<?xml version="1.0" encoding="UTF-8"?>\n<properties />\n'
 
 
-def _system_text(tree: str, properties: str, plugins: Iterable[str]) -> str:
-    inputs = "".join(f"        {_input(plugin)}\n" for plugin in plugins)
+def _system_text(tree: str, properties: str, planned: Iterable[PlannedMock]) -> str:
+    entries = (entry for mock in planned for entry in inputs(mock, name_of(mock.path), ()))
+    plugins = "".join(f"        {entry}\n" for entry in entries)
     return f"""<?xml version="1.0" encoding="UTF-8"?>
 <roaml>
     <parameters>
@@ -140,7 +136,7 @@ def _system_text(tree: str, properties: str, plugins: Iterable[str]) -> str:
     </parameters>
     <behavior_tree>
         <input type="bt.cpp-xml" src="{escape(tree, chr(34))}" />
-{inputs}    </behavior_tree>
+{plugins}    </behavior_tree>
     <properties>
         <input type="xml" src="{escape(properties, chr(34))}" />
     </properties>
