@@ -22,7 +22,7 @@ from roaml.ide.code_actions import actions
 from roaml.ide.describe import describe
 from roaml.ide.diagrams.ros import ros_picture
 from roaml.ide.diagrams.tree import tree_picture
-from roaml.ide.names.lookup import symbol_group
+from roaml.ide.names.lookup import symbol_group, symbol_group_at
 from roaml.ide.rename import RenameRefusal, Renaming, rename
 from roaml.jani.writer import write
 from roaml.mocks.mock import MockError, read_mock
@@ -565,3 +565,60 @@ def test_one_tree_with_a_name_is_the_tree_without_a_name(tmp_path: Path, capsys:
     for renamed in (r"(bt_blackboard_(?:fsm|req|get))_tree", r"(BT_plugin_\d+_)tree\."):
         named = re.sub(renamed, r"\1", named)
     assert sorted(re.findall(r"[\w.]+", named.replace("tree__v", "v"))) == sorted(re.findall(r"[\w.]+", unnamed))
+
+
+# ------------------------------------------------------- plugins with the same name
+
+ACT = """<ascxml name="Act" version="1.0" initial="on">
+    <bt_declare_port_in key="{key}" type="int32" />
+    <datamodel><data id="last" type="int32" expr="0" /></datamodel>
+    <state id="on">
+        <bt_tick target="on">
+            <assign location="last"><expr><bt_get_input key="{key}" /></expr></assign>
+            <bt_return_status status="{status}" />
+        </bt_tick>
+        <bt_halt target="on"><bt_return_halted /></bt_halt>
+    </state>
+</ascxml>
+"""
+
+
+def three_acts(folder: Path) -> Path:
+    """Three trees, each with a plugin `Act` of its own, which has other ports."""
+    keys = {"place": "SUCCESS", "zone": "FAILURE", "area": "SUCCESS"}
+    inputs = ""
+    for number, (key, status) in enumerate(keys.items()):
+        (folder / f"{key}.ascxml").write_text(ACT.format(key=key, status=status), encoding="utf-8")
+        tree = f'<root BTCPP_format="4"><BehaviorTree ID="T{number}"><Act {key}="2" /></BehaviorTree></root>\n'
+        (folder / f"{key}.xml").write_text(tree, encoding="utf-8")
+        inputs += f'<input type="bt.cpp-xml" src="{key}.xml" name="{key}" />\n'
+        inputs += f'<input type="bt-plugin-ascxml" src="{key}.ascxml" tree="{key}" />\n'
+    succeeds = '{"op": "F", "exp": {"op": "=", "left": "bt_2000_response__status", "right": 1}}'
+    main = small(folder, "as2fm", inputs, succeeds)
+    text = main.read_text(encoding="utf-8")
+    main.write_text(re.sub(r'<input type="bt-plugin-ascxml" src="(put|show).ascxml" />', "", text), encoding="utf-8")
+    return main
+
+
+def test_each_tree_is_checked_with_its_own_plugins(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main = three_acts(tmp_path)
+    assert problems(main) == []
+    assert exact(capsys, main)["p"] == (0, 0)
+    replaced(tmp_path / "area.xml", ("area=", "zone="))
+    assert [found for found in problems(main) if "`Act` has no port `zone`" in found]
+
+
+@pytest.mark.parametrize("key", ["place", "zone", "area"])
+def test_a_node_leads_to_the_plugin_of_its_tree(key: str, tmp_path: Path) -> None:
+    analysis = api.check([str(three_acts(tmp_path))]).snapshot.analysis
+    tree = tmp_path / f"{key}.xml"
+    group = symbol_group_at(analysis, str(tree), tree.read_text(encoding="utf-8").index("<Act") + 1)
+    assert group is not None
+    assert {Path(symbol.path).name for symbol in group.symbols} == {f"{key}.ascxml"}
+
+
+def test_trees_that_share_a_file_need_plugins_with_the_same_ports(tmp_path: Path) -> None:
+    main = three_acts(tmp_path)
+    replaced(main, ('src="zone.xml"', 'src="place.xml"'))
+    (problem,) = problems(main)
+    assert problem.startswith("the trees `place` and `zone` execute one file, in which their plugins `Act` have")

@@ -40,7 +40,7 @@ from roaml.model.outline import (
 )
 from roaml.model.parameters import Parameters, TreeSemantics
 from roaml.model.tree import EXPLICIT, SUBTREES
-from roaml.record import Record, field
+from roaml.record import Record, field, replace
 from roaml.roles import Direction, NodeKind, SymbolKind
 from roaml.scxml.event_data import parameter_types
 from roaml.scxml.names import (
@@ -432,6 +432,29 @@ class System(Record, frozen=True, eq=False, dict=True, weakref=True):
         if builtin is not None and (name in BEHAVIOR_TREE.elements or name not in plugins):
             return "", builtin
         return plugins.get(name, ("", None))
+
+    def seen_from(self, path: str) -> System:
+        """This system with the plugins in another order: `plugin` without a tree finds those of the tree that uses the
+        file `path` first. The system itself unless plugins of different trees have the same name."""
+        if not self._has_equal_plugins:
+            return self
+        tree = next((i.tree for i in self.instances if i.source.path == path), None)
+        if tree is None:
+            return self
+        if tree not in self._views:
+            order = sorted(range(len(self.plugins)), key=lambda index: self.owners[index] not in ("", tree))
+            plugins, owners = (tuple(values[index] for index in order) for values in (self.plugins, self.owners))
+            self._views[tree] = replace(self, plugins=plugins, owners=owners)
+        return self._views[tree]
+
+    @cached_property
+    def _has_equal_plugins(self) -> bool:
+        return any(self.owners) and len(self._plugins) < len(self.plugins)
+
+    @cached_property
+    def _views(self) -> dict[str, System]:
+        """The results of `seen_from`, by tree."""
+        return {}
 
     def tick_rate(self, tree: str) -> float:
         """The rate at which the tree with the name `tree` is ticked, in Hz."""

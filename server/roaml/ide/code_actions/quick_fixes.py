@@ -334,7 +334,7 @@ def _unknown_port(snapshot: Snapshot, diagnostic: Diagnostic) -> Iterator[CodeAc
         system = analysis.system(path)
         if system is None or node is None or node.plugin is None or setting is None:
             return
-        plugin = system.plugin(node.plugin.value)[0]
+        plugin = system.seen_from(diagnostic.path).plugin(node.plugin.value)[0]
         machine, document = (analysis.machine(plugin), analysis.document(plugin)) if plugin else (None, None)
         source = analysis.source(plugin) if plugin else None
         same = [

@@ -126,9 +126,7 @@ def _machine_names(request: Request) -> Iterator[CompletionItem]:
 
 
 def _unknown_plugins(system: System) -> Iterator[str]:
-    yield from dict.fromkeys(
-        instance.plugin for instance in system.instances if system.plugin(instance.plugin)[1] is None
-    )
+    yield from dict.fromkeys(i.plugin for i in system.instances if system.plugin(i.plugin, i.tree)[1] is None)
 
 
 def _missing_ports(request: Request) -> Iterator[CompletionItem]:

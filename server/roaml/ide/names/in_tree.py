@@ -34,7 +34,7 @@ class _Tree:
         self.path = path
         self.trees = trees
         self.owner = trees.owner
-        self.system = system
+        self.system = system.seen_from(path) if system is not None else None
         self.file = trees.files[path]
 
     def all(self) -> Iterator[Occurrence]:

@@ -189,8 +189,9 @@ class Linking:
         files = tuple(self._tree_files(linked).items())
         if all(path != other for other, _ in files):
             return None
+        seen = linked.seen_from(path)
         return self._sources.memo.get(
-            "linked trees", (path, system), (files, linked), lambda: Forest(path, files, NEWEST, system=linked)
+            "linked trees", (path, system), (files, seen), lambda: Forest(path, files, NEWEST, system=seen)
         )
 
     def _observed(self, listed: tuple[ListedFile, ...]) -> frozenset[str]:

@@ -440,8 +440,9 @@ class _Reader:
         outlines = self._tree_outlines()
         missing, interface = self._missing_includes(), self.rooms.interfaces.interface
         trees = self.rooms.linking.forest(self.path, self.system_path)
+        system = self.system.seen_from(self.path) if self.system is not None else None
         return TreeContext(
-            *(self.source, document, file, self.system, outlines, missing, interface, self._gaps(), older, trees),
+            *(self.source, document, file, system, outlines, missing, interface, self._gaps(), older, trees),
             self._unknown_packages(),
             self._refusals(),
             self._found_includes(),

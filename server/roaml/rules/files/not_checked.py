@@ -171,7 +171,7 @@ def _causes(context: MachineContext | TreeContext | SystemContext, system: Syste
         yield from ((listed.span, _ANY_FACT) for listed in context.files if listed.path in misplaced)
         return
     for instance in system.instances:
-        if instance.source.path == context.source.path and system.plugin(instance.plugin)[1] is None:
+        if instance.source.path == context.source.path and system.plugin(instance.plugin, instance.tree)[1] is None:
             node = node_at(context.file, instance.source)
             if node is not None and node.plugin is not None:
                 yield node.plugin.span, system.facts_of_unknown(instance)
@@ -181,9 +181,8 @@ def _causes(context: MachineContext | TreeContext | SystemContext, system: Syste
 
 
 def _questions(system: System, interface: Callable[[str, str], InterfaceType | NotFound]) -> Iterator[_Question]:
-    for name in sorted({instance.plugin for instance in system.instances}):
-        if system.plugin(name)[1] is None:
-            yield _Question(GapAct.PLUGIN, name, f"whether the plugin `{name}` exists")
+    for name in sorted({i.plugin for i in system.instances if system.plugin(i.plugin, i.tree)[1] is None}):
+        yield _Question(GapAct.PLUGIN, name, f"whether the plugin `{name}` exists")
     for topic in system.topics.values():
         if not topic.users and not system.is_observed(topic_message(topic.name)):
             question = f"which machine subscribes to the topic `{topic.name}`"

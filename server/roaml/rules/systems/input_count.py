@@ -9,8 +9,10 @@ from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import remove
 from roaml.facts import Facts
 from roaml.model.kinds import FileKind
+from roaml.model.outline import MachineOutline
 from roaml.model.system import System
 from roaml.model.system_file import TREE_ATTRIBUTE, ListedFile, SystemSection
+from roaml.roles import Direction
 from roaml.rules.rule import Rule, SystemContext
 from roaml.suggest import close_names, did_you_mean, listing
 from roaml.xml_syntax import Attribute
@@ -64,6 +66,7 @@ def _trees(context: SystemContext) -> Iterator[Finding]:
         else:
             named[name] = tree
     yield from _equal_trees(context)
+    yield from _different_plugins(context)
     for listed in context.files:
         owner = listed.input.element.get(TREE_ATTRIBUTE)
         if not listed.input.tree:
@@ -88,6 +91,28 @@ def _foreign_plugin(system: System, listed: ListedFile, owner: Attribute) -> Ite
             )
             yield RULE.at(owner.value_span, message)
             return
+
+
+def _different_plugins(context: SystemContext) -> Iterator[Finding]:
+    """Report plugins with the same name and different ports, if trees that share a file use them."""
+    system = context.system
+    places = {f.path: a for f in context.files if (a := f.input.element.get(TREE_ATTRIBUTE)) is not None}
+    first: dict[tuple[str, str], tuple[str, MachineOutline]] = {}
+    for node in system.instances:
+        path, outline = system.plugin(node.plugin, node.tree)
+        if outline is None or path not in places:
+            continue
+        tree, other = first.setdefault((node.source.path, node.plugin), (node.tree, outline))
+        if _ports(other) != _ports(outline):
+            message = (
+                f"the trees `{tree}` and `{node.tree}` execute one file, in which their plugins `{node.plugin}` have "
+                "different ports; declare the same ports, or list a copy of the file for one of the trees"
+            )
+            yield RULE.at(places.pop(path).value_span, message)
+
+
+def _ports(outline: MachineOutline) -> frozenset[tuple[str, str, Direction]]:
+    return frozenset((port.key, port.type, port.direction) for port in outline.ports)
 
 
 def _equal_trees(context: SystemContext) -> Iterator[Finding]:
