@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from bench.check import opened
+from bench.experiments import write_robot
 from bench.generate import FIRST, write_system
 from bench.keystrokes import keys, word_keys
 from bench.planted import groups, judged, mistakes
@@ -54,6 +55,13 @@ def test_each_key_in_a_tree_changes_the_diagnostics(tmp_path: Path) -> None:
         diagnostics = workspace.snapshot().checker.diagnostics(path)
         assert diagnostics != known, f"the server does not answer {key.change()}"
         known = diagnostics
+
+
+def test_the_robot_of_experiments_has_a_parameter(tmp_path: Path) -> None:
+    main = str(write_robot(tmp_path / "robot"))
+    assert [d.message for d in api.check([main]).diagnostics if d.severity >= Severity.WARNING] == []
+    points = api.experiment(main, {"drops": [0.25, 0.75]}, ["block_dropped"]).points
+    assert [point.value for point in points] == pytest.approx([0.75, 0.25])
 
 
 def test_a_generated_system_is_always_the_same(tmp_path: Path) -> None:

@@ -35,9 +35,9 @@ class Cost(NamedTuple):
     output: str
 
 
-def call(*arguments: str) -> Cost:
-    """Call `as2fm-lsp verify`. The cost includes that of its workers."""
-    command = [sys.executable, "-m", "as2fm_lsp", "verify", "--format", "json", *arguments]
+def call(*arguments: str, subcommand: str = "verify") -> Cost:
+    """Call `as2fm-lsp verify`, or another subcommand. The cost includes that of its workers."""
+    command = [sys.executable, "-m", "as2fm_lsp", subcommand, "--format", "json", *arguments]
     began = time.perf_counter()
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
@@ -45,7 +45,7 @@ def call(*arguments: str) -> Cost:
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode not in (0, 1):
-        raise RuntimeError(f"verify ended with {process.returncode}")
+        raise RuntimeError(f"{subcommand} ended with {process.returncode}")
     wall = time.perf_counter() - began
     return Cost(wall, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024, output)
 
