@@ -364,3 +364,58 @@ def test_mocks_and_trees_use_parameters(tmp_path: Path, capsys: pytest.CaptureFi
         assert written["parameters"]["grasps"] == str(0.5 if values else 0.25)
     assert run(["verify", str(tmp_path / "main.xml"), "--mock", "Grasp: $(var grsps)"]) == 2
     assert "there is no parameter `grsps`; did you mean `grasps`?" in capsys.readouterr().err
+
+
+# ------------------------------------------------------------- probabilities of 0 and 1
+
+LOSS = ('prob="loss"', 'prob="1 - loss"')
+"""The probabilities of the example: a message is lost, or it is not."""
+
+
+@pytest.mark.parametrize(("loss", "left"), [("0", 1), ("1", 0)])
+@pytest.mark.parametrize("has_rest", [False, True])
+def test_a_probability_can_be_0_or_1(loss: str, left: int, has_rest: bool, folder: Path, tmp_path: Path) -> None:
+    """The other target is never chosen. The translation has no destination for it, and the expanded files lack it."""
+    main, battery = folder / "main.xml", folder / "battery.ascxml"
+    if has_rest:
+        battery.write_text(battery.read_text(encoding="utf-8").replace(f" {LOSS[1]}", ""), encoding="utf-8")
+    assert {0.1, 0.9} < set(_destinations(jani(main)))
+    assert set(_destinations(jani(main, loss=loss))) == {1.0}
+    plain = tmp_path / "plain"
+    assert (
+        run(["translate", str(main), "--set", f"loss={loss}", "--expand", str(plain), "-o", str(tmp_path / "x")]) == 0
+    )
+    for name in ("left", "right"):
+        text = (plain / f"{name}.ascxml").read_text(encoding="utf-8")
+        assert (text.count("<target "), text.count("<ros_topic_publish ")) == (1, left)
+    if left:  # otherwise nothing publishes the topic in the expanded files, which is an error
+        assert jani(plain / "main.xml") == jani(main, loss=loss)
+
+
+def _destinations(text: str) -> list[float]:
+    """The probabilities of the destinations of the machine `left`."""
+    (automaton,) = (a for a in json.loads(text)["automata"] if a["name"] == "left")
+    destinations = [d for edge in automaton["edges"] for d in edge["destinations"]]
+    return [d.get("probability", {"exp": 1.0})["exp"] for d in destinations]
+
+
+@pytest.mark.parametrize("written", [0, 1])
+def test_a_written_probability_of_0_is_a_mistake(written: int, folder: Path) -> None:
+    battery = folder / "battery.ascxml"
+    text = battery.read_text(encoding="utf-8").replace(LOSS[written], 'prob="0"').replace(LOSS[1 - written], 'prob="1"')
+    battery.write_text(text, encoding="utf-8")
+    found = [d.code for d in api.check([str(folder / "main.xml")]).diagnostics if d.severity is Severity.ERROR]
+    assert found == ["invalid-value"]
+
+
+def test_other_numbers_of_parameters_are_checked(folder: Path) -> None:
+    """A rate of 0, and probabilities that do not add up to 1, stay mistakes."""
+    main, battery = folder / "main.xml", folder / "battery.ascxml"
+    text = battery.read_text(encoding="utf-8")
+    for changed, code in (
+        (text.replace("1 / period", "period - period"), "invalid-rate"),
+        (text.replace("1 - loss", "0.5 - loss").replace('"loss"', '"loss - loss"'), "probability-sum"),
+    ):
+        battery.write_text(changed, encoding="utf-8")
+        errors = {d.code for d in api.check([str(main)]).diagnostics if d.severity is Severity.ERROR}
+        assert code in errors

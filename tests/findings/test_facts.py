@@ -140,7 +140,7 @@ def values(hint: object) -> Iterator[object]:
 def test_facts_survive_json(type_: type[Facts]) -> None:
     hints = typing.get_type_hints(type_)
     columns = [list(values(hints[name])) for name in type_.__struct_fields__]
-    for number in range(max(map(len, columns))):
+    for number in range(max(map(len, columns), default=1)):
         facts = type_(*(column[number % len(column)] for column in columns))
         assert facts_from_json(type_, json.loads(json.dumps(facts_to_json(facts)))) == facts
 

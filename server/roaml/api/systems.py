@@ -186,10 +186,15 @@ def to_plain(system: LoadedSystem) -> dict[str, str]:
         The path of each file, relative to the folder that contains all of them, with `/` -> its text. The system file
         is the first one.
     """
+    from roaml.expansion.impossible_targets import without_impossible_targets  # noqa: PLC0415 - a check does not need it
+
     analysis = system.analysis
     expanded = analysis.expanded(system.path)
     plain = analysis if expanded is None else expanded.analysis
     texts = {path: source.text for path in plain.files_of(system.path) if (source := plain.source(path)) is not None}
+    if expanded is not None:
+        machines = (path for path in texts if plain.kind(path) is FileKind.MACHINE and path in expanded.expansion.texts)
+        texts |= {path: without_impossible_targets(texts[path]) for path in machines}
     folder = os.path.commonpath([os.path.dirname(path) for path in texts])
     return {slashed(os.path.relpath(path, folder)): text for path, text in texts.items()}
 

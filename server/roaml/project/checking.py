@@ -47,6 +47,7 @@ from roaml.rules.rule import (
     replacements,
 )
 from roaml.rules.support.end_tags import without_misnamed_ends
+from roaml.rules.support.impossible_targets import ImpossibleTarget
 from roaml.suggest import close_names
 from roaml.text import Location, SourceFile, Span
 from roaml.xml_syntax import Document
@@ -213,7 +214,8 @@ class RuleRunner:
             if text is not None and text.copies:
                 findings = _in_all_copies(text, findings)
             for finding in findings:
-                yield _meant_parameter(expanded, path, expanded.finding(variant, finding))
+                if text is None or not _is_given_impossible(text, finding):
+                    yield _meant_parameter(expanded, path, expanded.finding(variant, finding))
 
     def _is_selected(self, finding: Finding) -> bool:
         code, settings = finding.code, self.settings
@@ -273,6 +275,12 @@ _OF_VALUES = (invalid_value.RULE.code,)
 """The codes of findings about the values of attributes, which may be expressions over parameters."""
 _UNKNOWN_NAMES = ("undeclared-variable", "property-condition", "invalid-rate", "invalid-value")
 """The codes of findings at a name that may be a misspelled parameter."""
+
+
+def _is_given_impossible(text: ExpandedText, finding: Finding) -> bool:
+    """Whether a finding states that a target is never chosen, because of the value of a parameter, which is
+    no mistake (docs/spec/parameters.md#uses)."""
+    return isinstance(finding.facts, ImpossibleTarget) and not text.is_written(finding.span)
 
 
 def _meant_parameter(expanded: Expanded[Analysis], path: str, finding: Finding) -> Finding:

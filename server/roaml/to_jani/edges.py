@@ -152,14 +152,16 @@ class _FlowBuilder:
         stem = f"{move.source}-{move.number}"
         awaited = move.transition.event
         action = on_receive(awaited) if awaited else stem
+        # What an outcome with the probability 0 sends is declared, but it is no destination.
+        outcomes = [outcome for outcome in move.outcomes if outcome.probability > 0]
         ways = [
             _Destination(
                 _CERTAIN if outcome.probability == 1 else Clause(jani.Real(outcome.probability)), outcome.origin
             )
-            for outcome in move.outcomes
+            for outcome in outcomes
         ]
         self.drafts.append(_Draft(move.source, action, guard, ways, move.transition.origin))
-        for k, (destination, outcome) in enumerate(zip(ways, move.outcomes, strict=True)):
+        for k, (destination, outcome) in enumerate(zip(ways, outcomes, strict=True)):
             tag = stem if len(ways) == 1 else f"{stem}.{k}"
             self.run(outcome.body, destination, tag, outcome.state, scope)
 

@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from decimal import Decimal, InvalidOperation
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.language.validate import InvalidValue
 from roaml.roles import ValueRole
 from roaml.rules.rule import FileContext, Rule, close_names, did_you_mean, replacements
+from roaml.rules.support.impossible_targets import ImpossibleTarget
 from roaml.text import TextEdit
 
 
@@ -29,7 +31,17 @@ def check(context: FileContext) -> Iterator[Finding]:
             close = tuple(choices) if len(choices) == 1 else close_names(attribute.value, choices)
             hint = did_you_mean(close) if len(choices) > 1 else ""
             message = f"`{attribute.name}` should be {violation.required}, not `{attribute.value[:40]}`{hint}"
-            yield RULE.at(attribute.value_span, message, *replacements(attribute.value_span, close))
+            facts = ImpossibleTarget() if attribute.name == "prob" and _is_zero(attribute.value) else None
+            yield RULE.at(attribute.value_span, message, *replacements(attribute.value_span, close), facts=facts)
 
 
-RULE = Rule("invalid-value", Severity.ERROR, "The value of an attribute is not allowed.", file=check)
+def _is_zero(text: str) -> bool:
+    try:
+        return Decimal(text.strip()) == 0
+    except InvalidOperation:
+        return False
+
+
+RULE = Rule(
+    "invalid-value", Severity.ERROR, "The value of an attribute is not allowed.", file=check, facts=ImpossibleTarget
+)

@@ -10,6 +10,7 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal
 from roaml.model.machine import Handler, Target
 from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.impossible_targets import ImpossibleTarget
 from roaml.text import Span
 
 TOLERANCE = Decimal("0.001")
@@ -43,9 +44,8 @@ def _check(handler: Handler, text: str) -> Iterator[Finding]:
     span = _span(given)
     if last.probability is None:
         if total >= 1:
-            yield RULE.at(
-                span, f"the probabilities before the last target add up to {total}, so it would never be chosen"
-            )
+            message = f"the probabilities before the last target add up to {total}, so it would never be chosen"
+            yield RULE.at(span, message, facts=ImpossibleTarget() if total == 1 else None)
     elif len(given) == 1 and total != 1:
         message = f"the only target has the probability 1, not {total}; remove `prob`"
         yield RULE.at(span, message, *_leave_out(last, text, "Remove `prob`", preferred=True))
@@ -74,7 +74,13 @@ def _decimal(text: str) -> Decimal | None:
         value = Decimal(text)
     except InvalidOperation:
         return None
-    return value if value.is_finite() and 0 < value <= 1 else None
+    return value if value.is_finite() and 0 <= value <= 1 else None
 
 
-RULE = Rule("probability-sum", Severity.ERROR, "The probabilities of targets do not add up to 1.", machine=check)
+RULE = Rule(
+    "probability-sum",
+    Severity.ERROR,
+    "The probabilities of targets do not add up to 1.",
+    machine=check,
+    facts=ImpossibleTarget,
+)
