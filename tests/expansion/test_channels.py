@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import re
 import shlex
@@ -233,6 +234,47 @@ def test_a_topic_is_renamed_with_its_channel(main: Path) -> None:
     assert isinstance(renaming, Renaming)
     assert 'topic="charge"' in apply_edits(text, renaming.edits[str(main)])
     assert str(main.parent / "monitor.ascxml") in renaming.edits
+
+
+RECEIVED = {
+    "op": "F",
+    "exp": {"op": "∧", "left": "topic_level__to_Monitor_msg.valid", "right": "topic_level_msg.valid"},
+}
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new"),
+    [
+        ("main.xml", '"level', "charge"),
+        ("battery.ascxml", 'topic="level', "charge"),
+        ("monitor.ascxml", 'name="Monitor', "Watcher"),
+        ("main.xml", 'name="Monitor', "Watcher"),
+        ("properties.xml", "level/to_Monitor", "Watcher"),
+        ("properties.xml", "level/", "/robot/charge"),
+        ("p.jani", "level__to_Monitor", "Watcher"),
+        ("p.jani", "topic_level_", "/robot/charge"),
+    ],
+)
+def test_names_of_a_channel_are_renamed_in_properties(file: str, old: str, new: str, main: Path) -> None:
+    """`T/to_R` contains the names of the topic and of the machine, which can be an instance."""
+    values = {"op": "filter", "fun": "values", "values": {"op": "Pmin", "exp": RECEIVED}, "states": {"op": "initial"}}
+    properties = {"properties": [{"name": "q", "expression": values}]}
+    (main.parent / "p.jani").write_text(json.dumps(properties, ensure_ascii=False), encoding="utf-8")
+    text = main.read_text().replace('"properties.xml" />', '"properties.xml" /><input type="jani" src="p.jani" />')
+    if (file, old) == ("main.xml", 'name="Monitor'):
+        text = text.replace('src="monitor.ascxml"', 'src="monitor.ascxml" name="Monitor"')
+    main.write_text(text)
+    before = jani(main)
+    path = main.parent / file
+    analysis = api.check([str(main)]).snapshot.analysis
+    renaming = rename(analysis, str(path), path.read_text(encoding="utf-8").index(old) + len(old) - 1, new)
+    assert isinstance(renaming, Renaming), renaming
+    assert {"p.jani", "properties.xml"} <= {Path(changed).name for changed in renaming.edits}
+    for changed, edits in renaming.edits.items():
+        Path(changed).write_text(apply_edits(Path(changed).read_text("utf-8"), tuple(edits)), "utf-8")
+    assert [d.message for d in api.check([str(main)]).diagnostics if d.severity >= Severity.WARNING] == []
+    assert jani(main).count(new.strip("/").replace("/", "__")) >= 5
+    assert len(json.loads(jani(main))["automata"]) == len(json.loads(before)["automata"])
 
 
 def test_topics_are_completed(main: Path) -> None:

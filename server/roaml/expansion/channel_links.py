@@ -49,16 +49,33 @@ class ListedMachine(Record, frozen=True, eq=False):
     document: Document
 
 
+class DeliveredName(Record, frozen=True):
+    """The name `sent/to_receiver` from which a machine receives (docs/spec/channels.md#expansion).
+
+    Attributes:
+        sent: the name of the topic or service.
+        receiver: the name of the machine.
+        path: the path under which the machine is analysed.
+    """
+
+    kind: ChannelKind
+    sent: str
+    receiver: str
+    path: str
+
+
 class Links(Record, frozen=True):
     """The channels between machines.
 
     Attributes:
         edits: the path of a machine -> the edits that connect it with channels.
         machines: the machines of channels: the channel, the name of the machine and its text.
+        delivered: the names from which receivers receive.
     """
 
     edits: Mapping[str, Sequence[TextEdit]]
     machines: Sequence[tuple[DeclaredChannel, str, str]]
+    delivered: Sequence[DeliveredName]
 
 
 class _End(Record, frozen=True, eq=False):
@@ -82,7 +99,7 @@ def link(
     linker = _Linker(machines, interface, problems)
     for channel in channels:
         linker.link(channel)
-    return Links(linker.edits, linker.made)
+    return Links(linker.edits, linker.made, linker.delivered)
 
 
 def declares(document: Document, channel: DeclaredChannel) -> bool:
@@ -105,6 +122,7 @@ class _Linker:
         self._taken = {_name(machine.document) for machine in machines}
         self.edits: dict[str, list[TextEdit]] = {}
         self.made: list[tuple[DeclaredChannel, str, str]] = []
+        self.delivered: list[DeliveredName] = []
 
     def link(self, channel: DeclaredChannel) -> None:
         self._problems = self._reported if channel.is_valid else Problems()
@@ -154,6 +172,8 @@ class _Linker:
             edits = self.edits.setdefault(end.machine.path, [])
             edits += interface_edits(end.machine.document, end.element, lambda _: new)
         self.made.append((channel, automaton, machine(Way(automaton, name, new, type_))))
+        if receiver == _name(ends[0].machine.document):
+            self.delivered.append(DeliveredName(channel.kind, name.rstrip("/"), receiver, ends[0].machine.path))
 
     def _fresh(self, name: str) -> str:
         fresh, number = name, 2

@@ -104,6 +104,8 @@ class SystemExpansion(Record, frozen=True, eq=False):
         data: the paths and texts of the files with data for these; `None` for a file that cannot be read.
         channels: the paths of the texts that are machines of channels, which no file of the user contains, each with
             the name of the automaton and the place of the `<channel>` in the system file.
+        delivered: the symbol of each name from which a machine receives through a channel -> the symbols of the topic
+            or service and of the machine, whose names are its begin and its end.
     """
 
     system: str
@@ -119,6 +121,7 @@ class SystemExpansion(Record, frozen=True, eq=False):
     drawn: tuple[DrawnNumber, ...] = ()
     data: tuple[tuple[str, str | None], ...] = ()
     channels: Mapping[str, tuple[str, Span]] = field(default_factory=dict)
+    delivered: Mapping[Symbol, tuple[Symbol, Symbol]] = field(default_factory=dict)
 
     def source(self, path: str) -> str:
         """The path of the file of the user that is analysed under `path`."""
@@ -220,6 +223,7 @@ class _Expander:
         self.machines: dict[str, str] = {}
         """The path of each machine -> the path of its file."""
         self.channels: dict[str, tuple[str, Span]] = {}
+        self.delivered: dict[Symbol, tuple[Symbol, Symbol]] = {}
 
     def problems_of(self, path: str) -> Problems:
         return self.problems.setdefault(path, Problems())
@@ -370,6 +374,7 @@ class _Expander:
             tuple(self.drawn),
             tuple(self.data.items()),
             self.channels,
+            self.delivered,
         )
 
     def _fresh(self, target: str, instance: ListedInstance) -> str:
@@ -460,6 +465,10 @@ class _Expander:
                 self._note_interface(channel.kind.value, channel.name)
         for path, edits in links.edits.items():
             self.texts[path] = edited_again(texts[path], edits)
+        for own in links.delivered:
+            sent = self._interface(own.kind.value, own.sent)
+            symbol = self._interface(own.kind.value, f"{own.sent}/to_{own.receiver}")
+            self.delivered[symbol] = sent, Symbol(self.machines[own.path], SymbolKind.MACHINE, own.receiver)
         inputs = []
         for channel, name, content in links.machines:
             path = self._fresh_beside(self.path, name, "ascxml")
@@ -474,13 +483,15 @@ class _Expander:
 
     def _note_interface(self, kind: str, name: Name) -> None:
         """Record the name of a topic or service in the system file."""
+        slash = len(name.value) - len(name.value.removeprefix("/")) if kind == SymbolKind.TOPIC.value else 0
+        span = Span(name.span.start + slash, name.span.end)
+        self.names.setdefault(self.path, {})[NamedPlace(self._interface(kind, name.value), span, False)] = None
+
+    def _interface(self, kind: str, name: str) -> Symbol:
+        """The symbol of a topic or service."""
         if kind == SymbolKind.TOPIC.value:
-            slash = len(name.value) - len(name.value.removeprefix("/"))
-            span = Span(name.span.start + slash, name.span.end)
-            symbol = Symbol(self.path, SymbolKind.TOPIC, sanitise(name.value))
-        else:
-            span, symbol = name.span, Symbol(self.path, SymbolKind.SERVICE, name.value)
-        self.names.setdefault(self.path, {})[NamedPlace(symbol, span, False)] = None
+            return Symbol(self.path, SymbolKind.TOPIC, sanitise(name))
+        return Symbol(self.path, SymbolKind.SERVICE, name)
 
     def _plain_input(self, document: Document, instance: ListedInstance) -> Iterator[TextEdit]:
         """The edits that remove from an input what plain system files do not have."""

@@ -75,10 +75,31 @@ def _of(analysis: Analysis, path: str, system: str | None) -> Iterator[Occurrenc
     parameters = tuple(in_parameters(analysis, path, system))
     yield from parameters
     spans = {occurrence.span for occurrence in parameters}
+    expanded = analysis.expanded(system) if system else None
+    delivered = expanded.expansion.delivered if expanded is not None else {}
     for occurrence in _of_kind(analysis, path, system):
-        if occurrence.span not in spans:  # the name of a parameter is that of a variable only where one hides it
+        if occurrence.symbol in delivered:
+            yield from _parts(analysis, path, occurrence, *delivered[occurrence.symbol])
+        elif occurrence.span not in spans:  # the name of a parameter is that of a variable only where one hides it
             yield occurrence
     yield from (use.occurrence for use in _with_parameters(analysis, path, system) if use.is_written)
+
+
+def _parts(
+    analysis: Analysis, path: str, occurrence: Occurrence, sent: Symbol, receiver: Symbol
+) -> Iterator[Occurrence]:
+    """The names of the topic or service, and of the machine, in a name from which the machine receives through a
+    channel, such as `level/to_Monitor`, or `level__to_Monitor` in JANI (docs/spec/channels.md#expansion)."""
+    source, span = analysis.source(path), occurrence.span
+    assert source is not None
+    written = source.text[span.start : span.end]
+    forms = (f"/to_{receiver.name}", f"__to_{receiver.name}")
+    own = next((form for form in forms if written.endswith(form)), None)
+    if own is None:  # a part is written with entities
+        yield occurrence
+        return
+    yield occurrence._replace(span=Span(span.start, span.end - len(own)), symbol=sent)
+    yield Occurrence(Span(span.end - len(receiver.name), span.end), receiver)
 
 
 class _ExpandedUse(NamedTuple):
