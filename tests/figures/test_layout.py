@@ -10,7 +10,7 @@ from hypothesis import given, settings
 import kept_strategies as st
 from examples import examples
 from roaml.figures.geometry import Box, Extent, Point
-from roaml.figures.layout import Layout, LayoutDirection, Link, layered, tidy_tree
+from roaml.figures.layout import Boxes, Layout, LayoutDirection, Link, layered, nested, tidy_tree
 from roaml.figures.layout.spread import spread
 from roaml.figures.layout.tracks import assign_tracks
 
@@ -112,6 +112,51 @@ def trees(draw: st.DrawFn) -> tuple[dict[str, Extent], dict[str, list[str]]]:
     for number in range(1, count):
         children.setdefault(str(draw(st.integers(0, number - 1))), []).append(str(number))
     return {str(number): draw(SIZES) for number in range(count)}, children
+
+
+@st.composite
+def boxed_graphs(draw: st.DrawFn) -> tuple[dict[str, Extent], list[Link], Boxes]:
+    """Graphs whose nodes are in up to 4 boxes, some of which are in other ones. No box is empty."""
+    nodes, links = draw(graphs())
+    names = [f"box {number}" for number in range(draw(st.integers(1, 4)))]
+    parents = {
+        name: draw(st.sampled_from(names[:number]))
+        for number, name in enumerate(names)
+        if number and draw(st.booleans())
+    }
+    parents |= {node: draw(st.sampled_from(names)) for node in nodes if draw(st.booleans())}
+    used = {name for node in nodes for name in Boxes(parents, {}).path(node)}
+    kept = {name: parent for name, parent in parents.items() if name in used}
+    return nodes, links, Boxes(kept, {name: draw(SIZES) for name in names if name in used})
+
+
+@settings(max_examples=examples(100), deadline=None)
+@given(boxed_graphs(), DIRECTIONS)
+def test_nested(graph: tuple[dict[str, Extent], list[Link], Boxes], direction: LayoutDirection) -> None:
+    """Boxes contain what is in them and nothing else; lines cross only the borders of boxes that they leave or enter,
+    and no heading."""
+    nodes, links, boxes = graph
+    layout = nested(nodes, links, boxes, direction, 1.5)
+    assert flaws(nodes, links, Layout(layout.size, {name: layout.nodes[name] for name in nodes}, layout.routes)) == []
+    assert layout.nodes.keys() == nodes.keys() | boxes.headings.keys()
+    inside = {box: {name for name in layout.nodes if box in boxes.path(name)[:-1]} for box in boxes.headings}
+    for box, content in inside.items():
+        border = layout.nodes[box]
+        heading = Box(border.x, border.y, *boxes.headings[box])
+        assert border.grown(NEAR).contains(heading)
+        for name, other in layout.nodes.items():
+            if name in content:
+                assert border.grown(-NEAR).contains(other)
+                assert not heading.grown(-NEAR).overlaps(other)
+            elif name != box and name not in boxes.path(box):
+                assert not border.overlaps(other)
+        for number, a, b in segments(layout):
+            link = links[number]
+            assert not crosses(a, b, heading.grown(-NEAR)), (link, heading)
+            if link.source not in content and link.target not in content:
+                assert not crosses(a, b, border), link
+            elif link.source in content and link.target in content:
+                assert border.contains(area(a, b)), link
 
 
 @settings(max_examples=examples(60), deadline=None)

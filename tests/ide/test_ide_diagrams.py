@@ -19,6 +19,7 @@ from roaml.ide.diagrams import (
     EdgeKind,
     Picture,
     around,
+    closed_namespaces,
     collapsed,
     machine_picture,
     matching,
@@ -371,6 +372,107 @@ def test_a_part_of_a_ros_graph(tmp_path: Path) -> None:
     assert list(_nodes(matching(picture, "trigger"))) == ["node | B", "service | /ask | std_srvs/Trigger"]
     assert matching(picture, " ") == picture
     assert matching(picture, "nothing").nodes == ()
+
+
+NAMESPACES = {
+    "drive.ascxml": """\
+<ascxml name="Drive" version="1.0" initial="s">
+  <ros_topic_publisher name="at" topic="at" type="std_msgs/Int32"/>
+  <ros_topic_subscriber name="stop" topic="/fleet/stop" type="std_msgs/Bool"/>
+  <ros_topic_subscriber name="go" topic="/go" type="std_msgs/Bool"/>
+  <state id="s"/>
+</ascxml>
+""",
+    "chief.ascxml": """\
+<ascxml name="Chief" version="1.0" initial="s">
+  <ros_topic_publisher name="go" topic="/go" type="std_msgs/Bool"/>
+  <ros_topic_subscriber name="at" topic="/fleet/a/at" type="std_msgs/Int32"/>
+  <state id="s"/>
+</ascxml>
+""",
+    "main.xml": """\
+<roaml>
+  <parameters><max_time value="5" unit="s"/></parameters>
+  <node_models>
+    <input type="node-ascxml" src="drive.ascxml" name="a" namespace="fleet/a"/>
+    <input type="node-ascxml" src="drive.ascxml" name="b" namespace="/fleet/b"/>
+    <input type="node-ascxml" src="drive.ascxml" name="c"/>
+    <input type="node-ascxml" src="chief.ascxml"/>
+  </node_models>
+</roaml>
+""",
+}
+
+
+def namespace_graph(folder: Path) -> Picture:
+    picture = ros_picture(load(folder, NAMESPACES), str(folder / "main.xml"))
+    assert picture is not None
+    return picture
+
+
+def within(picture: Picture) -> dict[str, str]:
+    """The label of each node that is in a namespace -> the label of the namespace."""
+    labels = {node.id: node.label for node in picture.nodes}
+    return {node.label: labels[node.parent] for node in picture.nodes if node.parent}
+
+
+def test_namespaces(tmp_path: Path) -> None:
+    """Those of nodes, and those that they have in common; topics are in those that their names contain."""
+    picture = namespace_graph(tmp_path)
+    spaces = [node.label for node in picture.nodes if node.kind is DiagramNodeKind.NAMESPACE]
+    assert spaces == ["/fleet", "/fleet/a", "/fleet/b"]
+    assert within(picture) == {
+        "/fleet/a": "/fleet",
+        "/fleet/b": "/fleet",
+        "a": "/fleet/a",
+        "b": "/fleet/b",
+        "/fleet/a/at": "/fleet/a",
+        "/fleet/b/at": "/fleet/b",
+        "/fleet/stop": "/fleet",
+    }
+
+
+def test_a_graph_without_namespaces_has_none(tmp_path: Path) -> None:
+    """Also if names of topics have several parts."""
+    files = robot_with('<ascxml name="B" initial="s"><state id="s"/></ascxml>')
+    picture = ros_picture(load(tmp_path, files), str(tmp_path / "main.xml"))
+    assert picture is not None
+    assert "/a/b" in [node.label for node in picture.nodes]
+    assert {node.parent for node in picture.nodes} == {""}
+
+
+def test_closed_namespaces(tmp_path: Path) -> None:
+    picture = namespace_graph(tmp_path)
+    assert closed_namespaces(picture, ["unknown", "topic go"]) == picture
+    inner = closed_namespaces(picture, ["namespace /fleet/a"])
+    assert within(inner) == {name: box for name, box in within(picture).items() if box != "/fleet/a"}
+    assert shown(closed_namespaces(picture, ["namespace /fleet/a", "namespace /fleet"])) == [
+        "namespace | /fleet | … 5 parts",
+        "node | c",
+        "node | Chief",
+        "topic | /go | std_msgs/Bool",
+        "topic | at | std_msgs/Int32",
+        "/fleet -> Chief | subscribes",
+        "/fleet -> c | subscribes",
+        "Chief -> /go | publishes",
+        "/go -> /fleet | subscribes",
+        "/go -> c | subscribes",
+        "c -> at | publishes",
+    ]
+
+
+def test_a_part_of_a_ros_graph_with_namespaces(tmp_path: Path) -> None:
+    """Of a namespace, everything in it is shown; a part is shown in its namespaces."""
+    picture = namespace_graph(tmp_path)
+    matches = {node.label for node in matching(picture, "namespace /fleet/a").nodes}
+    assert matches == {"/fleet", "/fleet/a", "a", "/fleet/a/at", "/fleet/stop", "/go", "Chief"}
+    near = {node.label for node in around(picture, "namespace /fleet/a").nodes}
+    assert near == matches | {"/fleet/b", "b", "c"}
+    assert within(matching(picture, "topic /fleet/b/at")) == {
+        "/fleet/b": "/fleet",
+        "/fleet/b/at": "/fleet/b",
+        "b": "/fleet/b",
+    }
 
 
 def test_half_typed(tmp_path: Path) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Drawings of our examples: geometry without errors, and ten golden pictures.
+"""Drawings of our examples: geometry without errors, and golden pictures.
 
 `AS2FM_GOLDEN=write` writes the golden pictures again; look at each of them before you commit it.
 """
@@ -26,7 +26,7 @@ from roaml.record import replace
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 GOLDEN = Path(__file__).parents[2] / "docs/pictures"
-FOLDERS = ("assembly_robot", "case_study", "delivery_robot", "fetch_tree", "grid_world")
+FOLDERS = ("assembly_robot", "case_study", "delivery_robot", "fetch_tree", "fleet", "grid_world", "warehouse")
 PAGE = (1200, 900)
 
 
@@ -59,6 +59,8 @@ GOLDEN_PICTURES = {
     "case_study_graph": (DiagramKind.ROS, "case_study/main.xml"),
     "battery": (DiagramKind.MACHINE, "delivery_robot/nodes/battery.ascxml"),
     "fetch_tree": (DiagramKind.TREE, "fetch_tree/fetch.xml"),
+    "fleet_graph": (DiagramKind.ROS, "fleet/main.xml"),
+    "warehouse_graph": (DiagramKind.ROS, "warehouse/main.xml"),
     "grid_robot": (DiagramKind.MACHINE, "grid_world/robot.ascxml"),
 }
 

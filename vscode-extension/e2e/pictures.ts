@@ -4,7 +4,7 @@ import * as fs from "node:fs";
 import * as path from "node:path";
 import type { Frame, Locator, Page } from "playwright-core";
 import { MEND, sample, SharedFolder, type Stage } from "./support/stage";
-import { OUTPUT } from "./support/paths";
+import { OUTPUT, ROOT } from "./support/paths";
 import type { Window } from "./support/window";
 import { temporaryFolder, write } from "./support/workbench";
 
@@ -84,6 +84,24 @@ export function pictures(stage: Stage): void {
         await picture.locator('.node[data-label="/hand_over"]').click();
         await window.page.locator('.tab.active[data-resource-name="building.ascxml"]').waitFor();
         await picture.locator('.node.here[data-label="/hand_over"], .edge.here').first().waitFor();
+    });
+
+    stage.test("the ROS graph: a namespace is collapsed and opened again", fleet, async (window) => {
+        await window.openFile("main.xml");
+        await window.running();
+        await window.run("AS2FM: Show ROS Graph");
+        const picture = await window.picture();
+        const anna = picture.locator('.node[data-label="/anna"]');
+        await anna.locator(".frame").waitFor();
+        const all = await labels(picture);
+        await window.screenshot("ros-graph-namespaces");
+        await anna.getByText("/anna").click();
+        await picture.locator("svg.picture").press("Space");
+        await anna.filter({ hasText: "… 6 parts" }).locator(".card").waitFor();
+        await window.becomes(() => picture.locator(".node").count(), all.length - 6);
+        await window.screenshot("ros-graph-collapsed");
+        await anna.getByText("/anna").dblclick();
+        await window.becomes(() => labels(picture), all);
     });
 
     stage.test(
@@ -284,6 +302,13 @@ async function chooseItem(window: Window, label: string): Promise<void> {
 async function choose({ page }: Window, title: string, option: string): Promise<void> {
     await page.locator(".quick-input-widget", { hasText: title }).waitFor();
     await page.locator(".quick-input-list .monaco-list-row", { hasText: option }).first().click();
+}
+
+/** Three robots, each in a namespace. */
+function fleet(): string {
+    const folder = temporaryFolder("fleet");
+    fs.cpSync(path.join(ROOT, "examples/fleet"), folder, { recursive: true });
+    return folder;
 }
 
 const VISITS = 12;

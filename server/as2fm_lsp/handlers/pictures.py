@@ -14,7 +14,7 @@ from roaml.figures.layout import LayoutDirection
 from roaml.figures.pdf import pdf_file
 from roaml.figures.svg import svg_file, svg_scene
 from roaml.figures.themes import THEMES
-from roaml.ide.diagrams import DiagramKind, Picture, around, collapsed, draw, matching, picture_of
+from roaml.ide.diagrams import DiagramKind, Picture, around, closed_namespaces, collapsed, draw, matching, picture_of
 from roaml.ide.picture_edits import PictureParts
 from roaml.project.analysis import Analysis
 from roaml.text import Location
@@ -60,6 +60,7 @@ def asked_picture(session: Session, params: Any) -> tuple[Analysis, DiagramKind,
         picture = collapsed(picture, hidden)
     if kind is DiagramKind.ROS and picture is not None:
         picture = around(matching(picture, optional_string(params, "matching")), optional_string(params, "around"))
+        picture = closed_namespaces(picture, hidden)
     return (analysis, kind, picture) if kind and picture else None
 
 

@@ -106,6 +106,8 @@ class SystemExpansion(Record, frozen=True, eq=False):
             the name of the automaton and the place of the `<channel>` in the system file.
         delivered: the symbol of each name from which a machine receives through a channel -> the symbols of the topic
             or service and of the machine, whose names are its begin and its end.
+        namespaces: path under which a machine is analysed -> its namespace, without `/` at its ends; only for those
+            that are in one.
     """
 
     system: str
@@ -122,6 +124,7 @@ class SystemExpansion(Record, frozen=True, eq=False):
     data: tuple[tuple[str, str | None], ...] = ()
     channels: Mapping[str, tuple[str, Span]] = field(default_factory=dict)
     delivered: Mapping[Symbol, tuple[Symbol, Symbol]] = field(default_factory=dict)
+    namespaces: Mapping[str, str] = field(default_factory=dict)
 
     def source(self, path: str) -> str:
         """The path of the file of the user that is analysed under `path`."""
@@ -224,6 +227,7 @@ class _Expander:
         """The path of each machine -> the path of its file."""
         self.channels: dict[str, tuple[str, Span]] = {}
         self.delivered: dict[Symbol, tuple[Symbol, Symbol]] = {}
+        self.namespaces: dict[str, str] = {}
 
     def problems_of(self, path: str) -> Problems:
         return self.problems.setdefault(path, Problems())
@@ -375,6 +379,7 @@ class _Expander:
             tuple(self.data.items()),
             self.channels,
             self.delivered,
+            self.namespaces,
         )
 
     def _fresh(self, target: str, instance: ListedInstance) -> str:
@@ -568,6 +573,8 @@ class _Expander:
         text = expanded_text(path, source, document.text, edits)
         if kind is FileKind.MACHINE:
             self.machines[path] = source
+            if instance is not None and instance.namespace:
+                self.namespaces[path] = instance.namespace
         if text.text != document.text or path != source:
             self.texts[path] = text
 

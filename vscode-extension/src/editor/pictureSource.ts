@@ -400,7 +400,7 @@ function words(): Words {
         savePdf: vscode.l10n.t("Save as PDF"),
         nothing: vscode.l10n.t("No results"),
         help: vscode.l10n.t(
-            "Arrow keys move between nodes, T selects the edges that leave a node, Enter opens the source, Shift+F10 the menu, Space collapses a node of a tree or shows only the neighbors of a node of a ROS graph, B sets a breakpoint, + and - zoom, 0 fits the diagram, / searches.",
+            "Arrow keys move between nodes, T selects the edges that leave a node, Enter opens the source, Shift+F10 the menu, Space collapses a node of a tree or a namespace, or shows only the neighbors of a node of a ROS graph, B sets a breakpoint, + and - zoom, 0 fits the diagram, / searches.",
         ),
         byChance: vscode.l10n.t("random"),
         mocks: vscode.l10n.t("Mocks"),
@@ -435,6 +435,7 @@ function words(): Words {
             condition: vscode.l10n.t("condition"),
             subtree: vscode.l10n.t("subtree"),
             variable: vscode.l10n.t("blackboard"),
+            namespace: vscode.l10n.t("namespace"),
             node: vscode.l10n.t("node"),
             plugin: vscode.l10n.t("plugin"),
             topic: vscode.l10n.t("topic"),

@@ -28,6 +28,7 @@ export const NODE_KINDS = [
     "condition",
     "subtree",
     "variable",
+    "namespace",
     "node",
     "plugin",
     "topic",
@@ -300,7 +301,7 @@ export type ToView =
 
 export type FromView =
     | { readonly type: "ready" }
-    /** Hide the nodes below the node with an id, or show them again. */
+    /** Hide the nodes below the node with an id, or those in a namespace, or show them again. */
     | { readonly type: "collapse"; readonly node: string }
     /** Show a part of a ROS graph, instead of the part that was shown before. */
     | { readonly type: "part"; readonly part: GraphPart }

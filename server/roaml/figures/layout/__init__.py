@@ -9,6 +9,7 @@ node or a label, and no label overlaps another one, by construction.
 
 from roaml.figures.layout.graph import Layout, LayoutDirection, Link, Route
 from roaml.figures.layout.layered import layered
+from roaml.figures.layout.nested import Boxes, nested
 from roaml.figures.layout.tidy import tidy_tree
 
-__all__ = ["Layout", "LayoutDirection", "Link", "Route", "layered", "tidy_tree"]
+__all__ = ["Boxes", "Layout", "LayoutDirection", "Link", "Route", "layered", "nested", "tidy_tree"]

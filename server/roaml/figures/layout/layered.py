@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 
 from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.layout.cycles import closing_links
@@ -17,7 +18,7 @@ from roaml.figures.layout.ports import PORT_DISTANCE, PORT_MARGIN, Ports
 from roaml.figures.layout.positions import place_vertices
 from roaml.figures.layout.tracks import assign_tracks
 from roaml.figures.layout.vertices import Vertex, VertexKind
-from roaml.record import Record
+from roaml.record import Record, field
 
 LAYER_DISTANCE = 30.0
 TRACK_MARGIN = 18.0
@@ -50,6 +51,36 @@ def layered(nodes: Mapping[str, Extent], links: Sequence[Link], direction: Layou
         return layered(turned, turned_links, LayoutDirection.DOWN, 1 / aspect).turned
     parts = [(_part(nodes, names, indexes, links), indexes) for names, indexes in components(nodes, links)]
     return pack(parts, len(links), aspect)
+
+
+class Boundary(Record, frozen=True):
+    """What surrounds a connected graph that is the content of a box, and the boxes in it.
+
+    Attributes:
+        anchors: the place at which a link leaves or enters a box, relative to its middle, by the name of the box and
+            the index of the link.
+        tops: nodes in a layer above all others: the ports of links from outside.
+        bottoms: nodes in a layer below all others: the ports of links to outside.
+    """
+
+    anchors: Mapping[tuple[str, int], float] = field(default_factory=dict)
+    tops: frozenset[str] = frozenset()
+    bottoms: frozenset[str] = frozenset()
+
+
+def component(
+    sizes: Mapping[str, Extent], names: Sequence[str], indexes: Sequence[int], links: Sequence[Link], boundary: Boundary
+) -> Layout:
+    """The layout of a connected graph, downwards; it is not wrapped if it contains boxes or ports.
+
+    Args:
+        names: the nodes of the graph.
+        indexes: the indexes of its links.
+    """
+    fixed = {name for name, _ in boundary.anchors} | boundary.tops | boundary.bottoms
+    if fixed.isdisjoint(names):
+        return _part(sizes, names, indexes, links)
+    return _Component(sizes, names, indexes, links, boundary=boundary).layout()
 
 
 def _part(sizes: Mapping[str, Extent], names: Sequence[str], indexes: Sequence[int], links: Sequence[Link]) -> Layout:
@@ -88,6 +119,9 @@ def _excess(layout: Layout) -> float:
     return max(1.0, width / height / MAX_RATIO, height / width / MAX_RATIO)
 
 
+_NO_BOUNDARY = Boundary()
+
+
 class _Edge(Record, frozen=True):
     """A piece of a link between two vertices in neighbouring layers, downwards."""
 
@@ -107,8 +141,10 @@ class _Component:
         links: Sequence[Link],
         columns: int = 1,
         limit: float | None = None,
+        boundary: Boundary = _NO_BOUNDARY,
     ) -> None:
         self.limit = limit
+        self.boundary = boundary
         self.names = names
         self.indexes = indexes
         self.links = links
@@ -161,7 +197,7 @@ class _Component:
     def _split_long_edges(self) -> None:
         """Add a vertex to each layer that a link passes."""
         pairs = [(edge.upper, edge.lower) for edge in self.edges]
-        self.layers = assign_layers(self.vertices, pairs, self.limit)
+        self.layers = self._outermost(assign_layers(self.vertices, pairs, self.limit))
         short: list[_Edge] = []
         for edge in self.edges:
             upper = edge.upper
@@ -173,23 +209,49 @@ class _Component:
             short.append(_Edge(edge.link, upper, edge.lower))
         self.edges = short
 
+    def _outermost(self, layers: list[int]) -> list[int]:
+        """The layers with the ports in the first and the last one."""
+        tops, bottoms = self.boundary.tops, self.boundary.bottoms
+        for index, name in enumerate(self.names):
+            if name in tops:
+                layers[index] = -1
+            elif name in bottoms:
+                layers[index] = len(layers)
+        used = {layer: index for index, layer in enumerate(sorted(set(layers)))}
+        return [used[layer] for layer in layers]
+
+    @cached_property
+    def _anchors(self) -> tuple[Mapping[int, float], Mapping[int, float]]:
+        """The places of edges at boxes, relative to their middles: where they leave the upper one and where they enter
+        the lower one."""
+        leaving: dict[int, float] = {}
+        entering: dict[int, float] = {}
+        anchors = self.boundary.anchors
+        for index, edge in enumerate(self.edges if anchors else ()):
+            for places, vertex in ((leaving, edge.upper), (entering, edge.lower)):
+                name = self.names[vertex] if vertex < len(self.names) else ""
+                if (name, edge.link) in anchors:
+                    places[index] = anchors[name, edge.link]
+        return leaving, entering
+
     def _grow(self) -> None:
-        """Make nodes wide enough for their links."""
+        """Make nodes wide enough for their links. Boxes are as wide as their contents."""
+        boxes = {name for name, _ in self.boundary.anchors}
         upper, lower = [0] * len(self.vertices), [0] * len(self.vertices)
         for edge in self.edges:
             lower[edge.upper] += 1
             upper[edge.lower] += 1
         for index, vertex in enumerate(self.vertices):
             ports = max(upper[index], lower[index])
-            if vertex.kind is VertexKind.NODE and ports > 1:
+            if vertex.kind is VertexKind.NODE and ports > 1 and self.names[index] not in boxes:
                 width = 2 * PORT_MARGIN + (ports - 1) * PORT_DISTANCE
                 self.vertices[index] = Vertex(vertex.kind, Extent(max(vertex.size.width, width), vertex.size.height))
 
     def layout(self) -> Layout:
         pairs = [(edge.upper, edge.lower) for edge in self.edges]
         rows = order_layers(self.layers, pairs)
-        middles = place_vertices(self.vertices, rows, pairs)
-        ports = Ports(self.vertices, rows, pairs, middles)
+        middles = place_vertices(self.vertices, rows, pairs, *self._anchors)
+        ports = Ports(self.vertices, rows, pairs, middles, *self._anchors)
         gaps: list[list[int]] = [[] for _ in rows]
         for index, edge in enumerate(self.edges):
             gaps[self.layers[edge.upper]].append(index)
@@ -228,7 +290,7 @@ class _Component:
                 if self.vertices[edge.lower].kind is not VertexKind.PASSING:
                     parts[-1].append(Point(ports.entering[index], boxes[edge.lower].y))
                     parts.append([])
-            lines = [_simplified(part) for part in parts if part]
+            lines = [simplified(part) for part in parts if part]
             if self.turned[link]:
                 lines = [line[::-1] for line in reversed(lines)]
             routes.append(Route(tuple(lines), boxes[self.labels[link]] if link in self.labels else None))
@@ -236,7 +298,7 @@ class _Component:
         return _at_origin(placed, routes)
 
 
-def _simplified(points: Sequence[Point]) -> tuple[Point, ...]:
+def simplified(points: Sequence[Point]) -> tuple[Point, ...]:
     """The line without the points at which its direction does not change."""
     kept: list[Point] = []
     for point in points:

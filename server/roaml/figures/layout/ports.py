@@ -4,7 +4,7 @@ other."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from roaml.figures.layout.spread import spread
 from roaml.figures.layout.tracks import CLEARANCE
@@ -21,6 +21,9 @@ _SWEEPS = 6
 class Ports:
     """The ports of all edges.
 
+    `leaving` and `entering`, by the indexes of edges, are the places of those that are fixed, relative to the middle of
+    their vertices: of edges at boxes.
+
     Attributes:
         leaving: the place where each edge leaves its upper vertex.
         entering: the place where each edge enters its lower vertex.
@@ -32,12 +35,15 @@ class Ports:
         rows: Sequence[Sequence[int]],
         edges: Sequence[tuple[int, int]],
         middles: Sequence[float],
+        leaving: Mapping[int, float],
+        entering: Mapping[int, float],
     ) -> None:
         self._vertices = vertices
         self._middles = middles
         column = {vertex: index for row in rows for index, vertex in enumerate(row)}
-        self.leaving = [middles[upper] for upper, _ in edges]
-        self.entering = [middles[lower] for _, lower in edges]
+        self._fixed = {edges[index][0] for index in leaving} | {edges[index][1] for index in entering}
+        self.leaving = [middles[upper] + leaving.get(index, 0.0) for index, (upper, _) in enumerate(edges)]
+        self.entering = [middles[lower] + entering.get(index, 0.0) for index, (_, lower) in enumerate(edges)]
         outgoing: list[list[int]] = [[] for _ in vertices]
         incoming: list[list[int]] = [[] for _ in vertices]
         for index, (upper, lower) in enumerate(edges):
@@ -56,7 +62,7 @@ class Ports:
 
     def _place(self, vertex: int, edges: Sequence[int], own: list[float], other: Sequence[float]) -> None:
         """Place the lines at one side of a vertex so that each is opposite to its other end, if possible."""
-        if not edges or self._vertices[vertex].kind is VertexKind.PASSING:
+        if not edges or vertex in self._fixed or self._vertices[vertex].kind is VertexKind.PASSING:
             return
         low, high = self._limits(vertex)
         distances = [PORT_DISTANCE] * (len(edges) - 1)
@@ -78,7 +84,7 @@ class Ports:
             self.leaving[index] = self.entering[index]
 
     def _is_free(self, vertex: int, edges: Sequence[int], index: int, own: Sequence[float], place: float) -> bool:
-        if self._vertices[vertex].kind is VertexKind.PASSING:
+        if vertex in self._fixed or self._vertices[vertex].kind is VertexKind.PASSING:
             return False
         low, high = self._limits(vertex)
         return low <= place <= high and all(e == index or abs(own[e] - place) >= CLEARANCE for e in edges)

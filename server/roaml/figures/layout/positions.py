@@ -4,7 +4,7 @@ next vertex of the layer."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 from roaml.figures.layout.spread import spread
@@ -16,9 +16,18 @@ _STRAIGHTNESS = {0: 1.0, 1: 3.0, 2: 10.0}
 
 
 def place_vertices(
-    vertices: Sequence[Vertex], rows: Sequence[Sequence[int]], edges: Sequence[tuple[int, int]]
+    vertices: Sequence[Vertex],
+    rows: Sequence[Sequence[int]],
+    edges: Sequence[tuple[int, int]],
+    leaving: Mapping[int, float],
+    entering: Mapping[int, float],
 ) -> list[float]:
-    """The place of the middle of each vertex within its layer."""
+    """The place of the middle of each vertex within its layer.
+
+    Args:
+        leaving, entering: where edges, by their indexes, leave their upper and enter their lower vertex, relative to
+            its middle, if that is fixed.
+    """
     gaps = [
         [
             (vertices[a].size.width + vertices[b].size.width) / 2 + distance(vertices[a], vertices[b])
@@ -26,11 +35,12 @@ def place_vertices(
         ]
         for row in rows
     ]
-    neighbours: list[list[tuple[int, float]]] = [[] for _ in vertices]
-    for source, target in edges:
+    neighbours: list[list[tuple[int, float, float]]] = [[] for _ in vertices]
+    for index, (source, target) in enumerate(edges):
+        shift = leaving.get(index, 0.0) - entering.get(index, 0.0)
         passing = sum(vertices[end].kind is VertexKind.PASSING for end in (source, target))
-        neighbours[source].append((target, _STRAIGHTNESS[passing]))
-        neighbours[target].append((source, _STRAIGHTNESS[passing]))
+        neighbours[source].append((target, _STRAIGHTNESS[passing], -shift))
+        neighbours[target].append((source, _STRAIGHTNESS[passing], shift))
     places = [0.0] * len(vertices)
     for row, row_gaps in zip(rows, gaps, strict=True):
         middle = sum(row_gaps) / 2
@@ -40,9 +50,11 @@ def place_vertices(
     for sweep in range(SWEEPS):
         for index in indexes if sweep % 2 == 0 else reversed(indexes):
             row = rows[index]
-            pulls = [sum(weight for _, weight in neighbours[vertex]) for vertex in row]
+            pulls = [sum(weight for _, weight, _ in neighbours[vertex]) for vertex in row]
             desired = [
-                sum(places[other] * weight for other, weight in neighbours[vertex]) / pull if pull else places[vertex]
+                sum((places[other] + shift) * weight for other, weight, shift in neighbours[vertex]) / pull
+                if pull
+                else places[vertex]
                 for vertex, pull in zip(row, pulls, strict=True)
             ]
             moved = spread(desired, gaps[index], [pull or 0.1 for pull in pulls])

@@ -22,6 +22,7 @@ from roaml.ide.diagrams.diagram import (
 from roaml.ide.diagrams.drawings import PAGE, draw, draw_for
 from roaml.ide.diagrams.highlight import DiagramHighlight, highlights
 from roaml.ide.diagrams.machine import machine_picture
+from roaml.ide.diagrams.namespaces import closed_namespaces
 from roaml.ide.diagrams.part import around, matching
 from roaml.ide.diagrams.ros import ros_picture
 from roaml.ide.diagrams.system import system_picture
@@ -40,6 +41,7 @@ __all__ = [
     "EdgeKind",
     "Picture",
     "around",
+    "closed_namespaces",
     "collapsed",
     "draw",
     "draw_for",

@@ -32,6 +32,7 @@ _WORDS: Mapping[DiagramNodeKind, str] = {
     DiagramNodeKind.THREAD: "action thread",
     DiagramNodeKind.SUBTREE: "subtree",
     DiagramNodeKind.VARIABLE: "blackboard entry",
+    DiagramNodeKind.NAMESPACE: "namespace",
     DiagramNodeKind.ROS_NODE: "node",
     DiagramNodeKind.PLUGIN: "plugin",
     DiagramNodeKind.TOPIC: "topic",
@@ -136,7 +137,10 @@ def _stable_ids(kind: DiagramKind, picture: Picture) -> dict[str, str]:
 def _renamed(picture: Picture, names: Mapping[str, str]) -> Picture:
     return replace(
         picture,
-        nodes=tuple(replace(node, id=names.get(node.id, node.id)) for node in picture.nodes),
+        nodes=tuple(
+            replace(node, id=names.get(node.id, node.id), parent=names.get(node.parent, node.parent))
+            for node in picture.nodes
+        ),
         edges=tuple(
             replace(edge, source=names.get(edge.source, edge.source), target=names.get(edge.target, edge.target))
             for edge in picture.edges

@@ -33,6 +33,7 @@ class DiagramNodeKind(enum.Enum):
     CONDITION = "condition"
     SUBTREE = "subtree"
     VARIABLE = "variable"
+    NAMESPACE = "namespace"
     ROS_NODE = "node"
     PLUGIN = "plugin"
     TOPIC = "topic"

@@ -5,25 +5,26 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from roaml.ide.diagrams.diagram import DiagramNode, DiagramNodeKind, Picture
+from roaml.ide.diagrams.diagram import DiagramNode, Picture
+from roaml.ide.diagrams.namespaces import INTERFACES, content, with_parents
 from roaml.record import replace
-
-_INTERFACES = (DiagramNodeKind.TOPIC, DiagramNodeKind.SERVICE, DiagramNodeKind.ACTION_INTERFACE)
 
 
 def matching(picture: Picture, text: str) -> Picture:
     """The nodes that contain all words of a text, and what is connected to them. Words are compared without case with
-    the kind of a node, its name (which contains its namespace) and its type."""
+    the kind of a node, its name (which contains its namespace) and its type. Of a namespace, everything in it is
+    shown."""
     words = text.lower().split()
     if not words:
         return picture
     found = {node.id for node in picture.nodes if _contains(node, words)}
+    found |= content(picture, found)
     return _restricted(picture, found | _next_to(picture, found))
 
 
 def around(picture: Picture, node: str) -> Picture:
-    """A node and what is connected to it; for a node or plugin of ROS, also those with which it communicates. The
-    whole diagram if it does not contain the node.
+    """A node and what is connected to it; for a node or plugin of ROS, also those with which it communicates; for a
+    namespace, all of this for everything in it. The whole diagram if it does not contain the node.
 
     Args:
         node: the id of the node.
@@ -31,9 +32,10 @@ def around(picture: Picture, node: str) -> Picture:
     center = next((known for known in picture.nodes if known.id == node), None)
     if center is None:
         return picture
-    near = _next_to(picture, {node})
-    if center.kind not in _INTERFACES:
-        interfaces = {known.id for known in picture.nodes if known.id in near and known.kind in _INTERFACES}
+    inside = content(picture, {node})
+    near = inside | _next_to(picture, inside | {node})
+    if center.kind not in INTERFACES:
+        interfaces = {known.id for known in picture.nodes if known.id in near and known.kind in INTERFACES}
         near |= _next_to(picture, interfaces)
     return _restricted(picture, near | {node})
 
@@ -49,6 +51,7 @@ def _next_to(picture: Picture, ids: Collection[str]) -> set[str]:
 
 
 def _restricted(picture: Picture, kept: Collection[str]) -> Picture:
-    nodes = tuple(node for node in picture.nodes if node.id in kept)
+    shown = with_parents(picture, kept)
+    nodes = tuple(node for node in picture.nodes if node.id in shown)
     edges = tuple(edge for edge in picture.edges if edge.source in kept and edge.target in kept)
     return replace(picture, nodes=nodes, edges=edges)

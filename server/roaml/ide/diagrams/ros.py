@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from roaml.ide.diagrams.diagram import Detail, DetailKind, DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
+from roaml.ide.diagrams.namespaces import with_namespaces
 from roaml.model.system import Channel, ChannelEndpoint, System, SystemAutomaton
 from roaml.project.analysis import Analysis
 from roaml.roles import SymbolKind
@@ -44,7 +45,21 @@ def ros_picture(analysis: Analysis, path: str) -> Picture | None:
             nodes[node.id] = node
             edges.update(dict.fromkeys(_edge(analysis, node, end) for end in ends))
     edges.update(dict.fromkeys(_events(system, nodes)))
-    return Picture(title, tuple(nodes.values()), tuple(edges))
+    picture = Picture(title, tuple(nodes.values()), tuple(edges))
+    return with_namespaces(picture, {name: space for name, space in _namespaces(analysis, path) if name in nodes})
+
+
+def _namespaces(analysis: Analysis, path: str) -> Iterator[tuple[str, str]]:
+    """The ids of nodes and plugins that are in a namespace, and the namespace."""
+    expanded, system = analysis.expanded(path), analysis.system(path)
+    linked = expanded.linked(path) if expanded is not None else None
+    if expanded is None or linked is None or system is None:
+        return
+    # An instance has a text of its own, but in a picture the path of its file.
+    for automaton, instance in zip(system.automata, linked.automata, strict=True):
+        namespace = expanded.expansion.namespaces.get(instance.path)
+        if namespace is not None:
+            yield _id(automaton), namespace
 
 
 def _id(automaton: SystemAutomaton) -> str:

@@ -44,14 +44,14 @@ export class Minimap {
     show(picture: Picture, drawing: Drawing): void {
         this.drawing = drawing;
         this.svg.setAttribute("viewBox", `0 0 ${drawing.width} ${drawing.height}`);
+        const parents = new Set(picture.nodes.map(({ parent }) => parent));
         this.svg.replaceChildren(
-            ...drawing.nodes.map(({ index, ...box }) =>
-                element("rect", {
-                    class: `minimap-node tone-${toneOf(picture.nodes[index]?.kind)}`,
-                    "data-map-node": index,
-                    ...box,
-                }),
-            ),
+            ...drawing.nodes.map(({ index, ...box }) => {
+                const { id = "", kind } = picture.nodes[index] ?? {};
+                const outer = parents.has(id) ? " is-outer" : "";
+                const look = `minimap-node tone-${toneOf(kind)}${outer}`;
+                return element("rect", { class: look, "data-map-node": index, ...box });
+            }),
             this.frame,
         );
     }

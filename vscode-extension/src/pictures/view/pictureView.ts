@@ -290,7 +290,10 @@ export class PictureView {
         const { here, picture } = this;
         if (here !== null) return this.nodeOf(here);
         const initial = picture?.nodes.findIndex((node) => node.initial && node.kind === "state") ?? -1;
-        return initial >= 0 ? initial : (this.drawing?.nodes[0]?.index ?? -1);
+        if (initial >= 0) return initial;
+        const parents = new Set(picture?.nodes.map(({ parent }) => parent));
+        const first = this.drawing?.nodes.find(({ index }) => !parents.has(picture?.nodes[index]?.id ?? ""));
+        return first?.index ?? -1;
     }
 
     /** The node of a part; that of a transition is its source. */
@@ -503,10 +506,12 @@ export class PictureView {
         if (to?.place) this.post({ type: "jump", place: to.place, beside });
     }
 
-    /** Hide the nodes below a node of a tree, or show them again. */
-    private collapse(node: number): void {
-        const id = this.picture?.nodes[node]?.id;
-        if (this.picture?.kind === "tree" && id !== undefined) this.post({ type: "collapse", node: id });
+    /** Hide the nodes below a node of a tree, or in a namespace, or show them again; return whether it has such. */
+    private collapse(node: number): boolean {
+        const { id, kind } = this.picture?.nodes[node] ?? {};
+        if (id === undefined || (this.picture?.kind !== "tree" && kind !== "namespace")) return false;
+        this.post({ type: "collapse", node: id });
+        return true;
     }
 
     /** Show only a node of a ROS graph and its neighbours, or all nodes again. */
@@ -658,9 +663,9 @@ export class PictureView {
             this.jump(this.picture?.edges[this.selectedEdge] ?? this.picture?.nodes[this.selected], false);
         else if (key === "b") this.toggleBreakpoint(this.selectedPart);
         else if (key === "t" || key === "T") this.selectNextEdge(shiftKey ? -1 : 1);
-        else if (key === " " && this.picture?.kind === "ros") this.surround(this.selected);
-        else if (key === " ") this.collapse(this.selected);
-        else if (key === "+" || key === "=") this.zoom(ZOOM);
+        else if (key === " ") {
+            if (!this.collapse(this.selected)) this.surround(this.selected);
+        } else if (key === "+" || key === "=") this.zoom(ZOOM);
         else if (key === "-") this.zoom(1 / ZOOM);
         else if (key === "0") this.fit();
         else return false;

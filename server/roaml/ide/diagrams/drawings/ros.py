@@ -2,7 +2,7 @@
 """The drawing of a ROS graph: nodes and plugins, the interfaces between them, and plain events.
 
 The color of a line shows whether it represents a topic, a service, an action, or plain events. Its arrow points to the
-receiver.
+receiver. A namespace is a frame around what is in it; a collapsed one is a card.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from collections.abc import Mapping
 
 from roaml.figures.drawing import Drawing, Group, Outline, Polyline, Shape, Tone
 from roaml.figures.geometry import Box
-from roaml.figures.layout import LayoutDirection, Link, layered
+from roaml.figures.layout import Boxes, LayoutDirection, Link, nested
 from roaml.ide.diagrams.diagram import DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
 from roaml.ide.diagrams.drawings.cards import Card, Row, paragraph, title
 from roaml.ide.diagrams.drawings.changes import is_marked, kind_of, signed, tone_of
@@ -32,6 +32,7 @@ _OUTLINES: Mapping[DiagramNodeKind, Outline] = {
     DiagramNodeKind.ACTION_INTERFACE: Outline.CUT,
 }
 _WORDS: Mapping[DiagramNodeKind, str] = {
+    DiagramNodeKind.NAMESPACE: "namespace",
     DiagramNodeKind.PLUGIN: "plugin",
     DiagramNodeKind.TOPIC: "topic",
     DiagramNodeKind.SERVICE: "service",
@@ -41,6 +42,8 @@ _WORDS: Mapping[DiagramNodeKind, str] = {
 
 def draw_ros(picture: Picture, direction: LayoutDirection) -> Drawing:
     index = {node.id: number for number, node in enumerate(picture.nodes)}
+    parents = {node.id: node.parent for node in picture.nodes if node.parent}
+    framed = set(parents.values())
     cards = {node.id: _card(node, CARD_WIDTH[direction]) for node in picture.nodes}
     shown = [(number, edge) for number, edge in enumerate(picture.edges) if edge.source != edge.target]
     labels = [_label(number, edge) for number, edge in shown]
@@ -48,8 +51,10 @@ def draw_ros(picture: Picture, direction: LayoutDirection) -> Drawing:
         Link(edge.source, edge.target, label.size if label else None)
         for (_, edge), label in zip(shown, labels, strict=True)
     ]
-    layout = layered({name: card.size for name, card in cards.items()}, links, direction, _ASPECT[direction])
-    groups: list[Group] = []
+    boxes = Boxes(parents, {name: cards[name].size for name in framed})
+    sizes = {name: card.size for name, card in cards.items() if name not in framed}
+    layout = nested(sizes, links, boxes, direction, _ASPECT[direction])
+    groups = [_frame(node, index[node.id], cards, layout.nodes) for node in picture.nodes if node.id in framed]
     for (number, edge), label, route in zip(shown, labels, layout.routes, strict=True):
         tone = _tone(edge, picture.nodes[index[edge.source]], picture.nodes[index[edge.target]])
         lines = tuple(Polyline(part, has_arrow=part is route.parts[-1]) for part in route.parts)
@@ -57,8 +62,18 @@ def draw_ros(picture: Picture, direction: LayoutDirection) -> Drawing:
         if label and route.label:
             shape = Shape(route.label, Outline.ROUNDED, "label-card")
             groups.append(Group("label", tone, (shape, *label.items(route.label))))
-    groups += [_node(node, number, cards[node.id], layout.nodes[node.id]) for number, node in enumerate(picture.nodes)]
+    groups += [
+        _node(node, number, cards[node.id], layout.nodes[node.id])
+        for number, node in enumerate(picture.nodes)
+        if node.id not in framed
+    ]
     return Drawing(layout.size, tuple(groups), {index[name]: box for name, box in layout.nodes.items()})
+
+
+def _frame(node: DiagramNode, number: int, cards: Mapping[str, Card], places: Mapping[str, Box]) -> Group:
+    box, heading = places[node.id], cards[node.id]
+    items = (Shape(box, Outline.ROUNDED, "frame"), *heading.items(Box(box.x, box.y, box.width, heading.size.height)))
+    return Group("node", tone_of(node.change, Tone.PLAIN), items, kind_of(node.change, node.kind.value), node=number)
 
 
 def _card(node: DiagramNode, width: float) -> Card:

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The namespaces of a ROS graph, as nodes that contain other nodes, and graphs in which namespaces are collapsed.
+
+The namespaces of nodes are shown, and those that several of them have in common. A topic, service or action is in the
+innermost shown namespace that its name contains. A graph without namespaces is unchanged.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from itertools import combinations, takewhile
+
+from roaml.ide.diagrams.diagram import Detail, DetailKind, DiagramEdge, DiagramNode, DiagramNodeKind, Picture
+from roaml.record import replace
+
+INTERFACES = (DiagramNodeKind.TOPIC, DiagramNodeKind.SERVICE, DiagramNodeKind.ACTION_INTERFACE)
+
+
+def with_namespaces(picture: Picture, namespaces: Mapping[str, str]) -> Picture:
+    """The graph with a node for each namespace, before the others, and with the parents of all nodes.
+
+    Args:
+        namespaces: id of a node or plugin -> its namespace, without `/` at its ends.
+    """
+    shown = _shown([tuple(name.split("/")) for name in namespaces.values()])
+    if not shown:
+        return picture
+    nodes = [
+        DiagramNode(_id(path), DiagramNodeKind.NAMESPACE, f"/{'/'.join(path)}", parent=_around(path[:-1], shown))
+        for path in shown
+    ]
+    for node in picture.nodes:
+        name = node.label.rpartition("/")[0] if node.kind in INTERFACES else namespaces.get(node.id, "")
+        nodes.append(replace(node, parent=_around(tuple(name.strip("/").split("/")), shown)))
+    return replace(picture, nodes=tuple(nodes))
+
+
+def _shown(paths: Collection[tuple[str, ...]]) -> list[tuple[str, ...]]:
+    """The namespaces of nodes, and those that two of them have in common; each after those that contain it."""
+    common = {
+        tuple(a for a, _ in takewhile(lambda pair: pair[0] == pair[1], zip(one, other, strict=False)))
+        for one, other in combinations(dict.fromkeys(paths), 2)
+    }
+    return sorted({*paths, *common} - {()})
+
+
+def _id(path: tuple[str, ...]) -> str:
+    return f"namespace /{'/'.join(path)}"
+
+
+def _around(path: tuple[str, ...], shown: Collection[tuple[str, ...]]) -> str:
+    """The id of the innermost shown namespace that is this one or contains it; "" if there is none."""
+    candidates = (path[:length] for length in range(len(path), 0, -1))
+    return next((_id(candidate) for candidate in candidates if candidate in shown), "")
+
+
+def content(picture: Picture, ids: Collection[str]) -> set[str]:
+    """The ids of the nodes in nodes, at any depth."""
+    inside: set[str] = set()
+    for node in picture.nodes:  # parents are before their children
+        if node.parent in ids or node.parent in inside:
+            inside.add(node.id)
+    return inside
+
+
+def with_parents(picture: Picture, ids: Collection[str]) -> set[str]:
+    """The ids of nodes and of those that contain them."""
+    parents = {node.id: node.parent for node in picture.nodes}
+    found: set[str] = set()
+    pending = list(ids)
+    while pending:
+        name = pending.pop()
+        if name and name not in found:
+            found.add(name)
+            pending.append(parents[name])
+    return found
+
+
+def closed_namespaces(picture: Picture, ids: Collection[str]) -> Picture:
+    """The graph in which namespaces are single nodes, which have the edges of what they contain. The last of the
+    details of such a node is the number of nodes that it contains. Other ids are ignored."""
+    closed = {node.id for node in picture.nodes if node.id in ids and node.kind is DiagramNodeKind.NAMESPACE}
+    closed -= content(picture, closed)
+    if not closed:
+        return picture
+    inside = {name: content(picture, {name}) for name in closed}
+    representative = {node: name for name, nodes in inside.items() for node in nodes}
+    nodes = tuple(
+        replace(node, details=(*node.details, _hidden(picture, inside[node.id]))) if node.id in closed else node
+        for node in picture.nodes
+        if node.id not in representative
+    )
+    edges: dict[tuple[object, ...], DiagramEdge] = {}
+    for edge in picture.edges:
+        source, target = (representative.get(end, end) for end in (edge.source, edge.target))
+        if source == target:
+            continue
+        moved = replace(edge, source=source, target=target)
+        # Edges between the same ends are one, which has the names of all plain events.
+        key = (source, target, edge.kind) if moved != edge else (edge,)
+        known = edges.get(key, moved)
+        edges[key] = replace(known, labels=tuple(dict.fromkeys((*known.labels, *moved.labels))))
+    return replace(picture, nodes=nodes, edges=tuple(edges.values()))
+
+
+def _hidden(picture: Picture, ids: Collection[str]) -> Detail:
+    count = sum(node.id in ids and node.kind is not DiagramNodeKind.NAMESPACE for node in picture.nodes)
+    return Detail(DetailKind.COUNT, "… 1 part" if count == 1 else f"… {count} parts")
