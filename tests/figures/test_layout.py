@@ -11,8 +11,10 @@ import kept_strategies as st
 from examples import examples
 from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.layout import Boxes, Layout, LayoutDirection, Link, layered, nested, tidy_tree
+from roaml.figures.layout.layers import assign_layers
 from roaml.figures.layout.spread import spread
 from roaml.figures.layout.tracks import assign_tracks
+from roaml.figures.layout.vertices import Vertex, VertexKind
 
 NEAR = 0.05
 SIZES = st.builds(Extent, st.integers(8, 300), st.integers(8, 200))
@@ -112,6 +114,16 @@ def trees(draw: st.DrawFn) -> tuple[dict[str, Extent], dict[str, list[str]]]:
     for number in range(1, count):
         children.setdefault(str(draw(st.integers(0, number - 1))), []).append(str(number))
     return {str(number): draw(SIZES) for number in range(count)}, children
+
+
+def test_divided_layers_keep_labels_near_their_nodes() -> None:
+    """The label of each link of a star is in the layer directly above the node to which the link leads."""
+    node, label = Vertex(VertexKind.NODE, Extent(100, 40)), Vertex(VertexKind.LABEL, Extent(100, 20))
+    leaves = range(1, 25, 2)
+    edges = [pair for leaf in leaves for pair in ((0, leaf + 1), (leaf + 1, leaf))]
+    layers = assign_layers([node, *[node, label] * len(leaves)], edges, 500)
+    assert len(set(layers)) > 4
+    assert {layers[leaf] - layers[leaf + 1] for leaf in leaves} == {1}
 
 
 @st.composite

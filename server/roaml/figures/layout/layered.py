@@ -34,6 +34,8 @@ MIN_WRAPPED = 12
 MAX_ATTEMPTS = 6
 DIVISION = 1.2
 """The maximum number of attempts to wrap a part, and the minimum factor by which layers become narrower in each."""
+MAX_COMPARED = 100
+"""The maximum number of nodes of a part whose layers are divided in all these ways, to find the smallest drawing."""
 
 
 def layered(nodes: Mapping[str, Extent], links: Sequence[Link], direction: LayoutDirection, aspect: float) -> Layout:
@@ -107,10 +109,14 @@ def _part(sizes: Mapping[str, Extent], names: Sequence[str], indexes: Sequence[i
         limit = width
         for _ in range(MAX_ATTEMPTS):
             limit = limit / max(DIVISION, math.sqrt(best.size.width / best.size.height / WRAPPED_RATIO))
-            best = min(best, made(limit=limit), key=_excess)
-            if _excess(best) <= 1:
+            best = min(best, made(limit=limit), key=lambda layout: (_excess(layout), _area(layout)))
+            if _excess(best) <= 1 and len(names) > MAX_COMPARED:
                 break
     return best
+
+
+def _area(layout: Layout) -> float:
+    return layout.size.width * layout.size.height
 
 
 def _excess(layout: Layout) -> float:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Sequence
 
 from roaml.figures.layout.vertices import NODE_DISTANCE, Vertex, VertexKind
@@ -17,14 +18,15 @@ def assign_layers(
 
     Args:
         edges: the pairs (from, to) of an acyclic graph.
-        limit: the desired maximum width of a layer. A vertex for which there is no space is in a later layer.
+        limit: the desired maximum width of a layer. A vertex for which there is no space is in a later layer; what
+            follows a vertex is then near it, because it is placed before the neighbours of this vertex.
     """
     successors: list[list[int]] = [[] for _ in vertices]
     predecessors: list[list[int]] = [[] for _ in vertices]
     for source, target in edges:
         successors[source].append(target)
         predecessors[target].append(source)
-    order = _topological(successors, predecessors)
+    order = _topological(successors, predecessors, deep=limit is not None)
     layers = [0] * len(vertices)
     widths: dict[int, float] = {}
     for vertex in order:
@@ -63,14 +65,25 @@ def column_starts(layers: Sequence[int], edges: Sequence[tuple[int, int]], colum
     return starts
 
 
-def _topological(successors: Sequence[Sequence[int]], predecessors: Sequence[Sequence[int]]) -> list[int]:
+def _topological(
+    successors: Sequence[Sequence[int]], predecessors: Sequence[Sequence[int]], *, deep: bool
+) -> list[int]:
+    """The vertices in an order in which all edges lead forwards. If `deep`, what follows a vertex is near it."""
     missing = [len(p) for p in predecessors]
-    order = [vertex for vertex, count in enumerate(missing) if count == 0]
-    for vertex in order:
+    pending = deque(vertex for vertex, count in enumerate(missing) if count == 0)
+    order: list[int] = []
+    while pending:
+        vertex = pending.popleft()
+        order.append(vertex)
+        free = []
         for successor in successors[vertex]:
             missing[successor] -= 1
             if missing[successor] == 0:
-                order.append(successor)
+                free.append(successor)
+        if deep:
+            pending.extendleft(reversed(free))
+        else:
+            pending.extend(free)
     return order
 
 
