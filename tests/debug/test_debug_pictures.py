@@ -45,6 +45,8 @@ def test_the_timeline_follows_the_run(client: Client) -> None:
     assert "Arm.way" in shown["names"]
     assert ">moving<" in shown["scene"]
     _go(client, 50)
+    assert 'class="coarse"' in client.ask("timeline", width=60, coarse=True)["scene"]
+    assert 'class="coarse"' not in client.ask("timeline", width=60)["scene"]
     steps = client.ask("timeline", axis="steps", **{"from": 40, "to": 60})
     assert (steps["step"], steps["steps"], steps["cursor"], steps["extent"]) == (50, 201, 50, 201)
     assert "names" not in steps

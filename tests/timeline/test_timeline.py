@@ -12,8 +12,11 @@ import pytest
 
 from as2fm_lsp.cli.main import run
 from roaml import api
-from roaml.figures.drawing import Drawing, Shape, TextItem
+from roaml.figures.drawing import Area, Drawing, Group, Outline, Shape, TextItem, Tone
+from roaml.figures.geometry import Box, Extent
+from roaml.figures.svg import svg_scene
 from roaml.figures.text import text_width
+from roaml.record import replace
 from roaml.simulation import Session
 from roaml.simulation.state import NodeStatus
 from roaml.timeline import Axis, LaneKind, Timeline, View, draw_names, draw_timeline, extent, position_of, step_at
@@ -232,3 +235,37 @@ def test_simulate_writes_a_timeline(tmp_path: Path, capsys: pytest.CaptureFixtur
     root = ET.fromstring(file.read_text(encoding="utf-8"))
     texts = [element.text for element in root.iter("{http://www.w3.org/2000/svg}text")]
     assert {"Arm", "moving", "RUNNING", "Arm.way", "/arm/command", "0 s"} <= set(texts)
+
+
+def test_a_coarse_drawing_has_one_area_for_each_color_of_a_row() -> None:
+    """It has the same rectangles with the same colors, and the same texts."""
+    session = api.session(api.load(str(DELIVERY)), seed=9)
+    session.until_decided(2_000)
+    timeline = timeline_of(session)
+    view = View(Axis.TIME, 0.0, extent(timeline, Axis.TIME), 400.0)
+    fine, coarse = (draw_timeline(timeline, replace(view, is_coarse=coarse)) for coarse in (False, True))
+    assert [text.text for text in _texts(coarse)] == [text.text for text in _texts(fine)]
+
+    def rectangles(drawing: Drawing) -> list[tuple[str, str, Box]]:
+        found = []
+        for groups, item in drawing.walk():
+            if isinstance(item, Shape):
+                found.append((groups[0].tone.value, item.role.replace("span", "coarse"), item.box))
+            elif isinstance(item, Area):
+                for left, top, right, bottom in zip(*[iter(item.points)] * 4, strict=True):
+                    assert (left.x, top.y, right.x, bottom.y) == (top.x, right.y, bottom.x, left.y)
+                    box = Box(top.x, top.y, right.x - top.x, left.y - top.y)
+                    found.append((groups[0].tone.value, item.role, box))
+        return sorted(found)
+
+    assert rectangles(coarse) == rectangles(fine)
+    assert len(coarse.groups) < len(fine.groups)
+    assert not any(len(group.items) == 1 and isinstance(group.items[0], Shape) for group in coarse.groups)
+
+
+def test_in_a_view_a_group_of_one_rectangle_is_this_rectangle() -> None:
+    group = Group("state", Tone.ROS, (Shape(Box(1, 2, 3, 4), Outline.RECTANGLE, "span"),), hint="A: on", step=7)
+    drawing = Drawing(Extent(9, 9), (group,), {})
+    rectangle = '<rect class="state tone-ros span" data-step="7" x="1" y="2" width="3" height="4" rx="2">'
+    assert f"{rectangle}<title>A: on</title></rect>" in svg_scene(drawing)
+    assert '<g class="state tone-ros" data-step="7"><title>A: on</title><rect' in svg_scene(drawing, has_keys=False)

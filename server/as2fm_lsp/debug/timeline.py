@@ -188,7 +188,8 @@ def _view(arguments: Arguments, timeline: Timeline, debugger: Debugger) -> View:
         for decided in debugger.decided
         if decided.verdict is TraceVerdict.FAILED
     )
-    return View(axis, start, end, width, top, bottom, curves=curves, marks=violated)
+    is_coarse = arguments.flag("coarse", False)
+    return View(axis, start, end, width, top, bottom, curves=curves, marks=violated, is_coarse=is_coarse)
 
 
 def _at(debugger: Debugger, step: int, read: Callable[[Session], T]) -> T:

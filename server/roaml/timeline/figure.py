@@ -12,7 +12,7 @@ import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from roaml.figures.drawing import Drawing, Group, Item, Outline, Polyline, Shape, TextItem, Tone
+from roaml.figures.drawing import Area, Drawing, Group, Item, Outline, Polyline, Shape, TextItem, Tone
 from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.text import ELLIPSIS, SMALL, text_width
 from roaml.record import Record
@@ -63,6 +63,8 @@ class View(Record, frozen=True):
         cursor: the position of the run as a number of steps; -1 to draw none.
         curves: the names of the plots that are drawn over each other, in one row with a common range.
         marks: what is marked with a line across all rows.
+        is_coarse: whether parts without a name are drawn together, without hints. A view shows a drawing of this kind
+            for a moment, while the user zooms.
     """
 
     axis: Axis
@@ -74,6 +76,7 @@ class View(Record, frozen=True):
     cursor: int = -1
     curves: tuple[str, ...] = ()
     marks: tuple[Mark, ...] = ()
+    is_coarse: bool = False
 
 
 class _PlotRow(Record, frozen=True):
@@ -149,11 +152,11 @@ class _Painter:
         yield rules
         for index, lane in enumerate(timeline.lanes):
             if self._is_visible(_lane_top(index), LANE):
-                yield from self._lane(index, lane)
+                yield from self._joined(self._lane(index, lane))
         for row in _plot_rows(timeline, self._view.curves):
             if self._is_visible(row.top, row.height):
                 yield from (self._plot(row, number) for number in range(len(row.plots)))
-        yield from self._messages()
+        yield from self._joined(self._messages())
         yield from self._mark_lines()
         if self._view.cursor >= 0:
             x = self._x(self._view.cursor)
@@ -162,6 +165,23 @@ class _Painter:
                 yield Group("cursor", Tone.FAILURE, (line,))
         yield names  # above the rows that are scrolled beneath it
         yield from self._mark_names()
+
+    def _joined(self, groups: Iterator[Group]) -> Iterator[Group]:
+        """The groups of a row; in a coarse drawing, those of one rectangle are one area for each color."""
+        areas: dict[tuple[Tone, str], list[Point]] = {}
+        for group in groups:
+            item = group.items[0]
+            if not self._view.is_coarse or len(group.items) > 1 or not isinstance(item, Shape):
+                yield group
+                continue
+            role = "coarse" if item.role == "span" else item.role
+            box = item.box
+            # Along the lower border, the outline returns on itself.
+            areas.setdefault((group.tone, role), []).extend(
+                (Point(box.x, box.bottom), Point(box.x, box.y), Point(box.right, box.y), Point(box.right, box.bottom))
+            )
+        for (tone, role), points in areas.items():
+            yield Group("state", tone, (Area(tuple(points), role),))
 
     def _is_visible(self, top: float, height: float) -> bool:
         return top + height >= self._view.top and top <= self._view.bottom

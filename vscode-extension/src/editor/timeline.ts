@@ -46,7 +46,7 @@ export class TimelineSource implements vscode.Disposable {
             case "goTo": {
                 const { axis, position } = message;
                 const line = { from: position, to: position, width: 1, top: 0, bottom: 0 };
-                const part = { axis, ...line, names: false, curves: [] };
+                const part = { axis, ...line, names: false, curves: [], coarse: false };
                 const tile = await this.tile(part);
                 if (tile) await this.sessions.request("goToStep", { step: tile.first });
                 break;

@@ -20,6 +20,8 @@ export interface TileRequest {
     readonly names: boolean;
     /** The names of the curves that are drawn over each other. */
     readonly curves: readonly string[];
+    /** Whether parts without a name are drawn together, without hints. */
+    readonly coarse: boolean;
 }
 
 /** The answer to the request `timeline` (docs/debugging.md). */

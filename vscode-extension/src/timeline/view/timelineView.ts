@@ -25,6 +25,8 @@ export interface Played {
 const MARGIN: Margin = { times: 1, rows: 400 };
 /** While the user zooms, a drawing is soon replaced, and a small one is drawn and shown faster. */
 const ZOOM_MARGIN: Margin = { times: 0.25, rows: 60 };
+/** After this time without zooming, a coarse drawing is replaced, in ms. */
+const SETTLED = 120;
 /** A new drawing is needed when less than this remains. */
 const LEAST_MARGIN: Margin = { times: 0.1, rows: 20 };
 /** A pointer that moves less has clicked. */
@@ -55,6 +57,10 @@ export class TimelineView {
     private tile: Tile | undefined;
     /** The rows that the tile has, in pixels. */
     private drawn: Rows = { top: 0, bottom: 0 };
+    /** Whether the tile is coarse, as while the user zooms. */
+    private isCoarse = false;
+    /** Replaces a coarse tile when the user has stopped zooming. */
+    private settling: ReturnType<typeof setTimeout> | undefined;
     /** What is played, instead of the position of the debugger. */
     private played: Played | undefined;
     private pending = false;
@@ -160,7 +166,24 @@ export class TimelineView {
         const { tile } = this;
         const scales = tile !== undefined && !isSharp(tile, this.visible, this.width);
         if (this.pending || this.width < 50) return;
-        if (tile && !scales && !this.hasChanged && this.hasAround(tile, LEAST_MARGIN)) return;
+        if (tile && !scales && !this.hasChanged && this.hasAround(tile, LEAST_MARGIN)) {
+            if (this.isCoarse) this.settle();
+            return;
+        }
+        this.ask(scales);
+    }
+
+    private settle(): void {
+        clearTimeout(this.settling);
+        this.settling = setTimeout(() => {
+            if (this.isCoarse && !this.pending) this.ask(false);
+        }, SETTLED);
+    }
+
+    /** Ask for a drawing of the visible part and its surroundings. */
+    private ask(scales: boolean): void {
+        const { tile } = this;
+        clearTimeout(this.settling);
         const margin = scales ? ZOOM_MARGIN : MARGIN;
         const part = tile ? withMargins(this.visible, margin.times, this.width) : { from: 0, width: this.width };
         this.pending = true;
@@ -173,6 +196,7 @@ export class TimelineView {
                 width: Math.round(part.width),
                 names: this.hasChanged || !tile,
                 curves: this.curvesChosen,
+                coarse: scales,
             },
         });
         this.hasChanged = false;
@@ -196,6 +220,7 @@ export class TimelineView {
         if (asked.axis !== this.axis) return;
         this.tile = tile;
         this.drawn = asked;
+        this.isCoarse = asked.coarse;
         if (!tile.hasTime) this.axis = "steps";
         if (!before) {
             // The first answer says how long the run is.
