@@ -18,7 +18,7 @@ if __name__ == "__main__":
 import conformance
 from roaml import api
 from roaml.debugging.breakpoints import Breakpoint, ExceptionFilter
-from roaml.debugging.debugger import Debugger, Stop, StopReason, Unit
+from roaml.debugging.debugger import Debugger, Stop, Unit
 from roaml.debugging.sources import Sources
 from roaml.debugging.start import Start, start
 from roaml.smc.end import End
@@ -66,7 +66,7 @@ def replay(
     debugger.breakpoints.filters = {filter_: Breakpoint() for filter_ in verdict_filters}
     debugger.breakpoints_changed()
     while recording.end is not End.CUT and not session.is_decided:
-        if _move(debugger, Unit.END).reason is not StopReason.EXCEPTION:
+        if _move(debugger, Unit.END).filter is None:
             break
     expected = VERDICTS[recording.verdict]
     if recording.end is not End.CUT and not debugger.verdicts[name] == session.verdict == expected:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -103,3 +104,41 @@ def test_variables_are_set_and_saved(client: Client, tmp_path: Path) -> None:
         other.begin(BUG, session=str(file))
         assert (other.step(), other.ask("choices")["isChanged"]) == (41, True)
         assert other.ask("evaluate", expression="Arm.way")["result"] == "5"
+
+
+@pytest.mark.parametrize(
+    ("expression", "value", "reason"),
+    [
+        ("Arm.way", "300", "`way` must be from 0 to 255, not 300"),
+        ("Arm.way", "'far'", "`way` must be a number, not 'far'"),
+        ("Arm.way", "nothing + 1", "there is no variable `nothing` here"),
+        ("Arm.wya", "1", "{holding: false, way: 0, state: 'still'} has no member `wya`; did you mean `way`?"),
+        ("time", "1", "`time` cannot be set; only variables and blackboard entries can be set"),
+    ],
+)
+def test_expressions_that_cannot_be_set(client: Client, expression: str, value: str, reason: str) -> None:
+    client.begin(BUG)
+    response = client.response(client.send("setExpression", expression=expression, value=value))
+    assert (response["success"], response["message"]) == (False, reason)
+    # VS Code shows nothing for this request by itself.
+    assert response["body"]["error"]["showUser"]
+
+
+def test_entries_of_the_blackboard_have_the_types_of_their_ports(client: Client, tmp_path: Path) -> None:
+    robot = tmp_path / "robot"
+    shutil.copytree(ROBOT, robot)
+    changes = (
+        ("plugins/pick_up.ascxml", "    <state", '    <bt_declare_port_in key="force" type="int32" />\n    <state'),
+        (
+            "tree_with_bug.xml",
+            "<PickUp />",
+            '<SetBlackboard value="3" output_key="{force}" /><PickUp force="{force}" />',
+        ),
+    )
+    for name, old, new in changes:
+        file = robot / name
+        file.write_text(file.read_text(encoding="utf-8").replace(old, new, 1), encoding="utf-8")
+    client.begin(robot / "main_with_bug.xml")
+    assert client.scope(client.stack(1)[0]["id"], "Blackboard")["force"]["type"] == "int32"
+    refusal = client.refusal("setExpression", expression="force", value="3000000000")
+    assert refusal == "`force` must be from -2147483648 to 2147483647, not 3000000000"

@@ -67,13 +67,22 @@ def test_the_dropped_block_and_the_other_choice(client: Client) -> None:
     before = client.step()
     assert client.top(stopped["threadId"]) == ("arm.ascxml", line)
     violated = client.move()
-    assert violated["reason"] == "exception"
-    assert violated["text"] == "violated: never_placed_empty"
-    shown = client.ask("exceptionInfo")
-    assert shown["exceptionId"] == "the property never_placed_empty is violated"
-    sentence, message = shown["description"].splitlines()
+    # The stop says which sentence is violated, by which message, at the line that has sent it.
+    assert (violated["reason"], violated["description"]) == ("violated", "Violated: never_placed_empty")
+    what, sentence, message = violated["text"].splitlines()
+    assert what == "the property never_placed_empty is violated"
     assert sentence == "The gripper is not opened at the goal without a block in it."
     assert re.fullmatch(r"a message on the topic `/block/placed`: \{data: false\}, sent by Arm in step \d+", message)
+    shown = client.ask("exceptionInfo")
+    assert (shown["exceptionId"], shown["description"]) == (what, f"{sentence}\n{message}")
+    sent = _line(ARM, '<field name="data" expr="holding &amp;&amp; way == 6" />')
+    frames = client.stack(violated["threadId"])
+    assert [frame["name"] for frame in frames] == ["Arm: <field>, executed last", "Arm: still"]
+    assert frames[0]["line"] == sent
+    output = client.event("output")
+    while not output["output"].startswith(what):
+        output = client.event("output")
+    assert (output["output"].split("\n    "), output["line"]) == ([what, sentence, f"{message}\n"], sent)
     back = client.move("reverseContinue")
     assert client.step() == before
     assert back["reason"] == "breakpoint"
@@ -243,21 +252,31 @@ def test_filters_of_exceptions(client: Client) -> None:
     client.ask("setExceptionBreakpoints", filters=[], filterOptions=[{"filterId": "time", "condition": "time >= 7"}])
     assert client.move()["text"] == "time advances to 7 s"
     client.ask("setExceptionBreakpoints", filters=["satisfied"])
-    assert client.move()["text"] == "satisfied: block_placed"
+    assert client.move()["text"].splitlines()[0] == "the property block_placed is satisfied"
 
 
-def test_a_failing_node_and_the_line_of_a_property(client: Client) -> None:
-    client.launch(ROBOT / "main.xml", property="block_dropped", against=1)
+def test_a_failing_node(client: Client) -> None:
+    client.launch(ROBOT / "main.xml", property="block_dropped", inFavor=1)
     client.ask("setExceptionBreakpoints", filters=["failure"])
+    client.ask("configurationDone")
+    stopped = client.event("stopped")
+    assert (stopped["reason"], stopped["text"]) == ("failure", "HoldsBlock fails")
+    assert client.stack(1)[0]["name"].startswith("HoldsBlock")
+    client.move("stepBack")
+    assert "executed last" not in client.stack(1)[0]["name"]
+
+
+def test_the_line_of_a_property(client: Client) -> None:
+    client.launch(ROBOT / "main.xml", property="block_dropped", against=1)
+    client.ask("setExceptionBreakpoints", filters=[])
     properties = ROBOT / "properties.jani"
     assert _break(client, properties, _line(properties, '"block_dropped"'))["verified"]
     client.ask("configurationDone")
     stopped = client.event("stopped")
-    assert stopped["reason"] in ("exception", "breakpoint")
-    while stopped["reason"] == "exception":
-        assert "fails" in stopped["text"]
-        stopped = client.move()
-    assert stopped["reason"] == "breakpoint"
+    assert (stopped["reason"], stopped["description"]) == ("breakpoint", "Violated: block_dropped")
+    # The run has ended without the message: no line is the cause.
+    assert stopped["text"].splitlines()[-1] == "the run has ended: tree finished"
+    assert "executed last" not in client.stack(stopped["threadId"])[0]["name"]
     assert client.ask("choices")["verdicts"]["block_dropped"] == "failed"
 
 

@@ -117,7 +117,7 @@ def test_breakpoints_in_a_subtree_and_statuses_in_the_picture(client: Client) ->
 
 
 @pytest.mark.parametrize(
-    ("chance", "name", "reason"), [(1, "", "end of the run"), (0, "", "exception"), (0, "fails", "end of the run")]
+    ("chance", "name", "reason"), [(1, "", "end of the run"), (0, "", "violated"), (0, "fails", "end of the run")]
 )
 def test_a_run_stops_as_violated_only_if_its_own_property_is(
     client: Client, chance: int, name: str, reason: str
@@ -135,7 +135,7 @@ def test_the_attributes_of_launch_declare_the_mocks(client: Client, tree: Path) 
     client.ask("setExceptionBreakpoints", filters=["satisfied", "violated"])
     client.ask("configurationDone")
     client.event("stopped")
-    assert client.move()["text"] == "satisfied: succeeds"
+    assert client.move()["description"] == "Satisfied: succeeds"
     steps, time = client.step(), client.ask("choices")["time"]
     # The first tick is at 0.4 s. Drive ends 2 s later, and the action without a duration in the same tick.
     assert time == pytest.approx(2.4)
@@ -148,7 +148,7 @@ def test_the_attributes_of_launch_declare_the_mocks(client: Client, tree: Path) 
     assert "slow.mocks has changed since it was read" in _outputs(client)
     client.ask("restart")
     client.event("stopped")
-    assert client.move()["text"] == "violated: succeeds"
+    assert client.move()["description"] == "Violated: succeeds"
     assert client.ask("choices")["verdicts"] == {"succeeds": "failed"}
 
 

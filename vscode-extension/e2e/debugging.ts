@@ -101,7 +101,7 @@ export function debugging(stage: Stage): void {
                 await choices.getByText("chosen by the user").first().waitFor();
                 await page.keyboard.press("F5");
                 await choices.getByText(`The property ${PROPERTY} holds in this run.`).waitFor();
-                await page.locator(".debug-call-stack").getByText("Paused on exception").first().waitFor();
+                await page.locator(".debug-call-stack").getByText("Violated: block_dropped").first().waitFor();
                 await choices.locator(".monaco-list-row").first().waitFor({ state: "detached" });
                 await window.screenshot("debugging-choice");
                 await stop(window);
@@ -195,6 +195,17 @@ export function debugging(stage: Stage): void {
             await window.running();
             await startRun(window);
             const end = await stepAfter(window, "does not hold in this run");
+            // The stop shows the sentence and the values at the line that has sent the message.
+            await window.page.locator(".debug-call-stack").getByText(`Violated: ${PROPERTY}`).first().waitFor();
+            await window.page.locator('.tab.active[data-resource-name="arm.ascxml"]').waitFor();
+            const lenses = window.page.locator(".codelens-decoration");
+            const sentence = `${PROPERTY} is violated: The gripper is not opened at the goal without a block in it.`;
+            await lenses.filter({ hasText: sentence }).first().waitFor();
+            await lenses.filter({ hasText: "/block/placed: {data: false}, sent by Arm" }).first().waitFor();
+            await window
+                .statusItem(window.positionOf("arm.ascxml", '<field name="data" expr="holding &amp;'))
+                .waitFor();
+            await window.screenshot("violated");
             await window.run("AS2FM: Open Stage");
             const page = await window.picture(".pane-ros .node");
             const lookOf = (pane: string, label: string) =>
@@ -244,6 +255,9 @@ export function debugging(stage: Stage): void {
             // A state that is selected in a picture marks its lane; its transitions are reached with the keyboard.
             await page.locator('.pane-system .node[data-label="still"]').first().click();
             await page.locator(".pane-timeline .names .lit", { hasText: "Arm" }).waitFor();
+            // The click also shows the state in the text, which gets the focus. Before that, a key could reach the text.
+            await window.statusItem(window.positionOf("arm.ascxml", '<state id="still">')).waitFor();
+            await window.focusedEditor.waitFor();
             await page.locator(".pane-system > .pane-content > .middle svg").first().press("t");
             await page.locator(".pane-system [data-edges].selected").first().waitFor({ state: "attached" });
             await window.screenshot("stage-selected");

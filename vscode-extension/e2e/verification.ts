@@ -70,6 +70,15 @@ export function verification(stage: Stage): void {
             await machine.locator('.node[data-cover="all"]').first().waitFor();
             await window.becomes(() => machine.locator(".cover-badge", { hasText: "never" }).count(), 2);
             await window.screenshot(`coverage-machine-${look}`);
+            // A picture that is drawn again keeps what is selected.
+            const chosen = machine.locator("[data-edges].selected").first();
+            await window.repeat(async () => {
+                await machine.locator(".middle svg").first().press("ArrowDown");
+                await machine.locator(".middle svg").first().press("t");
+            }, chosen);
+            await machine.getByRole("button", { name: "Coverage" }).press("Enter");
+            await machine.locator(".cover-badge").first().waitFor({ state: "detached" });
+            await chosen.waitFor({ state: "attached" });
         });
     }
 

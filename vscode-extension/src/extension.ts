@@ -16,6 +16,7 @@ import { onInterpreterChange } from "./editor/pythonExtensions";
 import { ResultsView } from "./editor/results";
 import { LanguageServer } from "./editor/server";
 import { Stage } from "./editor/stage";
+import { StopReasons } from "./editor/stopReasons";
 import { StatusItem } from "./editor/statusItem";
 import { done, watchErrors } from "./editor/steps";
 import { Tasks } from "./editor/tasks";
@@ -64,6 +65,7 @@ export function activate(context: vscode.ExtensionContext): void {
         new ResultsView(tests),
         sessions,
         new ChoicesView(sessions, log),
+        new StopReasons(sessions, log),
         new TimelineView(context, sessions),
         new PictureActions(server, pictures),
         new PictureActivity(sessions, pictures),

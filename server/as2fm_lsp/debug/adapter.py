@@ -34,6 +34,10 @@ if TYPE_CHECKING:
 BESIDE_REQUESTS = ("timeline", "exportTimeline", "pictures", "moments")
 """The requests of `as2fm_lsp.debug.timeline`, which is imported on their first use."""
 
+SHOWN_ERRORS = ("restart", "setExpression")
+"""The requests whose errors a client shows to the user in a message. VS Code shows those of `setVariable` at the value.
+For a failed `launch`, it would show a modal dialog that leads to launch.json: its extension shows the error instead."""
+
 
 class Adapter:
     """Serves one client.
@@ -110,9 +114,7 @@ class Adapter:
             body = handler(Arguments(message.get("arguments")))
         except (RequestError, WatchError) as error:
             text = str(error)
-            # For a failed launch, VS Code would show a modal dialog that leads to launch.json. Its extension shows the
-            # message, which other clients show in any case.
-            details = {"id": 1, "format": _escaped(text), "showUser": command == "restart"}
+            details = {"id": 1, "format": _escaped(text), "showUser": command in SHOWN_ERRORS}
             self._connection.send({**response, "success": False, "message": text, "body": {"error": details}})
             return
         self._connection.send({**response, "success": True, **({} if body is None else {"body": body})})

@@ -99,10 +99,13 @@ class ByHandRequests:
     def _set(self, name: str, entry: ScopeEntry | None, arguments: Arguments) -> Body:
         debugger = self._session.stopped
         text = arguments.text("value", None)
+        frame = self._session.frame(arguments) if arguments.has("frameId") else None
+        names = debugger.values.names(frame)
+        if entry is None:
+            evaluate(parsed(name), names)  # raises an error if there is no such name
         if entry is None or entry.variable is None:
             raise RequestError(f"`{name}` cannot be set; only variables and blackboard entries can be set")
-        frame = self._session.frame(arguments) if arguments.has("frameId") else None
-        value = evaluate(parsed(text), debugger.values.names(frame))
+        value = evaluate(parsed(text), names)
         self._intervene(setting(debugger.session, debugger.sources, entry.variable, value))
         return {"value": shown(value), "type": entry.type or type_of(value)}
 

@@ -138,9 +138,14 @@ class DebugSession:
             self.log(f"{path} has changed since it was read; restart to debug the new version")
         body: dict[str, Any] = {"reason": stop.reason.value, "threadId": stop.thread, "allThreadsStopped": True}
         if stop.text:
-            body["text"] = stop.text
-            if stop.reason is not StopReason.EXCEPTION:
+            what, details = self.stopped.explanation(stop)
+            body["text"] = "\n".join((what, *details))
+            if stop.filter is not None:
+                body["description"] = stop.text[0].upper() + stop.text[1:]
+            elif stop.reason is not StopReason.EXCEPTION:
                 body["description"] = f"Paused: {stop.text}"
+            if details:
+                self.log("\n    ".join((what, *details)), None if stop.cause is None else stop.cause.origin)
         if stop.breakpoints:
             body["hitBreakpointIds"] = list(stop.breakpoints)
         self.connection.event("stopped", body)

@@ -43,7 +43,7 @@ class StateRequests:
         thread = arguments.number("threadId")
         if all(known.number != thread for known in debugger.threads):
             raise RequestError(f"there is no thread {thread}; `threads` lists them")
-        frames = debugger.stack(thread)
+        frames = debugger.stack(thread, self._session.stop)
         first, levels = arguments.natural("startFrame", 0), arguments.natural("levels", 0)
         chosen = frames[first : first + levels] if levels else frames[first:]
         return {"stackFrames": [self._stack_frame(frame) for frame in chosen], "totalFrames": len(frames)}
@@ -93,10 +93,10 @@ class StateRequests:
 
     def _exception_info(self, arguments: Arguments) -> Body:
         stop = self._session.stop
-        if stop is None or stop.reason is not StopReason.EXCEPTION:
+        if stop is None or (stop.filter is None and stop.reason is not StopReason.EXCEPTION):
             raise RequestError("the run has not stopped at an exception")
         happened, details = self._session.stopped.explanation(stop)
-        return {"exceptionId": happened, "description": details, "breakMode": "always"}
+        return {"exceptionId": happened, "description": "\n".join(details), "breakMode": "always"}
 
     def _loaded_sources(self, arguments: Arguments) -> Body:
         debugger = self._session.debugger

@@ -242,6 +242,10 @@ class Matcher:
         for name in self._places.properties.get(line, ()):
             self._properties.setdefault(name, []).append(breakpoint_)
 
+    def is_on_property(self, breakpoint_: Breakpoint) -> bool:
+        """Whether a breakpoint is set on a line of a property."""
+        return any(breakpoint_ is other for of_property in self._properties.values() for other in of_property)
+
     def before(self, step: TraceStep) -> list[tuple[Breakpoint, int]]:
         """The breakpoints that stop before a step, each with the instance that reaches it."""
         hits: list[tuple[Breakpoint, int]] = []

@@ -20,7 +20,7 @@ from roaml.debugging.scopes import Values
 from roaml.debugging.sources import Sources
 from roaml.debugging.values import shown
 from roaml.jani.node import Origin
-from roaml.record import Record
+from roaml.record import Record, replace
 from roaml.scxml.names import TREE_ROOT_PREFIX, TreeEventKind, received_by, sent_by, tree_event_name
 from roaml.simulation.choices import Choice, Outcome
 from roaml.simulation.intervention import Intervention
@@ -59,13 +59,32 @@ class StopReason(enum.Enum):
     DATA_BREAKPOINT = "data breakpoint"
     EXCEPTION = "exception"
     GOTO = "goto"
+    VIOLATED = "violated"
+    SATISFIED = "satisfied"
+    FAILURE = "failure"
     CHANCE = "chance"
     TIME = "time"
     END = "end of the run"
 
 
-# A client shows the other filters as exceptions. These are no mistakes of the model.
-_REASONS = {ExceptionFilter.CHANCE: StopReason.CHANCE, ExceptionFilter.TIME: StopReason.TIME}
+# A client would show `exception` as an error of the program. These are events of the model.
+_REASONS = {
+    ExceptionFilter.VIOLATED: StopReason.VIOLATED,
+    ExceptionFilter.SATISFIED: StopReason.SATISFIED,
+    ExceptionFilter.FAILURE: StopReason.FAILURE,
+    ExceptionFilter.CHANCE: StopReason.CHANCE,
+    ExceptionFilter.TIME: StopReason.TIME,
+}
+_DECIDED = {ExceptionFilter.VIOLATED: TraceVerdict.FAILED, ExceptionFilter.SATISFIED: TraceVerdict.PASSED}
+"""The verdict at which a filter for properties stops the run."""
+
+
+class Cause(Record, frozen=True):
+    """What has been executed immediately before a stop, and is the reason for it: the statement or node at `origin`, by
+    an instance."""
+
+    instance: int
+    origin: Origin
 
 
 class Stop(Record, frozen=True):
@@ -75,15 +94,17 @@ class Stop(Record, frozen=True):
         thread: the number of the thread that takes the next step, or that has reached the breakpoint.
         text: a description of what has happened, if the reason alone is not enough.
         breakpoints: the numbers of the breakpoints that were reached.
-        filter: the name of the exception filter that stopped the run, or `fault` for an undefined operation; empty
-            for all other reasons.
+        filter: the exception filter that stopped the run, `VIOLATED` also for a breakpoint on a property; `None` for
+            all other reasons.
+        cause: the place of the last step because of which the run has stopped; `None` if there is none.
     """
 
     reason: StopReason
     thread: int
     text: str = ""
     breakpoints: tuple[int, ...] = ()
-    filter: str = ""
+    filter: ExceptionFilter | None = None
+    cause: Cause | None = None
 
 
 class _Movement(Record):
@@ -184,9 +205,13 @@ class Debugger:
             self._stacks = Stacks(self.session, self.sources, self.state, upcoming)
         return self._stacks
 
-    def stack(self, thread: int) -> list[Frame]:
-        """The frames of a thread; empty if there is no such thread."""
-        return next((self.stacks.stack(known) for known in self.threads if known.number == thread), [])
+    def stack(self, thread: int, stop: Stop | None = None) -> list[Frame]:
+        """The frames of a thread; empty if there is no such thread. If `stop` has a cause in the thread, the innermost
+        frame is the cause."""
+        frames = next((self.stacks.stack(known) for known in self.threads if known.number == thread), [])
+        if stop is None or stop.cause is None or stop.thread != thread:
+            return frames
+        return [self.stacks.executed(thread, stop.cause.instance, stop.cause.origin), *frames]
 
     def scope(self, instance: int) -> Scope:
         """The values of the names that expressions in an instance can use."""
@@ -256,7 +281,7 @@ class Debugger:
         except FaultError as fault:
             self._looked_at, self._upcoming, self.fault = self.session.position, None, fault
             self._state = self._values = self._stacks = None
-            return self._stop(StopReason.EXCEPTION, fault.message, filter_="fault")
+            return self._stop(StopReason.EXCEPTION, fault.message)
 
     def _nearer(self, position: int) -> Stop | None:
         if self.session.position < position and self.session.step() is not None:
@@ -406,54 +431,72 @@ class Debugger:
 
     def _stop_at(self, reached: list[tuple[Breakpoint, int]]) -> Stop:
         breakpoints = self.breakpoints
-        instance = reached[0][1]
+        first, instance = reached[0]
         numbers = tuple(breakpoint_.number for breakpoint_, _ in reached if breakpoint_.number)
-        first = reached[0][0]
         filter_ = self._filter_of(first)
-        if filter_ is not None:
-            reason = _REASONS.get(filter_, StopReason.EXCEPTION)
-            return self._stop(reason, self._text(filter_), numbers, filter_.value, instance)
-        reason = StopReason.BREAKPOINT
+        reason = StopReason.BREAKPOINT if filter_ is None else _REASONS[filter_]
         if any(breakpoint_ is first for _, breakpoint_ in breakpoints.names):
             reason = StopReason.FUNCTION_BREAKPOINT
         elif any(breakpoint_ is first for _, breakpoint_ in breakpoints.variables):
             reason = StopReason.DATA_BREAKPOINT
-        return self._stop(reason, first.name, numbers, "", instance)
+        elif self._match().is_on_property(first):
+            filter_ = ExceptionFilter.VIOLATED
+        text = first.name if filter_ is None else self._text(filter_)
+        cause = None if filter_ is None else self._cause(filter_)
+        stop = self._stop(reason, text, numbers, instance if cause is None else cause.instance)
+        return replace(stop, filter=filter_, cause=cause)
 
     def _filter_of(self, breakpoint_: Breakpoint) -> ExceptionFilter | None:
         """The filter to which a breakpoint belongs; `None` if it belongs to a line, a name or a variable."""
         filters = self.breakpoints.filters.items()
         return next((filter_ for filter_, of_filter in filters if of_filter is breakpoint_), None)
 
-    def explanation(self, stop: Stop) -> tuple[str, str]:
+    def _decided(self, filter_: ExceptionFilter) -> list[Decided]:
+        """The properties that are decided in the current state with the verdict of a filter."""
+        decided = self._verdicts.at(self.session.position)
+        return [property_ for property_ in decided if property_.verdict is _DECIDED.get(filter_)]
+
+    def _cause(self, filter_: ExceptionFilter) -> Cause | None:
+        """What decided the properties, or failed, in the last step. `None` if no variable that the properties read has
+        changed, for example because the time has passed in which it should change."""
+        step = self.session.steps[self.session.position - 1]
+        parts = self.session.actors(step)
+        places = [(part.instance, part.edge.origin) for part in parts]
+        if filter_ in _DECIDED:
+            read = {name for property_ in self._decided(filter_) for name in property_.variables}
+            if all(change.variable.name not in read for change in step.changes):
+                return None
+            assignments = [(part.instance, a) for part in parts for a in part.destination.assignments]
+            places = [(instance, a.origin) for instance, a in assignments if a.variable in read] + places
+        elif filter_ is not ExceptionFilter.FAILURE:
+            return None
+        written = ((instance, origin) for instance, origin in places if self.sources.place(origin) is not None)
+        return next((Cause(instance, origin) for instance, origin in written if origin is not None), None)
+
+    def explanation(self, stop: Stop) -> tuple[str, tuple[str, ...]]:
         """Why the run has stopped, for readers.
 
         Returns:
             What has happened, as a clause, and further lines: what the decided properties require, and the last
-            messages that they read.
+            messages and the variables that they read.
         """
-        if stop.filter not in (ExceptionFilter.VIOLATED.value, ExceptionFilter.SATISFIED.value):
-            return stop.text, ""
-        verdict = TraceVerdict.FAILED if stop.filter == ExceptionFilter.VIOLATED.value else TraceVerdict.PASSED
-        decided = [p for p in self._verdicts.at(self.session.position) if p.verdict is verdict]
+        if stop.filter is None or not (decided := self._decided(stop.filter)):
+            return stop.text, ()
         comments = self.sources.comments
         lines = [comments[property_.name] for property_ in decided if property_.name in comments]
         variables = {name for property_ in decided for name in property_.variables}
-        entries = self.values.messages_read(variables)
+        entries = self.values.read_by(variables)
         lines += [f"{entry.name}: {shown(entry.value)}, {entry.type}" for entry in entries]
+        if stop.cause is None and self.session.end is not None:
+            lines.append(f"the run has ended: {self.session.end.text}")
         names = ", ".join(property_.name for property_ in decided)
         subject = f"the property {names} is" if len(decided) == 1 else f"the properties {names} are"
-        return f"{subject} {stop.filter}", "\n".join(lines)
+        return f"{subject} {stop.filter.value}", tuple(lines)
 
     def _text(self, filter_: ExceptionFilter) -> str:
-        decided = self._verdicts.at(self.session.position)
         match filter_:
-            case ExceptionFilter.VIOLATED:
-                names = [property_.name for property_ in decided if property_.verdict is TraceVerdict.FAILED]
-                return f"violated: {', '.join(names)}"
-            case ExceptionFilter.SATISFIED:
-                names = [property_.name for property_ in decided if property_.verdict is TraceVerdict.PASSED]
-                return f"satisfied: {', '.join(names)}"
+            case ExceptionFilter.VIOLATED | ExceptionFilter.SATISFIED:
+                return f"{filter_.value}: {', '.join(property_.name for property_ in self._decided(filter_))}"
             case ExceptionFilter.FAILURE:
                 step = self.session.steps[self.session.position - 1]
                 number = sent_by(step.action or "").split("_")[1]
@@ -469,11 +512,10 @@ class Debugger:
         reason: StopReason,
         text: str = "",
         breakpoints: tuple[int, ...] = (),
-        filter_: str = "",
         instance: int = -1,
     ) -> Stop:
         self._thread = self._thread_at(instance)
-        return Stop(reason, self._thread, text, breakpoints, filter_)
+        return Stop(reason, self._thread, text, breakpoints)
 
     def entry(self) -> Stop:
         """The stop at the start of the run: before the first step that somebody has written. A saved run stays at its

@@ -121,6 +121,16 @@ class Stacks:
             return list(self._machine_frames(thread.number, self._machines[automaton], thread.instance, 0))
         return list(self._tree_frames(thread))
 
+    def executed(self, thread: int, instance: int, origin: Origin) -> Frame:
+        """A frame for a statement or a node that an instance has executed in the last step."""
+        automaton = self._session.automata_of_model[instance].name
+        number = node_of(automaton)
+        node = number if number in self._sources.nodes else 0
+        name = self._session.names[automaton]
+        tag = self._sources.tag(origin)
+        text = f"{name}: {tag}" if tag else name
+        return Frame(thread, f"{text}, executed last", origin, instance, node, FrameRole.STATEMENT)
+
     def _machine_frames(self, thread: int, machine: MachineState, instance: int, node: int) -> Iterator[Frame]:
         automaton = self._session.automata_of_model[instance]
         location = self._locations[instance]

@@ -153,8 +153,10 @@ class Values:
 
     def _blackboard(self) -> Iterator[ScopeEntry]:
         for instance in self._boards():
+            types = self._sources.variable_types(self._session.automata_of_model[instance])
             for name, value in self._board_values(instance).items():
-                yield ScopeEntry(name, value, type_of(value), name, WatchedVariable(instance, name))
+                type_ = str(types.get(name, type_of(value)))
+                yield ScopeEntry(name, value, type_, name, WatchedVariable(instance, name))
 
     def _nodes(self) -> Iterator[ScopeEntry]:
         for node in self._state.nodes:
@@ -166,13 +168,17 @@ class Values:
             waiting = ", not received yet" if event.is_waiting else ""
             yield ScopeEntry(event.text, parameters, f"sent by {event.sender} in step {event.step}{waiting}")
 
-    def messages_read(self, variables: Collection[str]) -> Iterator[ScopeEntry]:
-        """The last messages whose fields or presence are among variables of the model; the last event that was sent if
-        there are none, because an observer of events decides a property when it sees one."""
+    def read_by(self, variables: Collection[str]) -> Iterator[ScopeEntry]:
+        """What a property has read, given the variables of the model that it reads: the last messages whose fields or
+        presence are among them, and the other variables that the user knows. For an observer of events, which decides a
+        property when it sees an event, the last event that was sent."""
         read = {name.partition(f"{SEPARATOR}{FIELD_PREFIX}")[0].removesuffix(f".{FLAG}") for name in variables}
         sent = [event for event in self._state.events if event.event in read]
-        for event in sent or sorted(self._state.events, key=lambda event: event.step)[-1:]:
+        if not sent and any(observer_phrase(name, self._clients) for name in variables):
+            sent = sorted(self._state.events, key=lambda event: event.step)[-1:]
+        for event in sent:
             yield ScopeEntry(event.text, self._parameters(event.event), f"sent by {event.sender} in step {event.step}")
+        yield from (entry for entry in self._shared() if entry.name in variables)
 
     def _shared(self) -> Iterator[ScopeEntry]:
         stored = self._stored.get(-1, {})

@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from roaml.debugging.tree_nodes import SourceNode, nodes_of_system, nodes_of_tree
-from roaml.expr.types import Type, leaves
+from roaml.expr.types import BASE_TYPES, Type, leaves
 from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
 from roaml.model.ros import InterfaceType
@@ -21,6 +21,7 @@ from roaml.scxml.names import (
     NODE_AUTOMATON,
     InterfaceEvent,
     InterfaceEventKind,
+    is_blackboard,
     read_interface_event,
     sanitise,
 )
@@ -97,7 +98,11 @@ class Sources(Record, frozen=True, dict=True):
         }
 
     def variable_types(self, automaton: Automaton) -> Mapping[str, Type]:
-        """The types of the variables of a machine; empty if the machine has no file."""
+        """The types of the variables of a machine, or of the entries of a blackboard; empty if the machine has no
+        file."""
+        if is_blackboard(automaton.name):
+            system = None if self.analysis is None else self.analysis.system(self.target.path)
+            return {} if system is None else {name: BASE_TYPES[type_] for name, type_ in system.variables.items()}
         path = "" if automaton.origin is None else automaton.origin.path
         if self.analysis is None or self.analysis.machine(path) is None:
             return {}

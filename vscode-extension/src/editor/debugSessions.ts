@@ -10,7 +10,18 @@ interface Message {
     readonly command?: string;
     readonly success?: boolean;
     readonly message?: string;
+    readonly body?: Partial<Stopped>;
 }
+
+/** Where and why a run has stopped. `text` is empty if the reason is enough. */
+export interface Stopped {
+    readonly reason: string;
+    readonly text: string;
+    readonly threadId: number;
+}
+
+/** The requests after which a run moves until it stops. */
+const MOVING = new Set(["continue", "reverseContinue", "next", "stepIn", "stepOut", "stepBack", "goToStep", "restart"]);
 
 /** Tell why a run could not start. The adapter keeps VS Code from showing a dialog that leads to launch.json. */
 function tellFailure(reason: string): void {
@@ -22,12 +33,16 @@ function tellFailure(reason: string): void {
 
 export class DebugSessions implements vscode.Disposable {
     private readonly stopped = new vscode.EventEmitter<vscode.DebugSession>();
+    private readonly moving = new vscode.EventEmitter<vscode.DebugSession>();
     private readonly ended = new vscode.EventEmitter<vscode.DebugSession>();
     private readonly registration: vscode.Disposable;
     /** The session that has stopped last. */
     current: vscode.DebugSession | undefined;
+    /** Its last stop. */
+    stop: Stopped | undefined;
 
     readonly onStopped = this.stopped.event;
+    readonly onMoving = this.moving.event;
     readonly onEnded = this.ended.event;
 
     constructor() {
@@ -37,7 +52,11 @@ export class DebugSessions implements vscode.Disposable {
                     if (message.command === "launch" && message.success === false) tellFailure(message.message ?? "");
                     if (message.event !== "stopped") return;
                     this.current = session;
+                    this.stop = { reason: "", text: "", threadId: 0, ...message.body };
                     this.stopped.fire(session);
+                },
+                onWillReceiveMessage: ({ command }: Message) => {
+                    if (command !== undefined && MOVING.has(command)) this.moving.fire(session);
                 },
                 onExit: () => {
                     if (this.current === session) this.current = undefined;
@@ -60,6 +79,6 @@ export class DebugSessions implements vscode.Disposable {
     }
 
     dispose(): void {
-        for (const part of [this.registration, this.stopped, this.ended]) part.dispose();
+        for (const part of [this.registration, this.stopped, this.moving, this.ended]) part.dispose();
     }
 }

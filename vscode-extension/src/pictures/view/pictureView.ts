@@ -249,6 +249,7 @@ export class PictureView {
         for (const group of this.parts(this.here)) group.classList.add("here");
         this.highlight(this.highlighted);
         this.scene?.nodes.get(this.selected)?.classList.add("selected");
+        for (const group of this.scene?.edges.get(this.selectedEdge) ?? []) group.classList.add("selected");
     }
 
     private clear(): void {
