@@ -22,6 +22,18 @@ def duration_text(nanoseconds: int) -> str:
     return f"{nanoseconds // NANOSECONDS[unit]} {unit}"
 
 
+def moment(seconds: float) -> str:
+    """A time of a run, to the ms: `2.000 s`. Every report and view states times of runs with this function, or with
+    `short_moment`, so that equal times agree. Halves are rounded up, as `toFixed` of JavaScript does in the editor."""
+    is_half = (seconds * 16).is_integer()  # of all halves of a ms, only multiples of 1/16 s are floats
+    return f"{seconds + 1e-6 if is_half else seconds:.3f} s"
+
+
+def short_moment(seconds: float) -> str:
+    """The same time as `moment`, without zeros at its end: `2 s`."""
+    return f"{moment(seconds)[:-2].rstrip('0').rstrip('.')} s"
+
+
 class ReactionTime(Record, frozen=True):
     """An assumption about the time that a machine waits before it takes a possible step
     (docs/spec/semantics.md#reaction-time).

@@ -4,6 +4,7 @@ traces, and of differences between two mocks."""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,7 @@ import pytest
 from as2fm_lsp.cli.main import run
 from roaml import api
 from roaml.api.trees import LoadedTree, load_tree
-from roaml.durations import ANY_TIME
+from roaml.durations import ANY_TIME, moment, short_moment
 from roaml.experiments.exact_trees import measure_exactly
 from roaml.mocks.mock import read_mock
 from roaml.mocks.network import MockOptions
@@ -142,16 +143,29 @@ def test_nodes_react_at_once_unless_a_setting_says_otherwise() -> None:
     assert other.model.metadata.reaction_time.is_any
 
 
-def test_all_reports_show_the_same_times(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """The report, the explanation and the simulation of an event at the third tick."""
+@pytest.mark.parametrize(("rate", "end"), [("10", "0.300 s"), ("15", "0.267 s")])
+def test_all_reports_show_the_same_times(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], rate: str, end: str
+) -> None:
+    """The report, the explanation and the simulation of an event at the third or fourth tick."""
     path = tree(tmp_path, "<Sequence><Drive/></Sequence>")
-    mocks = ("--mock", "Drive: 0 in 200 ms")
-    assert run(["verify", path, *mocks]) == 0
+    options = ("--mock", "Drive: 0 in 200 ms", "--tick-rate", rate)
+    assert run(["verify", path, *options]) == 0
     report = capsys.readouterr().out
-    assert "the tree ends with FAILURE at 0.300 s" in report
-    assert "0.3 s  Drive  FAILURE" in report
-    assert run(["verify", path, *mocks, "--explain"]) == 0
-    assert "0.300 s  Drive" in capsys.readouterr().out
-    assert run(["simulate", path, *mocks]) == 0
+    assert f"the tree ends with FAILURE at {end}" in report
+    assert f"{end}  Drive  FAILURE" in report
+    assert run(["verify", path, *options, "--explain"]) == 0
+    assert f"{end}  Drive" in capsys.readouterr().out
+    assert run(["simulate", path, *options]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert any("0.300 s" in line and "Drive" in line and "FAILURE" in line for line in lines)
+    assert any(end in line and "Drive" in line and "FAILURE" in line for line in lines)
+    assert re.search(r" steps, \d\.\d{1,3} s, ", lines[-1])  # it ends a tick later
+
+
+def test_times_are_those_of_the_editor() -> None:
+    """They are rounded as `toFixed(3)` does in JavaScript."""
+    times = (0.0, 14 / 15, 1 / 16, 0.0005, 1.0005, 2.0, 100.0, 12345.678)
+    texts = ["0.000 s", "0.933 s", "0.063 s", "0.001 s", "1.000 s", "2.000 s", "100.000 s", "12345.678 s"]
+    assert [moment(time) for time in times] == texts
+    short = ["0 s", "0.933 s", "0.063 s", "0.001 s", "1 s", "2 s", "100 s", "12345.678 s"]
+    assert [short_moment(time) for time in times] == short

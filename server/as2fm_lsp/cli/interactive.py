@@ -13,7 +13,7 @@ from typing import TextIO
 from as2fm_lsp.cli.model_arguments import fault_text, line_of
 from as2fm_lsp.cli.output import flush, print_text
 from as2fm_lsp.outputs import OutputFiles
-from roaml.durations import duration
+from roaml.durations import duration, moment
 from roaml.scxml.names import is_blackboard
 from roaml.simulation import Choice, Session
 from roaml.smc.fault import FaultError
@@ -191,7 +191,7 @@ class Terminal:
     def _show_choices(self) -> None:
         session = self._session
         state = session.state()
-        time = "" if state.time is None else f", {state.time:.3f} s"
+        time = "" if state.time is None else f", {moment(state.time)}"
         decided = f", {session.save().property}: {session.verdict}" if session.is_decided else ""
         print_text(f"step {session.position}{time}{decided}\n")
         end = session.end

@@ -29,6 +29,7 @@ from as2fm_lsp.outputs import InputPath, OutputFiles, OutputPath, outputs_of
 from as2fm_lsp.verification.run_files import csv_lines, json_text, timeline_svg
 from roaml import api
 from roaml.disk import MAX_DATA, required
+from roaml.durations import short_moment
 from roaml.figures.themes import THEMES
 from roaml.jani.node import Origin
 from roaml.simulation import RunError, SavedSession, Session
@@ -166,7 +167,7 @@ def _summary(session: Session) -> str:
     time = session.state().time
     parts = [f"seed {saved.seed}, trace {saved.trace}", f"{session.position:,} steps"]
     if time is not None:
-        parts.append(f"{time:g} s")
+        parts.append(short_moment(time))
     end = session.end
     if end is not None:
         parts.append(end.text)

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from roaml.durations import short_moment
 from roaml.jani.node import Origin
 from roaml.smc.end import End
 from roaml.verification.stuck import Stuck, StuckLevel, StuckResult
@@ -67,7 +68,7 @@ def waiting_lines(stuck: Stuck, place_of: PlaceOf) -> list[str]:
 
 
 def _where(stuck: Stuck) -> str:
-    at = "" if stuck.time is None else f" at {stuck.time:g} s"
+    at = "" if stuck.time is None else f" at {short_moment(stuck.time)}"
     return f"trace {stuck.seen.trace} after {stuck.seen.steps:,} steps{at}"
 
 

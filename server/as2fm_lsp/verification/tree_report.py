@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from as2fm_lsp.verification.status_table import status_table
-from roaml.durations import AT_ONCE
+from roaml.durations import AT_ONCE, moment
 from roaml.lower.programs.nodes import EVENT_PROBABILITY
 from roaml.mocks.network import MockedTree
 from roaml.scxml.names import TreeEventKind, sent_by, tree_event_name
@@ -175,7 +175,7 @@ def story_as_text(
     for turn in leaf_turns:
         node = nodes[turn.automaton]
         seconds = bisect.bisect(ticks, turn.number) / float(mocked.options.rate)
-        rows.append((f"{seconds:.1f} s", node.name, turn.status, place_of(node.origin)))
+        rows.append((moment(seconds), node.name, turn.status, place_of(node.origin)))
     widths = [max((len(row[i]) for row in rows), default=0) for i in range(3)]
     lines = [
         f"  {row[0]:>{widths[0]}}  {row[1]:<{widths[1]}}  {row[2]:<{widths[2]}}  {row[3]}".rstrip() for row in rows

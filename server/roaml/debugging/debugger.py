@@ -19,6 +19,7 @@ from roaml.debugging.frames import TREE_THREAD, DebugThread, Frame, FrameRole, S
 from roaml.debugging.scopes import Values
 from roaml.debugging.sources import Sources
 from roaml.debugging.values import shown
+from roaml.durations import short_moment
 from roaml.jani.node import Origin
 from roaml.record import Record, replace
 from roaml.scxml.names import TREE_ROOT_PREFIX, TreeEventKind, received_by, sent_by, tree_event_name
@@ -505,7 +506,7 @@ class Debugger:
             case ExceptionFilter.CHANCE:
                 return "the next step is decided by chance"
             case ExceptionFilter.TIME:
-                return f"time advances to {self.session.time:g} s"
+                return f"time advances to {short_moment(self.session.time or 0.0)}"
 
     def _stop(
         self,

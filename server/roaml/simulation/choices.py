@@ -13,6 +13,7 @@ import math
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import TypeAlias
 
+from roaml.durations import moment
 from roaml.jani.expressions import Boolean, Integer, Name, Real
 from roaml.jani.model import Assignment, Automaton, Destination, Edge
 from roaml.jani.node import Origin
@@ -325,7 +326,7 @@ def _time_after(run: Run, decision: Decision, clock: Sequence[str]) -> float | N
 
 
 def _time_text(time_s: float | None) -> str:
-    return "time passes" if time_s is None else f"time passes to {time_s:.3f} s"
+    return "time passes" if time_s is None else f"time passes to {moment(time_s)}"
 
 
 def _text(

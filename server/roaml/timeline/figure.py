@@ -12,6 +12,7 @@ import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
+from roaml.durations import moment
 from roaml.figures.drawing import Area, Drawing, Group, Item, Outline, Polyline, Shape, TextItem, Tone
 from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.text import ELLIPSIS, SMALL, text_width
@@ -295,7 +296,7 @@ class _Painter:
         return Group("state", tone, items, hint=hint, step=lane.starts[first] if count == 1 else None)
 
     def _when(self, step: int) -> str:
-        return f"step {step:,}" + (f", {self._timeline.times[step]:.3f} s" if self._timeline.times else "")
+        return f"step {step:,}" + (f", {moment(self._timeline.times[step])}" if self._timeline.times else "")
 
     # ------------------------------------------------------------ messages
 

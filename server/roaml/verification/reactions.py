@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from roaml.durations import AT_ONCE
+from roaml.durations import AT_ONCE, short_moment
 from roaml.explicit.independence import can_be_reduced
 from roaml.explicit.space import LimitError, StateLimits, explore
 from roaml.jani.model import Clock
@@ -110,6 +110,6 @@ def _remark(outcome: Outcome, exact: Exact, clock: Clock) -> str:
     if delay is None:
         return ""
     seconds = clock.step / 1e9
-    end = "the end" if delay.until is None else f"{delay.until * seconds:g} s"
+    end = "the end" if delay.until is None else short_moment(delay.until * seconds)
     what = "fails" if verdict == FALSE else "holds"
-    return f"it {what}, for example, if {delay.actor} is delayed from {delay.since * seconds:g} s until {end}"
+    return f"it {what}, for example, if {delay.actor} is delayed from {short_moment(delay.since * seconds)} until {end}"

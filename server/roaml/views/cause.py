@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 
+from roaml.durations import moment
 from roaml.jani.node import Origin
 from roaml.regex import regex
 from roaml.scxml.names import FAILS, SUCCEEDS, TREE_ROOT_PREFIX
@@ -99,7 +100,7 @@ def _ended_root(all_turns: Sequence[Turn]) -> Turn | None:
 
 
 def _at(time: float | None) -> str:
-    return "" if time is None else f" at {time:.3f} s"
+    return "" if time is None else f" at {moment(time)}"
 
 
 def _is_root(turn: Turn) -> bool:

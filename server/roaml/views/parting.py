@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
+from roaml.durations import moment
 from roaml.jani.node import Origin
 from roaml.record import Record, replace
 from roaml.smc.record import SELECTED, VERDICTS
@@ -108,7 +109,7 @@ def parting_text(difference: Parting, other: Story, place_of: PlaceOf) -> str:
 def parting_heading(difference: Parting, other: Story) -> str:
     """The verdict of the second trace, what both traces have in common, and the automaton that then differs."""
     turn, count = difference.here, difference.common
-    at = "" if turn.time is None else f" at {turn.time:.3f} s"
+    at = "" if turn.time is None else f" at {moment(turn.time)}"
     same = f"the first {f'{count:,} turns are' if count > 1 else 'turn is'} the same, then " if count else ""
     return f"{trace_name(other)} {VERDICTS[other.recording.verdict].value}: {same}{turn.who}{at}"
 
@@ -133,7 +134,7 @@ def other_course(difference: Parting, other: Story, place_of: PlaceOf) -> str:
         by = "by choice of the scheduler, "
     elif here.ready is not None or here.until is not None:
         by = f"{scheduling(here)[0]}, "
-    at = "" if here.time is None else f" at {here.time:.3f} s"
+    at = "" if here.time is None else f" at {moment(here.time)}"
     place = "" if here.origin is None else place_of(here.origin)
     name = trace_name(other)
     which = " that" if other.recording.trace == SELECTED else ", which"

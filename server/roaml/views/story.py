@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import NamedTuple
 
+from roaml.durations import moment
 from roaml.jani.node import Origin
 from roaml.regex import regex
 from roaml.scxml.names import read_tree_event
@@ -98,7 +99,7 @@ def turn_line(turn: Turn, place_of: PlaceOf) -> StoryLine:
     """The line of one turn."""
     return StoryLine(
         turn.number,
-        "" if turn.time is None else f"{turn.time:.3f} s",
+        "" if turn.time is None else moment(turn.time),
         turn.who,
         what(turn),
         "" if turn.origin is None else place_of(turn.origin),
@@ -173,7 +174,7 @@ def _mermaid(story: Story, place_of: PlaceOf, first: int) -> Iterator[str]:
     lanes = {turn.instance for turn in shown_turns}
     names: dict[str, str] = {}
     body: list[str] = []
-    moment: float | None = None
+    last_time: float | None = None
 
     def actor(turn: Turn) -> str:
         return names.setdefault(turn.who, f"A{len(names)}")
@@ -183,9 +184,9 @@ def _mermaid(story: Story, place_of: PlaceOf, first: int) -> Iterator[str]:
             body.append(f"Note over {actor(shown_turns[shown.first])}: {_folded_text(shown, shown_turns)}")
             continue
         turn = shown_turns[shown]
-        if turn.time is not None and turn.time != moment:
-            moment = turn.time
-            body.append(f"Note over {actor(turn)}: {moment:.3f} s")
+        if turn.time is not None and turn.time != last_time:
+            last_time = turn.time
+            body.append(f"Note over {actor(turn)}: {moment(turn.time)}")
         place = "" if turn.origin is None else f" ({place_of(turn.origin)})"
         sender = turn.heard.sender if turn.heard else None
         if turn.heard and sender and sender.instance in lanes and not turn.is_answered:
@@ -282,7 +283,7 @@ def _folded_text(shown: Repetition | LeftOut, shown_turns: Sequence[Turn]) -> st
     first, last = shown_turns[shown.first], shown_turns[shown.last]
     if isinstance(shown, LeftOut):
         return f"… {shown.last - shown.first + 1:,} more …"
-    until = "" if last.time is None else f" until {last.time:.3f} s"
+    until = "" if last.time is None else f" until {moment(last.time)}"
     if shown.lines > 1:
         return f"… the previous {shown.lines} lines {shown.times:,} more times{until} …"
     if first.is_ticked and first.status:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from roaml.durations import moment
 from roaml.jani.model import Clause
 from roaml.jani.semantics import EvaluationError, Value, evaluate
 from roaml.scxml.names import CLOCK, MOCK_FAILURES, MOCK_SUCCESSES, TREE_ROOT_PREFIX
@@ -77,9 +78,9 @@ def scheduling(turn: Turn) -> list[str]:
         return []
     phrases = []
     if turn.ready is not None:
-        phrases.append(f"delayed by the scheduler since {turn.ready:.3f} s")
+        phrases.append(f"delayed by the scheduler since {moment(turn.ready)}")
     if turn.until is not None:
-        phrases.append(f"delayed by the scheduler until {turn.until:.3f} s, before its effects are complete")
+        phrases.append(f"delayed by the scheduler until {moment(turn.until)}, before its effects are complete")
     if turn.options:
         phrases.append(f"chosen by the scheduler among {turn.options:,} steps")
     return phrases

@@ -13,6 +13,7 @@ import heapq
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+from roaml.durations import short_moment
 from roaml.jani.model import Edge
 from roaml.jani.node import Origin
 from roaml.record import Record
@@ -292,7 +293,7 @@ class _Chain:
         is_state = any(received_by(edge.action or "") for edge in self.edges(number)) or not self.edges(number)
         where = f" in `{here}`" if is_state and role is Role.MACHINE else ""
         if role is Role.CLOCK and self.time is not None:
-            where = f" at {self.time:g} s"
+            where = f" at {short_moment(self.time)}"
         shown = [self.shown_from(other, link.event or "") for other, _ in link.others]
         others = list(dict.fromkeys(self.who(other) for other, _ in shown))
         them = " and ".join(others)
