@@ -167,10 +167,11 @@ def test_conditions_hit_counts_and_log_points(client: Client) -> None:
     assert client.ask("evaluate", expression="Arm.way")["result"] == "3"
     stopped = client.move()
     assert stopped["hitBreakpointIds"] == [bodies[2]["id"]]
-    outputs = [event["body"]["output"] for event in client.events if event["event"] == "output"]
-    logged = [output for output in outputs if output.startswith("way is")]
+    outputs = [event["body"] for event in client.events if event["event"] == "output"]
+    logged = [body["output"] for body in outputs if body["output"].startswith("way is")]
     assert [output.split(",")[0] for output in logged] == [f"way is {way}" for way in (0, 2, 3, 4, 5)]
     assert "there is no variable `unknown`" in logged[0]
+    assert {body["line"] for body in outputs if body["output"] in logged} == {line}
 
 
 def test_breakpoints_by_name_on_variables_and_on_nodes(client: Client) -> None:

@@ -13,7 +13,15 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import cached_property
 
-from roaml.debugging.breakpoints import Breakpoint, BreakpointPlaces, Breakpoints, ExceptionFilter, Matcher, logged
+from roaml.debugging.breakpoints import (
+    Breakpoint,
+    BreakpointPlaces,
+    Breakpoints,
+    ExceptionFilter,
+    Line,
+    Matcher,
+    logged,
+)
 from roaml.debugging.evaluate import Scope
 from roaml.debugging.frames import TREE_THREAD, DebugThread, Frame, FrameRole, Stacks, node_of, root_of, threads
 from roaml.debugging.scopes import Values
@@ -418,13 +426,22 @@ class Debugger:
             if not breakpoint_.is_met(scope) or not breakpoint_.stops():
                 continue
             if breakpoint_.message:
-                part = next(
-                    (p for p in (self._upcoming.parts if self._upcoming else ()) if p.instance == instance), None
-                )
-                self._log(logged(breakpoint_.message, scope), part.edge.origin if part else None)
+                self._log(logged(breakpoint_.message, scope), self._origin_of(breakpoint_, instance))
             else:
                 reached.append((breakpoint_, instance))
         return reached
+
+    def _origin_of(self, breakpoint_: Breakpoint, instance: int) -> Origin | None:
+        """The place of a breakpoint in the next step: the statement at its line, otherwise where the step begins."""
+        parts = self._upcoming.parts if self._upcoming else ()
+        part = next((part for part in parts if part.instance == instance), None)
+        if part is None:
+            return None
+        assigned = (assignment.origin for assignment in part.destination.assignments)
+        places = self.breakpoints.lines.items()
+        lines = {Line(path, line) for path, of_file in places for line, other in of_file if other is breakpoint_}
+        origins = (part.edge.origin, part.destination.origin, *assigned)
+        return next((origin for origin in origins if self.places.line(origin) in lines), part.edge.origin)
 
     def _end(self) -> Stop:
         end = self.session.end
