@@ -225,8 +225,11 @@ export function debugging(stage: Stage): void {
             const messages = page.locator(
                 '.pane-timeline .event[data-step]:has(title:text("/arm/command: MoveToGoal"))',
             );
-            await messages.first().locator(".pulse").click({ force: true });
-            await page.locator('.pane-ros .node[data-label="/arm/command"][data-look="message"]').waitFor();
+            // The drawing over steps replaces the one over time, perhaps during the click.
+            const message = messages.first().locator(".pulse");
+            const click = () => done(message.click({ force: true }));
+            const lit = page.locator('.pane-ros .node[data-label="/arm/command"][data-look="message"]');
+            await window.repeat(() => window.until(click), lit);
             await page.locator(".pane-ros [data-edges].active").first().waitFor({ state: "attached" });
             await window.becomes(() => lookOf("system", "still"), "next");
             await window.page.locator('.tab.active[data-resource-name="arm.ascxml"]').waitFor();
@@ -379,6 +382,14 @@ async function publish(window: Window, name: string, fields?: string): Promise<v
     await window.press("Enter");
     if (fields === undefined) return;
     await window.answer("The fields of", fields);
+}
+
+/** Whether an action has not failed. */
+function done(action: Promise<unknown>): Promise<boolean> {
+    return action.then(
+        () => true,
+        () => false,
+    );
 }
 
 async function stepOf(timeline: Frame): Promise<number> {
