@@ -207,6 +207,7 @@ from roaml.rules.variables import (
     large_array_size,
     machine_name,
     missing_type,
+    mixed_names,
     overwritten_value,
     self_assignment,
     struct_declaration,

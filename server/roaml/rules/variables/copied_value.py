@@ -19,13 +19,11 @@ from roaml.model.syntax import Expression, Value
 from roaml.model.tree import TreeNode
 from roaml.model.value_types import INTERFACE_KINDS, ValueUse, find_handle
 from roaml.record import replace
-from roaml.regex import regex
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule, TreeContext, replacements
 from roaml.rules.support.forest import trees_of
+from roaml.rules.support.words import difference, with_word
 from roaml.text import Span, TextEdit
-
-_WORD = regex(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 
 
 class _Copy(NamedTuple):
@@ -170,7 +168,7 @@ def in_tree(context: TreeContext) -> Iterator[Finding]:
         for copy, other, meant in _suspicions(group):
             if meant in entries:
                 finding = _finding(copy, other, meant, f"{{{copy.value}}}", f"{{{meant}}}")
-                words = _difference(copy.value, meant)
+                words = difference(copy.value, meant)
                 if words is not None and words[0].isdigit():  # one of several alike, which may be meant twice
                     finding = replace(finding, severity=Severity.INFORMATION)
                 yield finding
@@ -192,7 +190,7 @@ def _exchanged(group: Sequence[_Copy]) -> Iterator[tuple[_Copy, _Copy]]:
     intentionally: the way back leads from the goal to the start."""
     for copy in group:
         for other in group:
-            words = _difference(copy.target, other.target)
+            words = difference(copy.target, other.target)
             if words is None or copy.value != other.target or other.value != copy.target:
                 continue
             if all(len(word) == 1 for word in words) and words[0] < words[1]:
@@ -208,8 +206,8 @@ def _suspicions(group: Sequence[_Copy]) -> Iterator[_Suspicion]:
     values = {copy.value for copy in group}
     for number, copy in enumerate(group):
         for other in group:
-            words = _difference(copy.target, other.target) if copy.value == other.value else None
-            meant = None if words is None else _with_word(copy.value, words[1], words[0])
+            words = difference(copy.target, other.target) if copy.value == other.value else None
+            meant = None if words is None else with_word(copy.value, words[1], words[0])
             if meant is not None and meant not in values and _is_last(group, number, copy.target):
                 yield _Suspicion(copy, other, meant)
                 break
@@ -218,28 +216,6 @@ def _suspicions(group: Sequence[_Copy]) -> Iterator[_Suspicion]:
 def _is_last(group: Sequence[_Copy], number: int, target: str) -> bool:
     """Whether no later value replaces that of a target."""
     return all(later.target != target for later in group[number + 1 :])
-
-
-def _difference(name: str, other: str) -> tuple[str, str] | None:
-    """The only words in which two names differ, in lower case; `None` if they differ in more."""
-    words, others = _words(name), _words(other)
-    different = [pair for pair in zip(words, others, strict=False) if pair[0] != pair[1]]
-    return different[0] if len(words) == len(others) and len(different) == 1 else None
-
-
-def _words(name: str) -> list[str]:
-    return [match.group().lower() for match in _WORD.finditer(name)]
-
-
-def _with_word(path: str, old: str, new: str) -> str | None:
-    """A path whose last name contains the word `old`, with `new` in its place."""
-    begin = path.rfind(".") + 1
-    matches = [match for match in _WORD.finditer(path, begin) if match.group().lower() == old]
-    if len(matches) != 1:
-        return None
-    found = matches[0]
-    word = new.capitalize() if found.group()[0].isupper() and len(new) > 1 else new
-    return path[: found.start()] + word + path[found.end() :]
 
 
 RULE = Rule(

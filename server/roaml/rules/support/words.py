@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The words of names, which similar names share."""
+
+from __future__ import annotations
+
+from roaml.regex import regex
+
+_WORD = regex(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
+
+
+def words_of(name: str) -> list[str]:
+    """The words of a name such as `battery_level` or `BatteryLevel`, in lower case."""
+    return [match.group().lower() for match in _WORD.finditer(name)]
+
+
+def difference(name: str, other: str) -> tuple[str, str] | None:
+    """The only words in which two names differ, in lower case; `None` if they differ in more."""
+    words, others = words_of(name), words_of(other)
+    different = [pair for pair in zip(words, others, strict=False) if pair[0] != pair[1]]
+    return different[0] if len(words) == len(others) and len(different) == 1 else None
+
+
+def with_word(path: str, old: str, new: str) -> str | None:
+    """A path whose last name contains the word `old` once, with `new` in its place; otherwise `None`."""
+    begin = path.rfind(".") + 1
+    matches = [match for match in _WORD.finditer(path, begin) if match.group().lower() == old]
+    if len(matches) != 1:
+        return None
+    match = matches[0]
+    word = new.capitalize() if match.group()[0].isupper() and len(new) > 1 else new
+    return path[: match.start()] + word + path[match.end() :]

@@ -1,0 +1,314 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The rule `mixed-names`, which mixed_names.md describes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.expr.format import format_expr
+from roaml.expr.infer import constant
+from roaml.expr.operators import Operator, OperatorKind
+from roaml.expr.tree import Binary, Name, access_path, walk
+from roaml.model.machine import Assign, Chart, If, Param, RosSend, Send, SetOutput, Statement, statements
+from roaml.model.syntax import Expression, Value
+from roaml.model.values.evaluate import place_of
+from roaml.roles import ProtocolPart
+from roaml.rules.rule import MachineContext, Rule, replacements
+from roaml.rules.support.words import difference, with_word, words_of
+from roaml.text import Span
+
+_INITIATED = (ProtocolPart.MESSAGE, ProtocolPart.REQUEST, ProtocolPart.GOAL)
+"""What a machine sends unasked. Answers have the names of what they answer; other rules check these."""
+
+
+class _Part(NamedTuple):
+    """A part of a machine that may have similar parts, with the name that distinguishes it.
+
+    `uses` contains the names in it: role, name -> the first place. `kind` is equal for parts that are compared.
+    """
+
+    kind: str
+    name: str
+    span: Span
+    uses: dict[tuple[str, str], Span]
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for chart in context.machine.charts:
+        types = context.typed.variables.get(chart.scope, {})
+        known = {*types, *context.machine.declarations_by_handle}
+        known |= {s.event.value for s in chart.statements if isinstance(s, Send) and s.event is not None}
+        reported: set[Span] = set()
+        findings = (*_copied(list(_parts(chart)), known), *_steps(chart), *_pairs(context, chart), *_guards(chart))
+        for finding in findings:
+            if finding.span not in reported:
+                reported.add(finding.span)
+                yield finding
+
+
+# --------------------------------------------------------- parts with similar names
+
+
+def _copied(parts: Sequence[_Part], known: Iterable[str]) -> Iterator[Finding]:
+    """Parts that use a name with the word of a similar part, although the name with their own word exists."""
+    names = frozenset(known)
+    similar: dict[tuple[object, ...], list[_Part]] = {}
+    for part in parts:
+        words = words_of(part.name)
+        for number in range(len(words) if len(words) > 1 else 0):
+            similar.setdefault((part.kind, number, *words[:number], *words[number + 1 :]), []).append(part)
+    for group in similar.values():
+        for part in group:
+            for other in group:
+                words_differ = difference(other.name, part.name)
+                if words_differ is not None:
+                    yield from _copies(part, other, *words_differ, names)
+
+
+def _copies(part: _Part, other: _Part, word: str, own: str, known: frozenset[str]) -> Iterator[Finding]:
+    used, others = {name for _, name in part.uses}, {name for _, name in other.uses}
+    for (role, name), span in part.uses.items():
+        meant = with_word(name, word, own) if (role, name) in other.uses else None
+        if meant is None or (role, meant) in part.uses or (role, meant) in other.uses:
+            continue
+        if role != "location" and (meant in used or meant in others):
+            continue
+        if name.isdigit() and not any(with_word(renamed, word, own) in used - others for renamed in others):
+            continue
+        if not name.isdigit() and meant not in known:
+            continue
+        message = (
+            f"`{part.name}` uses `{name}`, as `{other.name}` does, although there is `{meant}`; did you mean that?"
+        )
+        related = [Related(other.uses[role, name], f"used for `{other.name}`")]
+        yield RULE.at(span, message, *replacements(span, (meant,)), related=related)
+
+
+def _parts(chart: Chart) -> Iterator[_Part]:
+    for state in chart.states:
+        inside: list[Statement] = list(state.entry.statements) if state.entry is not None else []
+        for handler in state.handlers:
+            own = [statement for target in handler.targets for statement in target.body]
+            inside += own
+            name = handler.handle or handler.event
+            if name is not None and handler.trigger is not None:
+                yield _Part(handler.trigger.value, name.value, name.span, _uses(own, handler.cond))
+        if state.id is not None:
+            yield _Part("state", state.id.value, state.id.span, _uses(inside))
+    for statement in chart.statements:
+        match statement:
+            case If(branches=branches):
+                numbers = _numbers(statement)
+                for branch in branches:
+                    if branch.cond is not None and not branch.cond.broken:
+                        uses = {**_uses(branch.body), **numbers[branch.element.span]}
+                        kind = f"if {statement.element.span.start}"
+                        yield _Part(kind, branch.cond.text.strip(), branch.cond.span, uses)
+            case Send(event=event, params=params) if event is not None:
+                yield _Part("send", event.value, event.span, _fields(params))
+            case RosSend(handle=handle, fields=fields) if handle is not None:
+                yield _Part(statement.element.name, handle.value, handle.span, _fields(fields))
+
+
+def _fields(params: Sequence[Param]) -> dict[tuple[str, str], Span]:
+    uses: dict[tuple[str, str], Span] = {}
+    for param in params:
+        _add(uses, f"field {param.name.value if param.name else ''}", param.value)
+    return uses
+
+
+def _numbers(statement: If) -> dict[Span, dict[tuple[str, str], Span]]:
+    """The numbers that each branch assigns to variables to which not all branches assign the same number, as uses."""
+    assigned: dict[Span, dict[tuple[str, str], Span]] = {}
+    different: dict[str, set[str]] = {}
+    for part in (*statement.branches, *((statement.otherwise,) if statement.otherwise else ())):
+        uses = assigned.setdefault(part.element.span, {})
+        for inner in part.body:
+            if isinstance(inner, Assign) and isinstance(inner.value, Expression) and inner.location is not None:
+                number, place = constant(inner.value.tree), place_of(inner.location.tree)
+                if number is not None and place is not None:
+                    uses["number " + place, str(number)] = inner.value.span
+                    different.setdefault("number " + place, set()).add(str(number))
+    return {
+        element: {use: span for use, span in uses.items() if len(different[use[0]]) > 1}
+        for element, uses in assigned.items()
+    }
+
+
+def _uses(body: Iterable[Statement], cond: Expression | None = None) -> dict[tuple[str, str], Span]:
+    uses: dict[tuple[str, str], Span] = {}
+    _add(uses, "cond", cond)
+    for statement in statements(tuple(body)):
+        match statement:
+            case Assign(location=location, value=value):
+                _add(uses, "location", location)
+                _add(uses, "value", value)
+            case SetOutput(value=value):
+                _add(uses, "value", value)
+            case If(branches=branches):
+                for branch in branches:
+                    _add(uses, "cond", branch.cond)
+            case Send(event=name, params=params):
+                if name is not None:
+                    uses.setdefault(("sent", name.value), name.span)
+                for param in params:
+                    _add(uses, "value", param.value)
+            case RosSend(handle=name, fields=fields):
+                if name is not None and statement.part in _INITIATED:
+                    uses.setdefault(("sent", name.value), name.span)
+                for param in fields:
+                    _add(uses, "value", param.value)
+    return uses
+
+
+def _add(uses: dict[tuple[str, str], Span], role: str, value: Value | None) -> None:
+    if isinstance(value, Expression) and not value.broken:
+        for node in walk(value.tree):
+            if isinstance(node, Name):
+                uses.setdefault((role, node.name), node.span)
+
+
+# ------------------------------------------------------------------- steps
+
+
+class _Step(NamedTuple):
+    """An assignment that adds a constant to the value of a place, or subtracts it."""
+
+    place: str
+    read: str
+    span: Span
+    amount: tuple[Operator, float]
+
+
+def _steps(chart: Chart) -> Iterator[Finding]:
+    """Counters that are computed from a similar counter, as in `b_count = a_count + 1`."""
+    steps = [step for s in chart.statements if isinstance(s, Assign) and (step := _step(s)) is not None]
+    own = {(step.place, step.amount): step for step in steps if step.place == step.read}
+    counted = {place for place, _ in own}
+    for step in steps:
+        other = own.get((step.read, step.amount))
+        if step.place in counted or other is None or difference(step.place, step.read) is None:
+            continue
+        if len(words_of(step.place)) < 2:
+            continue
+        message = f"`{step.place}` is computed from `{step.read}`, which is counted, too; did you mean `{step.place}`?"
+        yield RULE.at(
+            step.span, message, *replacements(step.span, (step.place,)), related=[Related(other.span, "counted here")]
+        )
+
+
+def _step(assign: Assign) -> _Step | None:
+    if assign.location is None or not isinstance(assign.value, Expression) or assign.value.broken:
+        return None
+    tree = assign.value.tree
+    if not isinstance(tree, Binary) or tree.operator not in (Operator.ADD, Operator.SUBTRACT):
+        return None
+    amount = constant(tree.right)
+    if amount is None or access_path(assign.location.tree) is None or access_path(tree.left) is None:
+        return None
+    place, read = format_expr(assign.location.tree), format_expr(tree.left)
+    return _Step(place, read, tree.left.span, (tree.operator, float(amount)))
+
+
+# ------------------------------------------------------------- pairs of names
+
+
+def _pairs(context: MachineContext, chart: Chart) -> Iterator[Finding]:
+    """Comparisons of names that differ in the last word, such as `goal_y > curr_x`, in machines that compare names with
+    the same last word, such as `goal_x < curr_x`."""
+    comparisons = [
+        (node.left, node.right)
+        for value in context.typed.values
+        if value.place.chart is chart and isinstance(value.value, Expression) and not value.value.broken
+        for node in walk(value.value.tree)
+        if isinstance(node, Binary) and node.operator.kind in (OperatorKind.ORDER, OperatorKind.EQUALITY)
+        if isinstance(node.left, Name) and isinstance(node.right, Name)
+    ]
+    split = [(left, right, *_split(left.name), *_split(right.name)) for left, right in comparisons]
+    matching = {(first, second): (left, right) for left, right, first, a, second, b in split if a == b}
+    types = context.typed.variables.get(chart.scope, {})
+    for left, right, first, last, second, other in split:
+        pattern = matching.get((first, second))
+        if last == other or pattern is None or not first or not second:
+            continue
+        meant = with_word(right.name, other, last)
+        if meant is None or meant not in types or with_word(left.name, last, other) not in types:
+            continue
+        message = f"`{left.name}` is compared with `{right.name}`, although there is `{meant}`; did you mean that?"
+        related = [Related(Span(pattern[0].span.start, pattern[1].span.end), "names that belong together")]
+        yield RULE.at(right.span, message, *replacements(right.span, (meant,)), related=related)
+
+
+def _split(name: str) -> tuple[tuple[str, ...], str]:
+    words = words_of(name)
+    return tuple(words[:-1]), words[-1] if words else ""
+
+
+# ------------------------------------------------------------ guards of steps
+
+
+class _Guard(NamedTuple):
+    """A condition and the variable that is counted under it. `read` contains the variables whose order it tests."""
+
+    counted: Name
+    read: Sequence[Name]
+
+
+def _guards(chart: Chart) -> Iterator[Finding]:
+    """Conditions that test another variable than the one that is counted under them, beside several conditions that
+    test the variable that is counted."""
+    for statement in chart.statements:
+        if isinstance(statement, If):
+            yield from _mixed([_guard(branch.cond, branch.body) for branch in statement.branches])
+    for state in chart.states:
+        single = [handler for handler in state.handlers if len(handler.targets) == 1]
+        yield from _mixed([_guard(handler.cond, handler.targets[0].body) for handler in single])
+
+
+def _mixed(guards: Sequence[_Guard | None]) -> Iterator[Finding]:
+    known = [guard for guard in guards if guard is not None]
+    right = [guard for guard in known if guard.counted.name in {name.name for name in guard.read}]
+    counted = {guard.counted.name for guard in known}
+    tested = [name.name for guard in known for name in guard.read]
+    if len(known) != len(right) + 1 or len(right) < 2:
+        return
+    wrong = next(guard for guard in known if guard not in right)
+    other = next((name for name in wrong.read if difference(name.name, wrong.counted.name) is not None), None)
+    if other is None or other.name not in counted:
+        return
+    # The one that is used too often is the wrong one.
+    times = [guard.counted.name for guard in known].count(wrong.counted.name)
+    place, meant = (other, wrong.counted) if times <= tested.count(other.name) else (wrong.counted, other)
+    message = (
+        f"`{wrong.counted.name}` is counted under a condition for `{other.name}`, while the other conditions here test "
+        f"the variable that is counted; did you mean `{meant.name}`?"
+    )
+    related = [Related(meant.span, f"`{meant.name}`")]
+    yield RULE.at(place.span, message, *replacements(place.span, (meant.name,)), related=related)
+
+
+def _guard(cond: Expression | None, body: Sequence[Statement]) -> _Guard | None:
+    """The variable that is counted in a body, if there is exactly one, and what its condition compares."""
+    counted = [
+        statement.location.tree
+        for statement in body
+        if isinstance(statement, Assign) and statement.location is not None
+        if (step := _step(statement)) is not None and step.place == step.read
+        if isinstance(statement.location.tree, Name)
+    ]
+    if cond is None or cond.broken or len(counted) != 1:
+        return None
+    comparisons = [n for n in walk(cond.tree) if isinstance(n, Binary) and n.operator.kind is OperatorKind.ORDER]
+    read = [side for node in comparisons for side in (node.left, node.right) if isinstance(side, Name)]
+    return _Guard(counted[0], read) if read else None
+
+
+RULE = Rule(
+    "mixed-names",
+    Severity.WARNING,
+    "A name belongs to a similar part of the machine.",
+    machine=check,
+    whole=True,
+)
