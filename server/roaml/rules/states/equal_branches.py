@@ -3,38 +3,128 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 
 from roaml.diagnostics import Finding, Related, Severity
-from roaml.model.machine import If, Statement
+from roaml.model.behavior.knowledge import variables_in
+from roaml.model.machine import Assign, Branch, Handler, If, State, Statement, Target
+from roaml.model.syntax import Expression
+from roaml.model.triggers import trigger
+from roaml.model.value_types import GOAL_STATUSES
+from roaml.model.values.evaluate import place_of
+from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.text import Span
 from roaml.xml_syntax import Element, Text
+
+_SUCCEEDED = next(code for code, name in GOAL_STATUSES.items() if name == "STATUS_SUCCEEDED")
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         for statement in chart.statements:
-            if isinstance(statement, If) and statement.otherwise is not None:
-                parts = (*statement.branches, statement.otherwise)
-                if all(part.body for part in parts) and len({_content(part.body) for part in parts}) == 1:
-                    message = "all branches of this `<if>` do the same, so its conditions have no effect"
-                    yield from _alike(message, [part.body[0].element.name_span for part in parts])
-        for handler in (handler for state in chart.states for handler in state.handlers):
-            alike: dict[object, list[Span]] = {}
-            for target in handler.targets if handler.is_probabilistic else ():
-                if target.element is not None and target.state is not None:
-                    place = target.body[0].element if target.body else target.element
-                    key = (target.state.value, _content(target.body))
-                    alike.setdefault(key, []).append(place.name_span)
-            # Among other targets, the probabilities of several causes of the same outcome may be stated separately.
-            severity = Severity.WARNING if len(alike) == 1 else Severity.INFORMATION
-            for spans in alike.values():
-                if len(spans) > 1:
-                    message = (
-                        "another `<target>` of this element has the same state and content, so one of them is enough"
-                    )
-                    yield from _alike(message, spans, severity)
+            if isinstance(statement, If):
+                yield from _branches(statement)
+        for state in chart.states:
+            yield from _handlers(context, state)
+            for handler in state.handlers:
+                if handler.is_probabilistic:
+                    yield from _targets(handler)
+
+
+def _branches(statement: If) -> Iterator[Finding]:
+    parts = (*statement.branches, *((statement.otherwise,) if statement.otherwise else ()))
+    contents = {_content(part.body) for part in parts}
+    if statement.otherwise is not None and len(contents) == 1 and all(part.body for part in parts):
+        message = "all branches of this `<if>` do the same, so its conditions have no effect"
+        yield from _alike(message, [part.body[0].element.name_span for part in parts])
+    elif len(parts) >= _MIN_CASES:
+        yield from _repeated(parts)
+
+
+_MIN_CASES = 4
+"""How many branches must assign different values before two equal ones are suspicious."""
+
+
+def _repeated(parts: Sequence[Branch]) -> Iterator[Finding]:
+    """Report a value that two branches assign to a variable, while all others assign different ones. A repeated
+    constant is only suspicious beside another variable that gets a different constant in each branch."""
+    assigned = [_assigned(part.body) for part in parts]
+    places = [place for place in assigned[0] if all(place in values for values in assigned[:-1])]
+    unique = set()
+    repeated: list[tuple[str, list[Expression]]] = []
+    for place in places:
+        values = [values[place] for values in assigned if place in values]
+        texts = Counter("".join(value.text.split()) for value in values)
+        if len(texts) == len(values):
+            unique.add(place)
+        elif len(texts) == len(values) - 1:
+            equal = [value for value in values if texts["".join(value.text.split())] > 1]
+            repeated.append((place, equal))
+    for place, equal in repeated:
+        is_computed = all(variables_in((value.tree,)) for values in assigned for value in _at(values, place))
+        if is_computed or unique - {place}:
+            message = (
+                f"another branch of this `<if>` assigns the same value to `{place}`, and each of the others another"
+            )
+            yield from _alike(message, [value.span for value in equal])
+
+
+def _at(values: Mapping[str, Expression], place: str) -> tuple[Expression, ...]:
+    return (values[place],) if place in values else ()
+
+
+def _assigned(body: Sequence[Statement]) -> dict[str, Expression]:
+    return {
+        place: statement.value
+        for statement in body
+        if isinstance(statement, Assign) and isinstance(statement.value, Expression) and statement.location is not None
+        if (place := place_of(statement.location.tree)) is not None
+    }
+
+
+def _handlers(context: MachineContext, state: State) -> Iterator[Finding]:
+    """Report handlers for the same event, the last of which has no condition, and handlers for the success and the
+    failure of a goal, if they do the same."""
+    groups: dict[tuple[ProtocolPart | None, str, int], list[Handler]] = {}
+    for handler in state.handlers:
+        key = trigger(context.machine, handler)
+        if key is not None and handler.effective and len(handler.targets) == 1:
+            part, name, code = key
+            groups.setdefault((part, name, 0 if part is ProtocolPart.RESULT else code), []).append(handler)
+    for (part, _, _), handlers in groups.items():
+        if len(handlers) < 2 or not handlers[0].targets[0].body:
+            continue
+        does = {(_state(handler), _content(handler.targets[0].body)) for handler in handlers}
+        spans = [handler.targets[0].body[0].element.name_span for handler in handlers if handler.targets[0].body]
+        if part is ProtocolPart.RESULT:
+            codes = {handler.type.code for handler in handlers}
+            if len(does) == 1 and _SUCCEEDED in codes and len(codes) > 1:
+                yield from _alike("the handlers for the success and the failure of this goal do the same", spans)
+        elif len(does) == 1 and handlers[-1].cond is None and all(handler.cond for handler in handlers[:-1]):
+            yield from _alike("all handlers of this event do the same, so their conditions have no effect", spans)
+
+
+def _state(handler: Handler) -> str | None:
+    state = handler.targets[0].state
+    return state.value if state is not None else None
+
+
+def _targets(handler: Handler) -> Iterator[Finding]:
+    alike: dict[object, list[Target]] = {}
+    for target in handler.targets:
+        if target.element is not None and target.state is not None:
+            alike.setdefault((target.state.value, _content(target.body)), []).append(target)
+    for targets in alike.values():
+        # Among other targets, the probabilities of several causes of the same outcome may be stated separately.
+        probabilities = {target.probability.value if target.probability else "" for target in targets}
+        is_copy = len(probabilities) == 1 and all(target.body for target in targets)
+        severity = Severity.WARNING if len(alike) == 1 or is_copy else Severity.INFORMATION
+        if len(targets) > 1:
+            message = "another `<target>` of this element has the same state and content, so one of them is enough"
+            places = [t.body[0].element if t.body else t.element for t in targets]
+            yield from _alike(message, [place.name_span for place in places if place is not None], severity)
 
 
 def _alike(message: str, spans: Sequence[Span], severity: Severity = Severity.WARNING) -> Iterator[Finding]:
@@ -57,6 +147,6 @@ def _canonical(element: Element) -> tuple[object, ...]:
 RULE = Rule(
     "equal-branches",
     Severity.WARNING,
-    "All branches of an `<if>`, or two targets of a transition, do the same.",
+    "Branches of an `<if>`, handlers of an event or targets of a transition do the same.",
     machine=check,
 )
