@@ -5,10 +5,13 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
 from fractions import Fraction
+from typing import TypeGuard
 
-from roaml.diagnostics import Finding, Fix, Severity
+from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.expr.format import format_expr
 from roaml.expr.infer import constant
-from roaml.expr.tree import Call, Member
+from roaml.expr.operators import Operator, OperatorKind
+from roaml.expr.tree import Binary, Call, Expr, Member, walk
 from roaml.expr.types import INTEGER_RANGES
 from roaml.model.behavior.knowledge import variables_in
 from roaml.model.machine import Assign, Chart, If, Statement, bodies
@@ -30,11 +33,53 @@ def check(context: MachineContext) -> Iterator[Finding]:
         positive = {name for name, value in fixed.items() if value > 0}
         positive |= {name for name, type_ in types.items() if INTEGER_RANGES.get(str(type_), (-1, 0))[0] == 0}
         for statement in chart.statements:
+            if isinstance(statement, If):
+                yield from _tested(statement)
             if isinstance(statement, Assign) and statement.location is not None:
                 place = place_of(statement.location.tree)
                 tree = statement.value.tree if isinstance(statement.value, Expression) else None
                 if place is not None and isinstance(tree, Call) and not _is_bounded(chart, statement, place):
                     yield from _check(tree, place, positive, fixed)
+
+
+_OPPOSITE = {Operator.ADD: Operator.SUBTRACT, Operator.SUBTRACT: Operator.ADD}
+
+
+def _tested(statement: If) -> Iterator[Finding]:
+    """Report a step in the other direction than the step that the condition compares with a limit."""
+    parts = (*statement.branches, *((statement.otherwise,) if statement.otherwise else ()))
+    steps = [
+        (place, assign.value.tree)
+        for part in parts
+        for assign in part.body
+        if isinstance(assign, Assign) and isinstance(assign.value, Expression) and assign.location is not None
+        if (place := place_of(assign.location.tree)) is not None
+    ]
+    for branch in statement.branches:
+        for test in walk(branch.cond.tree) if branch.cond is not None else ():
+            if not isinstance(test, Binary) or test.operator.kind is not OperatorKind.ORDER:
+                continue
+            for step in (test.left, test.right):
+                if not isinstance(step, Binary) or step.operator not in _OPPOSITE:
+                    continue
+                made = [tree for place, tree in steps if _is_step(tree, place) and place_of(step.left) == place]
+                same = [tree for tree in made if format_expr(tree.right) == format_expr(step.right)]
+                if same and all(tree.operator is _OPPOSITE[step.operator] for tree in same):
+                    yield from (_reversed(tree, step) for tree in same)
+
+
+def _is_step(tree: Expr, place: str) -> TypeGuard[Binary]:
+    return isinstance(tree, Binary) and tree.operator in _OPPOSITE and place_of(tree.left) == place
+
+
+def _reversed(tree: Binary, tested: Binary) -> Finding:
+    symbol = tested.operator.symbol
+    message = (
+        f"`{format_expr(tree)}` is a step in the other direction than `{format_expr(tested)}`, which the condition "
+        f"compares with a limit; use `{symbol}`"
+    )
+    fix = Fix(f"Change to `{symbol}`", (TextEdit(tree.operator_span, symbol),))
+    return RULE.at(tree.operator_span, message, fix, related=[Related(tested.span, "the step that is tested")])
 
 
 def _is_bounded(chart: Chart, assign: Assign, place: str) -> bool:

@@ -27,5 +27,7 @@ def with_word(path: str, old: str, new: str) -> str | None:
     if len(matches) != 1:
         return None
     match = matches[0]
-    word = new.capitalize() if match.group()[0].isupper() and len(new) > 1 else new
+    word = new
+    if len(new) > 1 and match.group()[0].isupper():
+        word = new.upper() if len(old) > 1 and match.group().isupper() else new.capitalize()
     return path[: match.start()] + word + path[match.end() :]

@@ -51,7 +51,7 @@ def _constant(
         statement, kept = computed[0]
         if not is_unchanged(statement):  # self-assignment
             yield RULE.at(kept.span, f"this never changes `{name}`, which is always {shown}; change the expression")
-    elif value.value:
+    elif value.value and (not statements or not isinstance(value.value, bool)):
         return  # a named constant
     elif statements and any(isinstance(s.value, Expression) and _variables(s.value) for s in statements):
         return  # a consequence of other variables
@@ -72,11 +72,17 @@ def _only_value(context: MachineContext, chart: Chart, data: Data, statements: l
     type_ = context.typed.variables.get(chart.scope, {}).get(data.id.value)
     if values is None or not isinstance(type_, Scalar) or not isinstance(data.value, Expression):
         return None
-    known = [dict(literal("", data.value.tree)).get("")]
-    known += [values.at(s.value.tree) if isinstance(s.value, Expression) else None for s in statements]
+    known = [_literal(data.value)]
+    for s in statements:
+        value = s.value if isinstance(s.value, Expression) else None
+        known.append(None if value is None else _literal(value) or values.at(value.tree))
     every = [value for value in known if value is not None]
     together = joined(every)
     return together if len(every) == len(known) and together.value is not None else None
+
+
+def _literal(value: Expression) -> ValueSet | None:
+    return dict(literal("", value.tree)).get("")
 
 
 def _assigned(chart: Chart) -> dict[str, list[Assign]]:

@@ -7,9 +7,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
-from roaml.expr.tree import Expr, Member, access_path
+from roaml.expr.format import format_expr
+from roaml.expr.tree import Expr, Member, access_path, walk
 from roaml.expr.tree import Name as NameExpr
-from roaml.expr.types import Struct, Type
+from roaml.expr.types import Scalar, Struct, Type, leaves
 from roaml.forest.names import entry_of
 from roaml.forest.ports import ports_of
 from roaml.model.behavior.knowledge import variables_in
@@ -18,6 +19,8 @@ from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Expression, Value
 from roaml.model.tree import TreeNode
 from roaml.model.value_types import INTERFACE_KINDS, ValueUse, find_handle
+from roaml.model.values.analyse import DataChannel
+from roaml.model.values.evaluate import is_within, place_of
 from roaml.record import replace
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule, TreeContext, replacements
@@ -44,13 +47,97 @@ class _Suspicion(NamedTuple):
 
 def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
+        reported: set[Span] = set()
         for _, handler, body in bodies(chart):
-            for group in _groups(body):
-                for copy, other, meant in _suspicions(group):
-                    if _exists(context, chart, handler, meant.split(".")) and not _is_start(
-                        context, chart, copy, meant
-                    ):
-                        yield _finding(copy, other, meant, copy.value, meant)
+            twice = _read_twice(context, chart, handler, body) if handler is not None else ()
+            for finding in (*_named(context, chart, handler, body), *twice):
+                if finding.span not in reported:
+                    reported.add(finding.span)
+                    yield finding
+
+
+def _named(
+    context: MachineContext, chart: Chart, handler: Handler | None, body: Sequence[Statement]
+) -> Iterator[Finding]:
+    for group in _groups(body):
+        for copy, other, meant in _suspicions(group):
+            if _exists(context, chart, handler, meant.split(".")) and not _is_start(context, chart, copy, meant):
+                yield _finding(copy, other, meant, copy.value, meant)
+        for copy, other in _unlike_others(group):
+            if _exists(context, chart, handler, [copy.target]):
+                yield _finding(copy, other, copy.target, copy.value, copy.target)
+
+
+def _unlike_others(group: Sequence[_Copy]) -> Iterator[tuple[_Copy, _Copy]]:
+    """The fields that get the variable with the name of another field, which gets it, too, while most fields of the
+    message get the variables with their own names."""
+    own = {copy.target: copy for copy in group if copy.target == copy.value}
+    for copy in group:
+        other = own.get(copy.value)
+        if other is not None and copy is not other and len(own) >= _MIN_OWN_NAMES and copy.target not in own:
+            yield copy, other
+
+
+_MIN_OWN_NAMES = 3
+"""How many fields of a message must get the variables with their names before another one is suspicious."""
+
+
+def _read_twice(
+    context: MachineContext, chart: Chart, handler: Handler, body: Sequence[Statement]
+) -> Iterator[Finding]:
+    """Report two variables that get the same field of a message, or are computed from it in the same way, although
+    nothing in the machine reads another field, whose value varies."""
+    first: dict[str, Assign] = {}
+    for statement in body:
+        if not isinstance(statement, Assign) or statement.location is None:
+            continue
+        if not isinstance(statement.value, Expression) or statement.value.broken:
+            continue
+        fields = {place for node in walk(statement.value.tree) if (place := place_of(node)) and place.startswith(_DATA)}
+        longest = {place for place in fields if not any(is_within(other, place) for other in fields - {place})}
+        earlier = first.setdefault(format_expr(statement.value.tree), statement)
+        if len(longest) != 1 or earlier is statement or earlier.location is None:
+            continue
+        (field,) = longest
+        unread = _unread(context, chart, handler, field)
+        if format_expr(earlier.location.tree) != format_expr(statement.location.tree) and unread is not None:
+            target, other = format_expr(statement.location.tree), format_expr(earlier.location.tree)
+            message = f"`{target}` gets the same value as `{other}`, and nothing reads `{unread}`; did you mean that?"
+            spans = [n.span for n in walk(statement.value.tree) if place_of(n) == field]
+            yield RULE.at(
+                statement.value.span,
+                message,
+                Fix(f"Change to `{unread}`", tuple(TextEdit(span, unread) for span in spans)),
+                related=[Related(earlier.element.name_span, "the same value")],
+            )
+
+
+_DATA = "_msg."
+
+
+def _unread(context: MachineContext, chart: Chart, handler: Handler, field: str) -> str | None:
+    """The only other field of the kind of `field` that arrives with several values and that nothing reads."""
+    declaration = find_handle(context.machine, handler)
+    if declaration is None or declaration.handle is None or handler.trigger is not ProtocolPart.MESSAGE:
+        return None
+    arriving = context.values.arriving.get(DataChannel(handler.trigger, declaration.handle.value), {})
+    struct = _received(context, handler)
+    kinds = {".".join(path): leaf.kind for path, leaf in leaves(struct) if isinstance(leaf, Scalar)} if struct else {}
+    read = {
+        place
+        for value in context.typed.values
+        if value.place.chart is chart and isinstance(value.value, Expression)
+        for node in walk(value.value.tree)
+        if (place := place_of(node)) is not None and place.startswith(_DATA)
+    }
+    kind = kinds.get(field.removeprefix(_DATA))
+    constants = {path for path, values in arriving.items() if values.value is not None}
+    unread = [
+        _DATA + path
+        for path, of_path in kinds.items()
+        if of_path is kind and path not in constants and _DATA + path not in read
+    ]
+    return unread[0] if len(unread) == 1 and kind is not None else None
 
 
 def _is_start(context: MachineContext, chart: Chart, copy: _Copy, meant: str) -> bool:
