@@ -146,6 +146,7 @@ from roaml.rules.states import (
     shadowed_transition,
     time_stops,
     transition_target,
+    trapping_state,
     undefined_state,
     unreachable_state,
 )
