@@ -209,6 +209,7 @@ from roaml.rules.variables import (
     machine_name,
     missing_type,
     mixed_names,
+    never_reset,
     overwritten_value,
     self_assignment,
     struct_declaration,
