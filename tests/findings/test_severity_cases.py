@@ -178,3 +178,48 @@ def test_two_ports_may_get_the_same_of_several_numbered_entries(
     tmp_path: Path, names: tuple[str, str], severity: Severity
 ) -> None:
     assert severities(tmp_path, MEETING.format(*names), "copied-value") == [severity]
+
+
+TWINS = """
+-- main.xml --
+<roaml>
+    <parameters><max_time value="5" unit="s" /></parameters>
+    <node_models><input type="node-ascxml" src="world.ascxml" /></node_models>
+    <properties><input type="jani" src="properties.jani" /></properties>
+</roaml>
+-- properties.jani --
+{{"properties": []}}
+-- world.ascxml --
+<ascxml name="World" version="1.0" initial="a">
+    <datamodel>
+        <data id="place_id" type="int32" expr="0" />
+        <data id="block_id" type="int32" expr="0" />
+        <data id="at" type="int32" expr="0" />
+    </datamodel>
+    <ros_topic_subscriber name="go" topic="/go" type="std_msgs/Int32" />
+    <ros_topic_subscriber name="pick" topic="/pick" type="std_msgs/Int32" />
+    <state id="a">
+        <ros_topic_callback name="go" target="a">
+            <assign location="place_id" expr="_msg.data" />
+            <assign location="at" expr="{}" />
+        </ros_topic_callback>
+        <ros_topic_callback name="pick" cond="at == block_id" target="a">
+            <assign location="block_id" expr="_msg.data" />{}
+        </ros_topic_callback>
+    </state>
+</ascxml>
+"""
+
+
+@pytest.mark.parametrize(
+    ("read", "more", "expected"),
+    [
+        ("block_id", "", [Severity.WARNING]),
+        ("place_id", "", []),
+        ("block_id", '<assign location="place_id" expr="0" />', [Severity.HINT]),
+    ],
+)
+def test_unread_data_beside_data_that_another_handler_receives(
+    read: str, more: str, expected: list[Severity], tmp_path: Path
+) -> None:
+    assert severities(tmp_path, TWINS.format(read, more), "unused-variable") == expected

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from roaml.diagnostics import Finding, Related, Severity
@@ -11,6 +11,7 @@ from roaml.expr.format import format_expr
 from roaml.expr.infer import constant
 from roaml.expr.operators import Operator, OperatorKind
 from roaml.expr.tree import Binary, Name, access_path, walk
+from roaml.expr.types import Type
 from roaml.model.machine import Assign, Chart, If, Param, RosSend, Send, SetOutput, Statement, statements
 from roaml.model.syntax import Expression, Value
 from roaml.model.values.evaluate import place_of
@@ -42,6 +43,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         known |= {s.event.value for s in chart.statements if isinstance(s, Send) and s.event is not None}
         reported: set[Span] = set()
         findings = (*_copied(list(_parts(chart)), known), *_steps(chart), *_pairs(context, chart), *_guards(chart))
+        findings += tuple(_previous(chart, types))
         for finding in findings:
             if finding.span not in reported:
                 reported.add(finding.span)
@@ -244,6 +246,33 @@ def _pairs(context: MachineContext, chart: Chart) -> Iterator[Finding]:
 def _split(name: str) -> tuple[tuple[str, ...], str]:
     words = words_of(name)
     return tuple(words[:-1]), words[-1] if words else ""
+
+
+# --------------------------------------------------------- previous values
+
+_PREVIOUS = ("previous", "prev", "old")
+"""The first word of a variable that keeps the last value of another one."""
+
+
+def _previous(chart: Chart, types: Mapping[str, Type]) -> Iterator[Finding]:
+    """Variables that keep the last value of another one, as their names say, and get the value of a third one."""
+    for statement in chart.statements:
+        if not isinstance(statement, Assign) or not isinstance(statement.value, Expression) or not statement.location:
+            continue
+        location, value = statement.location.tree, statement.value.tree
+        if not isinstance(location, Name) or not isinstance(value, Name):
+            continue
+        first, *kept = words_of(location.name)
+        if first not in _PREVIOUS or not kept or set(words_of(value.name)) & set(kept):
+            continue
+        sources = [
+            name
+            for name, type_ in types.items()
+            if name != location.name and words_of(name)[-len(kept) :] == kept and type_ == types.get(location.name)
+        ]
+        if len(sources) == 1:
+            message = f"`{location.name}` gets `{value.name}`, although there is `{sources[0]}`; did you mean that?"
+            yield RULE.at(value.span, message, *replacements(value.span, sources))
 
 
 # ------------------------------------------------------------ guards of steps

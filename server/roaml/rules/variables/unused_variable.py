@@ -3,15 +3,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Tag
 from roaml.edit.elements import removal, remove
 from roaml.expr.operators import OperatorKind
 from roaml.expr.tree import Binary, Call, Expr, Name, access_path, walk
+from roaml.model.behavior.knowledge import variables_in
 from roaml.model.machine import Assign, CallChild, Chart, Data, ReturnStatus
 from roaml.model.syntax import Expression, Value
+from roaml.model.value_types import ValueUse
 from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.words import difference, words_of
 from roaml.text import Span
 
 
@@ -32,7 +35,11 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 message = f"the variable `{data.id.value}` is assigned, but its value is never read"
                 spans, computed = written[data.id.value]
                 related = [Related(span, "assigned here") for span in spans]
-                yield RULE.at(data.id.span, message, related=related, severity=Severity.WARNING if computed else None)
+                twin = _twin(context, chart, data.id.value, spans)
+                if twin is not None:
+                    message += f", although that of `{twin}` is, which the same handler does not assign"
+                severity = Severity.WARNING if computed or twin is not None else None
+                yield RULE.at(data.id.span, message, related=related, severity=severity)
 
 
 def _remove(context: MachineContext, data: Data) -> Fix:
@@ -67,6 +74,39 @@ def _only_written(values: list[Value], chart: Chart) -> dict[str, tuple[list[Spa
         if target is not None and value.span not in locations and any(_computes(node, target) for node in nodes):
             computed.add(target)
     return {name: (spans, name in computed) for name, spans in assigned.items() if name not in read}
+
+
+def _twin(context: MachineContext, chart: Chart, name: str, spans: Sequence[Span]) -> str | None:
+    """A variable that is probably read by mistake instead of `name`: its name differs in one word, it is not assigned
+    in the handlers that assign `name`, and both only get data that arrive."""
+    if len(words_of(name)) < 2:
+        return None
+    types = context.typed.variables.get(chart.scope, {})
+    handlers = {value.place.handler for value in context.typed.values if value.value.span in spans}
+    assigned: set[str] = set()
+    read: set[str] = set()
+    for value in context.typed.values:
+        if value.place.chart is chart and isinstance(value.value, Expression):
+            if value.use is not ValueUse.LOCATION:
+                read |= variables_in((value.value.tree,))
+            elif value.place.handler in handlers:
+                assigned |= variables_in((value.value.tree,))
+    others: dict[str, list[Assign]] = {}
+    for statement in chart.statements:
+        if isinstance(statement, Assign) and statement.location is not None:
+            others.setdefault((access_path(statement.location.tree) or ("",))[0], []).append(statement)
+    for other, type_ in types.items():
+        is_similar = str(type_) == str(types.get(name)) and difference(name, other) is not None
+        received = (*others.get(name, ()), *others.get(other, ()))
+        if is_similar and other in read - assigned and other in others and all(map(_is_received, received)):
+            return other
+    return None
+
+
+def _is_received(statement: Assign) -> bool:
+    return isinstance(statement.value, Expression) and any(
+        name.startswith("_") for name in variables_in((statement.value.tree,))
+    )
 
 
 def _computes(node: Expr, variable: str) -> bool:
