@@ -6,8 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
-from roaml.expr.tree import Boolean
-from roaml.expr.types import ScalarKind, is_kind, leaves
+from roaml.expr.format import format_expr
+from roaml.expr.tree import Boolean, Number
+from roaml.expr.types import leaves
 from roaml.model.machine import Declaration, RosSend
 from roaml.model.syntax import Expression
 from roaml.model.value_types import find_handle
@@ -18,7 +19,7 @@ from roaml.rules.support.interfaces import channels_of
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report all places where a machine publishes the same Boolean constant on a topic, if there are several and a
+    """Report all places where a machine publishes the same Boolean or number on a topic, if there are several and a
     subscriber reads the value."""
     if not context.automata:
         return
@@ -30,7 +31,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         if not any(end.use.reads for _, channel in channels_of(context, declaration) for end in channel.users):
             continue  # a signal, such as a heartbeat
         for value in values:
-            text = "true" if value.value else "false"
+            text = format_expr(value)
             message = f"all messages that this machine publishes on the topic are `{text}`, so receivers learn nothing"
             others = [Related(other.span, "also here") for other in values if other is not value]
             yield RULE.at(value.span, f"{message} from the value; change one of them", related=others)
@@ -48,20 +49,20 @@ def _published(context: MachineContext) -> dict[Declaration, list[RosSend]]:
     return result
 
 
-def _constant(context: MachineContext, statement: RosSend) -> Boolean | None:
-    """The constant that is sent, if the message has one field, which is a Boolean."""
+def _constant(context: MachineContext, statement: RosSend) -> Boolean | Number | None:
+    """The constant that is sent, if the message has one field, which is a Boolean or a number."""
     part = sent_part(context, statement)
     fields = list(leaves(part)) if part is not None else []
-    if len(fields) != 1 or len(statement.fields) != 1 or not is_kind(fields[0][1], ScalarKind.BOOL):
+    if len(fields) != 1 or len(statement.fields) != 1:
         return None
     value = statement.fields[0].value
-    return value.tree if isinstance(value, Expression) and isinstance(value.tree, Boolean) else None
+    return value.tree if isinstance(value, Expression) and isinstance(value.tree, Boolean | Number) else None
 
 
 RULE = Rule(
     "constant-message",
     Severity.WARNING,
-    "All messages that a machine publishes on a topic contain the same Boolean.",
+    "All messages that a machine publishes on a topic contain the same constant.",
     machine=check,
     whole=True,
 )

@@ -41,6 +41,26 @@ def _branches(statement: If) -> Iterator[Finding]:
         yield from _alike(message, [part.body[0].element.name_span for part in parts])
     elif len(parts) >= _MIN_CASES:
         yield from _repeated(parts)
+    elif len(parts) == 2 and statement.otherwise is not None:
+        yield from _half_equal(parts)
+
+
+def _half_equal(parts: Sequence[Branch]) -> Iterator[Finding]:
+    """Report a constant that both branches assign to a variable, if they only assign constants to the same variables,
+    and different ones to all others."""
+    first, second = (_assigned(part.body) for part in parts)
+    if first.keys() != second.keys() or any(len(part.body) != len(first) for part in parts):
+        return
+    if any(variables_in((value.tree,)) for value in (*first.values(), *second.values())):
+        return
+    equal = [
+        place for place, value in first.items() if "".join(value.text.split()) == "".join(second[place].text.split())
+    ]
+    if len(equal) == 1 and len(first) > 1:
+        message = (
+            f"both branches of this `<if>` assign the same value to `{equal[0]}`, and different ones to the others"
+        )
+        yield from _alike(message, [first[equal[0]].span, second[equal[0]].span])
 
 
 _MIN_CASES = 4

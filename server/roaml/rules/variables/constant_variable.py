@@ -19,9 +19,13 @@ from roaml.model.values.evaluate import is_within, literal, place_of
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.assignments import is_unchanged
+from roaml.rules.support.words import words_of
 
 _RECEIVED = (ProtocolPart.MESSAGE, ProtocolPart.REQUEST, ProtocolPart.GOAL)
 """What other machines send without being asked."""
+
+_PREVIOUS = ("previous", "prev", "last", "old")
+"""The first word of a variable that should keep the last value of another one."""
 
 _CONDITIONS = (ValueUse.CONDITION, ValueUse.BRANCH)
 
@@ -51,6 +55,9 @@ def _constant(
         statement, kept = computed[0]
         if not is_unchanged(statement):  # self-assignment
             yield RULE.at(kept.span, f"this never changes `{name}`, which is always {shown}; change the expression")
+    elif not statements and words_of(name)[0] in _PREVIOUS and len(words_of(name)) > 1:
+        message = f"`{name}` is always {shown}, because nothing assigns it; assign the value that it should keep"
+        yield RULE.at(data.id.span, message)
     elif value.value and (not statements or not isinstance(value.value, bool)):
         return  # a named constant
     elif statements and any(isinstance(s.value, Expression) and _variables(s.value) for s in statements):

@@ -3,18 +3,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Tag
 from roaml.edit.elements import removal, remove
 from roaml.expr.operators import OperatorKind
 from roaml.expr.tree import Binary, Call, Expr, Name, access_path, walk
 from roaml.model.behavior.knowledge import variables_in
-from roaml.model.machine import Assign, CallChild, Chart, Data, ReturnStatus
+from roaml.model.machine import Assign, CallChild, Chart, Data, Param, ReturnStatus, RosSend, Send, Statement
 from roaml.model.syntax import Expression, Value
 from roaml.model.value_types import ValueUse
-from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.words import difference, words_of
+from roaml.model.values.evaluate import place_of
+from roaml.rules.rule import MachineContext, Rule, replacements
+from roaml.rules.support.words import difference, with_word, words_of
 from roaml.text import Span
 
 
@@ -36,9 +37,17 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 spans, computed = written[data.id.value]
                 related = [Related(span, "assigned here") for span in spans]
                 twin = _twin(context, chart, data.id.value, spans)
+                meant = list(_meant(chart, data.id.value))
+                if len(meant) == 1:
+                    message = f"{message}; did you mean it here instead of `{meant[0].name}`?"
+                    fixes = replacements(meant[0].span, (data.id.value,))
+                    related.append(Related(data.id.span, "the variable"))
+                    yield RULE.at(meant[0].span, message, *fixes, related=related, severity=Severity.WARNING)
+                    continue
                 if twin is not None:
                     message += f", although that of `{twin}` is, which the same handler does not assign"
-                severity = Severity.WARNING if computed or twin is not None else None
+                related += [Related(name.span, "perhaps it is meant here") for name in meant]
+                severity = Severity.WARNING if computed or meant or twin is not None else None
                 yield RULE.at(data.id.span, message, related=related, severity=severity)
 
 
@@ -101,6 +110,63 @@ def _twin(context: MachineContext, chart: Chart, name: str, spans: Sequence[Span
         if is_similar and other in read - assigned and other in others and all(map(_is_received, received)):
             return other
     return None
+
+
+def _meant(chart: Chart, name: str) -> Iterator[Name]:
+    """Where another variable is read, but the unread variable `name` is probably meant: twice in one operation, as in
+    `temp_a + temp_a`, or in a field beside others that get the variables with their names."""
+    sources = _sources(chart)
+    for statement in chart.statements:
+        if isinstance(statement, RosSend | Send):
+            yield from _fields(statement.fields if isinstance(statement, RosSend) else statement.params, name, sources)
+        for value in _sent_or_assigned(statement):
+            for node in walk(value.tree):
+                match node:
+                    case Binary(left=Name(name=left), right=Name(name=right) as operand) if left == right:
+                        if len(words_of(name)) > 1 and difference(name, right) is not None:
+                            yield operand
+
+
+def _sent_or_assigned(statement: Statement) -> Iterator[Expression]:
+    match statement:
+        case Assign(value=Expression() as value):
+            yield value
+        case Send(params=params) | RosSend(fields=params):
+            for param in params:
+                if isinstance(param.value, Expression):
+                    yield param.value
+
+
+def _fields(fields: Sequence[Param], name: str, sources: Mapping[str, Set[str]]) -> Iterator[Name]:
+    """The variables that fields get instead of `name`, which has the name of the field, receives the field with its
+    name, or is named like the variable of another field."""
+    plain = [
+        (field.name.value.rpartition(".")[2], field.value.tree)
+        for field in fields
+        if field.name is not None and isinstance(field.value, Expression) and isinstance(field.value.tree, Name)
+    ]
+    own = [value for key, value in plain if value.name == key or key in sources.get(value.name, ())]
+    for key, value in plain:
+        named = any(value is not other for other in own) and value not in own
+        if named and (key == name or key in sources.get(name, ())):
+            yield value
+            continue
+        for other, its in plain:
+            words = difference(other, key)
+            if words is not None and its.name != other and with_word(its.name, *words) == name:
+                yield value
+                break
+
+
+def _sources(chart: Chart) -> dict[str, set[str]]:
+    """Variable -> the names of the fields that it receives."""
+    sources: dict[str, set[str]] = {}
+    for statement in chart.statements:
+        if isinstance(statement, Assign) and statement.location is not None and isinstance(statement.value, Expression):
+            target, source = place_of(statement.location.tree), place_of(statement.value.tree)
+            if target is not None and source is not None and source.startswith("_"):
+                sources.setdefault(target, set()).add(source.rpartition(".")[2])
+    return sources
 
 
 def _is_received(statement: Assign) -> bool:
