@@ -77,10 +77,11 @@ def _port(element: Any, required: bool) -> Port:
         element.get("system-constant") == "true",
         _limits(element),
         element.get("names-entry") == "true",
+        tuple(element.get("written-by", "").split()),
     )
 
 
-_LIMITS = ("min", "above", "counts-children", "at-most", "less-than")
+_LIMITS = ("min", "above", "counts-children", "at-most", "less-than", "magnitude", "distance")
 """The attributes of ports that limit numbers."""
 
 
@@ -95,6 +96,9 @@ def _limits(element: Any) -> PortLimits | None:
         element.get("counts-children") == "true",
         element.get("at-most", ""),
         element.get("less-than", ""),
+        None if (magnitude := element.get("magnitude")) is None else float(magnitude),
+        element.get("distance", ""),
+        element.get("speed", ""),
         element.get("effect", ""),
     )
 

@@ -24,6 +24,9 @@ class PortLimits(Record, frozen=True, omit_defaults=True):
         counts_children: whether the number is a number of children: at least 1, or at most -1, where -1 means all
             children, -2 all except one, and so on.
         at_most, less_than: the name of another port whose number is an upper bound, or "".
+        magnitude: the greatest absolute value of the useful numbers; `None` if there is none. A greater number is
+            probably in another unit.
+        distance, speed: the names of the ports whose quotient is the time that the node needs at least, in s, or "".
         effect: what the node does with other numbers, as a sentence without full stop, or "".
     """
 
@@ -33,6 +36,9 @@ class PortLimits(Record, frozen=True, omit_defaults=True):
     counts_children: bool = False
     at_most: str = ""
     less_than: str = ""
+    magnitude: float | None = None
+    distance: str = ""
+    speed: str = ""
     effect: str = ""
 
 
@@ -47,6 +53,7 @@ class Port(Record, frozen=True, omit_defaults=True):
         system_type, system_direction, system_constant: the properties of the port in trees of systems, if they differ.
         limits: the useful numbers; `None` if all are useful.
         names_entry: whether the value is the name of a blackboard entry even without braces.
+        written_by: the nodes whose error codes the node distinguishes; empty if the port takes any value of its type.
     """
 
     name: str
@@ -61,6 +68,7 @@ class Port(Record, frozen=True, omit_defaults=True):
     system_constant: bool = False
     limits: PortLimits | None = None
     names_entry: bool = False
+    written_by: tuple[str, ...] = ()
 
 
 class Node(Record, frozen=True, dict=True, omit_defaults=True):

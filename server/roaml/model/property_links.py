@@ -328,6 +328,8 @@ class _Linker:
         if conditions is None or scope is None or window is None:
             return None
         kind, limits = scope
+        if pattern is Pattern.RECURRENCE and window.upper is not None:
+            self._compare_with_the_sender(conditions[LEFT], written.intervals[0], window.upper)
         if pattern is Pattern.UNIVERSALITY and kind is ScopeKind.GLOBALLY and window.lower == 0:
             self._check_start(conditions[LEFT])
         return PatternProperty(pattern, kind, window), {**conditions, **limits}
@@ -337,6 +339,20 @@ class _Linker:
             name = condition.text.strip()
             message = f"`{name}` is false at the start of every trace and between events, so this property never holds"
             self.report(ProblemKind.FALSE_AT_START, condition.span, message)
+
+    def _compare_with_the_sender(self, condition: Expression, interval: TimeInterval, upper: int) -> None:
+        """Report an event that is required more often than the timer ticks that is the only reason to send it."""
+        event, written = self._event(condition.tree), interval.time or interval.within
+        timer = self.ports.slowest_timer(event[0].written) if event is not None else None
+        if event is None or timer is None or written is None or self.step is None:
+            return
+        if upper * self.step < timer.period.nanoseconds:
+            sender = timer.automaton.name if timer.automaton is not None else ""
+            message = (
+                f"this is shorter than the time between two messages, {_duration(timer.period.nanoseconds)}: only the "
+                f"timer `{timer.name}` makes `{sender}` send them, so the property never holds"
+            )
+            self.report(ProblemKind.SHORT, written.span, message)
 
     def _conditions(self, written: WrittenProperty, pattern: Pattern) -> dict[str, Expression] | None:
         needed = 2 if pattern.is_binary else 1

@@ -14,12 +14,14 @@ from roaml.exhaustive import assert_never
 from roaml.expr.types import BASE_TYPES, BOOL, INTEGER_RANGES, UNKNOWN, Struct, Type, is_number
 from roaml.interfaces.registry import NotFound
 from roaml.interfaces.types import Kind
+from roaml.model.behavior.phases import ProtocolEvent
 from roaml.model.globals import GlobalVariable
 from roaml.model.property_file import ObservedPart, Port, PortKind, PortVariable, PortVariableKind, PropertyFile
 from roaml.model.property_problems import Problem, ProblemKind
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Name
 from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton
+from roaml.model.timing import TimerRate, rates
 from roaml.model.tree_paths import nodes_called, path_of, short_paths
 from roaml.record import Record
 from roaml.roles import ProtocolPart
@@ -163,6 +165,27 @@ class PortLinker:
             self._warn_of_clients(port, channel, event)
         variables = tuple(self._variables(port, part, FIELD_PREFIX, event))
         return LinkedPort(port, events, variables, is_known=type_ is not None)
+
+    def slowest_timer(self, port: Port) -> TimerRate | None:
+        """The timer without which no message of a topic is sent, if one machine sends them and only ticks of its timers
+        are the reason; of several timers the fastest. `None` otherwise."""
+        channel = (
+            self._channels(port.kind).get(sanitise(port.name.value))
+            if port.kind is PortKind.TOPIC and port.name
+            else None
+        )
+        senders = [e for e in channel.sources if ProtocolPart.MESSAGE in e.use.sends] if channel is not None else []
+        if len(senders) != 1:
+            return None
+        sender = senders[0]
+        sent = ProtocolEvent(ProtocolPart.MESSAGE, sender.use.handle)
+        charts = sender.automaton.outline.charts
+        causes = {first for chart in charts for first, second in chart.reactions if second == sent}
+        if not causes or any(cause.part is not ProtocolPart.TICK for cause in causes):
+            return None
+        names = {cause.name for cause in causes}
+        timers = [t for t in rates(self.system) if t.automaton is sender.automaton and t.name in names]
+        return max(timers, key=lambda timer: timer.hertz, default=None)
 
     def _channels(self, kind: PortKind) -> Mapping[str, Channel]:
         return {

@@ -127,6 +127,8 @@ from roaml.rules.interfaces import (
 )
 from roaml.rules.json_syntax import jani_type
 from roaml.rules.properties import (
+    decided_at_start,
+    equal_ports,
     ignored_bounds,
     model_fault,
     repeated_property_id,
@@ -169,15 +171,19 @@ from roaml.rules.trees import (
     blackboard_read,
     blackboard_type_conflict,
     duplicate_model,
+    early_read,
     hidden_failure,
     invalid_port,
+    late_condition,
     missing_port,
+    never_succeeds,
     node_configuration,
     node_kind,
     node_model,
     node_name,
     port_range,
     port_value,
+    redundant_decorator,
     restarted_node,
     script_name,
     script_syntax,
@@ -194,10 +200,12 @@ from roaml.rules.trees import (
     unknown_port,
     unknown_remap,
     unreached_node,
+    unrepeated_rate,
     untranslatable_tree,
     unused_plugin,
     unused_port,
     unused_tree,
+    wrong_error_code,
 )
 from roaml.rules.variables import (
     constant_variable,

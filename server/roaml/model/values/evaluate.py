@@ -183,7 +183,7 @@ class Evaluator(Record, eq=False):
         if left.only == frozenset() or right.only == frozenset():
             return NONE
         if operator.kind is OperatorKind.ARITHMETIC:
-            return _arithmetic(operator, left, right)
+            return arithmetic(operator, left, right)
         same = place_of(expr.left)
         if same is not None and same == place_of(expr.right):
             return TRUE if operator in (Operator.EQUAL, Operator.LESS_EQUAL, Operator.GREATER_EQUAL) else FALSE
@@ -326,7 +326,8 @@ def compared(operator: Operator, left: ValueSet, right: ValueSet) -> ValueSet:
 # ------------------------------------------------------------------ arithmetic
 
 
-def _arithmetic(operator: Operator, left: ValueSet, right: ValueSet) -> ValueSet:
+def arithmetic(operator: Operator, left: ValueSet, right: ValueSet) -> ValueSet:
+    """The possible results of an arithmetic operation on numbers."""
     if not (is_numeric(left) and is_numeric(right)):
         return ANYTHING
     if left.only is not None and right.only is not None and len(left.only) * len(right.only) <= MAX_LISTED**2:

@@ -12,6 +12,8 @@ from roaml.expr.infer import constant
 from roaml.expr.operators import MIRRORED, Operator, OperatorKind
 from roaml.expr.tree import Binary, Expr, Member, Name, String, walk
 from roaml.expr.types import INTEGER_RANGES, Scalar
+from roaml.forest.script_values import condition_results
+from roaml.forest.scripts import scripts_of
 from roaml.interruption import checkpoint
 from roaml.model.behavior.explore import condition_facts
 from roaml.model.behavior.knowledge import NOTHING, ConditionFacts, variables_in
@@ -27,8 +29,10 @@ from roaml.model.values.domain import FALSE, MAX_LISTED, TRUE, Origin, ValueSet,
 from roaml.model.values.evaluate import compared, place_of
 from roaml.observers.properties import Pattern
 from roaml.roles import ProtocolPart
-from roaml.rules.rule import MachineContext, Rule, close_names
+from roaml.rules.rule import MachineContext, Rule, TreeContext, close_names
 from roaml.rules.support.assignments import is_unchanged
+from roaml.rules.support.entries import entries_of
+from roaml.rules.support.forest import trees_of
 from roaml.rules.support.message_constants import wrong_fields
 from roaml.rules.support.steps import step_of
 from roaml.text import Span, TextEdit
@@ -69,6 +73,7 @@ def check_properties(file: LinkedFile) -> Iterator[Finding]:
     types = {variable.id: variable.type for port in file.ports for variable in port.variables}
     for written in file.file.properties:
         pattern = written.pattern.value if written.pattern is not None else ""
+        limits = [limit for scope in written.scopes for limit in (scope.event, scope.until) if limit is not None]
         for expression in written.expressions:
             required = [] if expression.broken else list(_required(expression.tree))
             for conjunction, name in () if expression.broken else _contradictions(expression.tree):
@@ -86,13 +91,11 @@ def check_properties(file: LinkedFile) -> Iterator[Finding]:
                     is_range = holds and node is not expression.tree
                     yield RULE.at(node.span, message, severity=Severity.INFORMATION if is_range else None)
                 elif (
-                    pattern in _OCCURRING
+                    (pattern in _OCCURRING or expression in limits)
                     and any(node is part for part in required)
-                    and node.operator is Operator.EQUAL
                     and known is not None
-                    and known.only is not None
                     and known.value is None
-                    and not known.includes(number)
+                    and _never_holds(node, name, known, number)
                 ):
                     sent = described(known, most=MAX_LISTED)
                     yield RULE.at(node.span, f"this comparison is never true: the values of `{name}` are {sent}")
@@ -144,6 +147,15 @@ def _comparisons(tree: Expr) -> Iterator[tuple[Binary, str, float]]:
                 number = constant(other)
                 if isinstance(variable, Name) and number is not None:
                     yield node, variable.name, number
+
+
+def _never_holds(node: Binary, name: str, known: ValueSet, number: float) -> bool:
+    """Whether a comparison with a number is false for all values that are sent."""
+    if node.operator is Operator.EQUAL:
+        return known.only is not None and not known.includes(number)
+    is_left = isinstance(node.left, Name) and node.left.name == name
+    sides = (_reached(known), exactly(number)) if is_left else (exactly(number), _reached(known))
+    return node.operator.kind is OperatorKind.ORDER and compared(node.operator, *sides) == FALSE
 
 
 def _by_type(node: Binary, name: str, type_: Scalar, number: float) -> tuple[bool, str] | None:
@@ -487,11 +499,46 @@ def _why(values: ChartValues, tree: Expr) -> str:
     return ", ".join(list(texts)[:MAX_NAMED])
 
 
+def check_trees(context: TreeContext) -> Iterator[Finding]:
+    """Report conditions in scripts whose result is the same for all values that scripts assign to their entries."""
+    forest = trees_of(context)
+    results = condition_results(forest, entries_of(forest)) if forest is not None else {}
+    for _, node in forest.own_nodes if forest is not None else ():
+        for use in scripts_of(forest, node) if forest is not None else ():
+            result = results.get((node, use.attribute.name))
+            if result is None or len(result.truth) != 1 or not result.values:
+                continue
+            (holds,) = result.truth
+            known = {name: values for name, values in result.values.items() if is_informative(values)}
+            why = ", ".join(
+                f"`{name}` is {'always ' if values.value is not None else ''}{described(values)}"
+                for name, values in list(known.items())[:MAX_NAMED]
+            )
+            effect = _EFFECTS.get((use.attribute.name, holds), "")
+            message = f"this condition is {'always' if holds else 'never'} true{_because(why)}{effect}"
+            yield RULE.at(use.attribute.value_span, message)
+
+
+_NEVER_TICKED, _NO_EFFECT = ", so the node is never ticked", ", so it has no effect"
+_EFFECTS = {
+    ("_skipIf", True): _NEVER_TICKED,
+    ("_skipIf", False): _NO_EFFECT,
+    ("_failureIf", True): _NEVER_TICKED,
+    ("_failureIf", False): _NO_EFFECT,
+    ("_successIf", True): _NEVER_TICKED,
+    ("_successIf", False): _NO_EFFECT,
+    ("_while", True): _NO_EFFECT,
+    ("_while", False): _NEVER_TICKED,
+}
+"""The effects of conditions of nodes that are always, or never, true."""
+
+
 RULE = Rule(
     "constant-condition",
     Severity.WARNING,
     "A condition is always true or never true.",
     machine=check,
+    tree=check_trees,
     xml_properties=check_properties,
     whole=True,
 )

@@ -81,12 +81,12 @@ def counted_waits(context: MachineContext) -> Iterator[tuple[CountedWait, Fracti
 
 
 def tick_period(context: TreeContext) -> int | None:
-    """The time between two ticks of the trees of a system, in ns; `None` without a system, or if they differ."""
+    """The shortest time between two ticks of a tree of a system, in ns; `None` without a system."""
     if context.system is None:
         return None
     names = [root.tree for root in context.system.roots]
     rates = {context.system.tick_rate(name) for name in names} or {context.system.parameters.tick_rate}
-    return period(Fraction(str(rates.pop()))).nanoseconds if len(rates) == 1 else None
+    return min(period(Fraction(str(rate))).nanoseconds for rate in rates)
 
 
 def tree_rates(context: SystemContext) -> Iterator[tuple[Span, Fraction, str]]:

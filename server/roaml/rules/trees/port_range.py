@@ -93,11 +93,40 @@ def _check(context: TreeContext, node: TreeNode, known: Node, texts: Mapping[str
         effect = f"; {port.limits.effect}" if port.limits.effect and not _upper(port.limits) else ""
         # The translation computes the period of a rate, so it refuses rates that are not positive.
         severity = Severity.ERROR if reason and port.limits.is_exclusive else None
+        if not reason and port.limits.magnitude is not None and abs(number) > port.limits.magnitude:
+            reason = f"from {-port.limits.magnitude:g} to {port.limits.magnitude:g}"
         if not reason:
             reason, effect = _order(known, port.limits, number, texts), f"; {port.limits.effect}"
         if reason:
             message = f"`{port.name}` of `{known.name}` must be {reason}, not {texts[port.name].strip()}{effect}"
             yield RULE.at(place_of(node, port.name), message, severity=severity)
+    yield from _too_slow(node, known, texts)
+
+
+def _too_slow(node: TreeNode, known: Node, texts: Mapping[str, str]) -> Iterator[Finding]:
+    """Report a time that is shorter than the node needs for its distance with its speed."""
+    for port in known.ports:
+        limits = port.limits
+        if limits is None or not limits.distance:
+            continue
+        names = (port.name, limits.distance, limits.speed)
+        time, distance, speed = (_constant_of(known, name, texts) for name in names)
+        if time is None or distance is None or speed is None or time <= 0:  # 0 is no limit
+            continue
+        if abs(distance) <= time * abs(speed) * (1 + 1e-9):
+            continue
+        needs = "no time is enough" if speed == 0 else f"this needs {abs(distance / speed):.4g} s"
+        place = limits.speed if speed == 0 else next((name for name in names if name in texts), None)
+        if place is not None and place in texts:
+            message = f"`{known.name}` has {time:g} s for {abs(distance):g} m with {abs(speed):g} m/s, but {needs}"
+            yield RULE.at(place_of(node, place), f"{message}; {limits.effect}")
+
+
+def _constant_of(known: Node, name: str, texts: Mapping[str, str]) -> float | None:
+    """The number of a port that is set to a constant or has a default."""
+    port = known.port(name)
+    text = texts.get(name, port.default) if port is not None else None
+    return None if port is None or text is None else _number(port, text)
 
 
 def _reason(limits: PortLimits, number: float, children: int) -> str:

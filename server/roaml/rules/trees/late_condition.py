@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The rule `late-condition`, which late_condition.md describes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.forest.forest import Forest
+from roaml.forest.statuses import statuses_of
+from roaml.libraries.programs.statuses import RUNNING
+from roaml.model.tree import TreeNode
+from roaml.roles import NodeKind, ProtocolPart
+from roaml.rules.rule import Rule, TreeContext
+from roaml.rules.support.forest import trees_of
+
+REACTIVE = ("ReactiveSequence", "ReactiveFallback")
+_COMMANDS = frozenset((ProtocolPart.MESSAGE, ProtocolPart.GOAL))
+"""What a plugin sends for another purpose than its result."""
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    """Report reactive nodes whose conditions all follow the action, so that nothing is checked while it is RUNNING."""
+    forest = trees_of(context)
+    for _, node in forest.own_nodes if forest is not None else ():
+        if forest is None or node.plugin is None or node.plugin.value not in REACTIVE or len(node.children) < 2:
+            continue
+        first, *others = node.children
+        if not _may_run(forest, first) or not _is_condition(forest, others[-1]):
+            continue
+        if all(_is_condition(forest, other) for other in others):
+            message = (
+                f"`{node.plugin.value}` checks this condition only after `{_name(first)}` has ended, not while it is "
+                "RUNNING; put the condition before it"
+            )
+            related = [Related(first.element.name_span, "may be RUNNING")]
+            yield RULE.at(others[0].element.name_span, message, related=related)
+
+
+def _may_run(forest: Forest, node: TreeNode) -> bool:
+    """Whether a node is known to return RUNNING at some time."""
+    is_known = all(
+        forest.calls_tree(inner) or forest.known_node(inner) is not None or inner.element.name == "Action"
+        for inner in _inside(node)
+    )
+    return is_known and RUNNING in statuses_of(forest).statuses(node)[node].ever
+
+
+def _is_condition(forest: Forest, node: TreeNode) -> bool:
+    """Whether a node is a condition, possibly inverted: it never returns RUNNING."""
+    while _name(node) == "Inverter" and len(node.children) == 1:
+        node = node.children[0]
+    if node.children or forest.calls_tree(node):
+        return False
+    known = forest.known_node(node)
+    if known is not None and forest.is_machine(known):
+        outline = forest.system.plugin(known.name)[1] if forest.system is not None else None
+        sends = (part for use in outline.interfaces for part in use.sends) if outline is not None else ()
+        is_silent = outline is not None and not outline.sent and not {*sends} & _COMMANDS
+        return is_silent and RUNNING not in statuses_of(forest).statuses(node)[node].ever
+    return node.element.name == "Condition" or (known is not None and known.kind is NodeKind.CONDITION)
+
+
+def _inside(node: TreeNode) -> Iterator[TreeNode]:
+    yield node
+    for child in node.children:
+        yield from _inside(child)
+
+
+def _name(node: TreeNode) -> str:
+    return node.plugin.value if node.plugin else node.element.name
+
+
+RULE = Rule(
+    "late-condition",
+    Severity.WARNING,
+    "A reactive node checks its conditions only after its action.",
+    tree=check,
+)

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The rule `never-succeeds`, which never_succeeds.md describes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.forest.forest import CPP, Forest
+from roaml.forest.ports import ports_of
+from roaml.forest.statuses import statuses_of
+from roaml.libraries.programs.statuses import FAILURE, SUCCESS
+from roaml.model.tree import PortSetting, TreeNode
+from roaml.rules.rule import Rule, TreeContext
+from roaml.rules.support.forest import trees_of
+from roaml.rules.support.settings import integer_of
+
+_FAILING = ("AlwaysFailure", "ForceFailure")
+_ENDLESS = "KeepRunningUntilFailure"
+_THRESHOLDS = ("success_count", "success_threshold")
+
+
+def check(context: TreeContext) -> Iterator[Finding]:
+    forest = trees_of(context)
+    if forest is None:
+        return
+    possible = statuses_of(forest)
+    for _, node in forest.own_nodes:
+        if _is_library_node(forest, node, "Parallel") and node.children:
+            statuses, needed = possible.statuses(node), _needed(node)
+            failing = [child for child in node.children if SUCCESS not in statuses[child].ever]
+            if needed is not None and len(node.children) - len(failing) < needed <= len(node.children) and failing:
+                yield _of_parallel(node, failing, needed)
+    for tree in context.file.trees:
+        name = tree.id.value if tree.id else ""
+        if name in forest.executed and len(tree.roots) == 1:
+            yield from _of_tree(forest, tree.roots[0])
+
+
+def _threshold(node: TreeNode) -> PortSetting | None:
+    return next((setting for setting in ports_of(node) if setting.attribute.name in _THRESHOLDS), None)
+
+
+def _needed(node: TreeNode) -> int | None:
+    """The number of successes that a `Parallel` needs; `None` if it is not a constant."""
+    setting = _threshold(node)
+    number = integer_of(setting.value.value) if setting is not None else -1
+    return None if number is None else number if number >= 0 else len(node.children) + number + 1
+
+
+def _of_parallel(node: TreeNode, failing: list[TreeNode], needed: int) -> Finding:
+    setting = _threshold(node)
+    span = setting.value.span if setting is not None else node.element.name_span
+    able = len(node.children) - len(failing)
+    message = (
+        f"`{_name(node)}` never returns SUCCESS: it needs {needed} successes, and only {able} of its children can "
+        "succeed; lower the threshold, or change a child"
+    )
+    return RULE.at(span, message, related=[Related(child.element.name_span, "never succeeds") for child in failing])
+
+
+def _of_tree(forest: Forest, root: TreeNode) -> Iterator[Finding]:
+    """Report a node that always fails, because of which the whole tree never succeeds."""
+    possible = statuses_of(forest)
+    statuses = possible.statuses(root)
+    if SUCCESS in statuses[root].ever or FAILURE not in statuses[root].ever or any(possible.unreached(root)):
+        return
+    failing = [node for node in statuses if any(_is_library_node(forest, node, name) for name in _FAILING)]
+    if any(_name(node) == _ENDLESS for node in statuses) or not failing or root in failing:
+        return
+    able = [child for child in root.children if SUCCESS in statuses[child].ever]
+    if able:
+        message = f"the tree never returns SUCCESS, because this `{_name(failing[0])}` always fails"
+        related = [Related(root.element.name_span, f"needs a success below this `{_name(root)}`")]
+        yield RULE.at(failing[0].element.name_span, message, related=related)
+
+
+def _is_library_node(forest: Forest, node: TreeNode, name: str) -> bool:
+    return _name(node) == name and forest.known_node(node) is CPP.nodes[name]
+
+
+def _name(node: TreeNode) -> str:
+    return node.plugin.value if node.plugin else node.element.name
+
+
+RULE = Rule(
+    "never-succeeds",
+    Severity.WARNING,
+    "A tree or a `Parallel` never returns SUCCESS.",
+    tree=check,
+)
