@@ -12,7 +12,6 @@ from roaml.expr.infer import constant
 from roaml.expr.operators import MIRRORED, Operator, OperatorKind
 from roaml.expr.tree import Binary, Expr, Member, Name, String, walk
 from roaml.expr.types import INTEGER_RANGES, Scalar
-from roaml.forest.script_values import condition_results
 from roaml.forest.scripts import scripts_of
 from roaml.interruption import checkpoint
 from roaml.model.behavior.explore import condition_facts
@@ -502,21 +501,26 @@ def _why(values: ChartValues, tree: Expr) -> str:
 def check_trees(context: TreeContext) -> Iterator[Finding]:
     """Report conditions in scripts whose result is the same for all values that scripts assign to their entries."""
     forest = trees_of(context)
-    results = condition_results(forest, entries_of(forest)) if forest is not None else {}
-    for _, node in forest.own_nodes if forest is not None else ():
-        for use in scripts_of(forest, node) if forest is not None else ():
-            result = results.get((node, use.attribute.name))
-            if result is None or len(result.truth) != 1 or not result.values:
-                continue
-            (holds,) = result.truth
-            known = {name: values for name, values in result.values.items() if is_informative(values)}
-            why = ", ".join(
-                f"`{name}` is {'always ' if values.value is not None else ''}{described(values)}"
-                for name, values in list(known.items())[:MAX_NAMED]
-            )
-            effect = _EFFECTS.get((use.attribute.name, holds), "")
-            message = f"this condition is {'always' if holds else 'never'} true{_because(why)}{effect}"
-            yield RULE.at(use.attribute.value_span, message)
+    uses = [use for _, node in forest.own_nodes for use in scripts_of(forest, node)] if forest is not None else []
+    conditions = [use for use in uses if use.is_condition]
+    if forest is None or not conditions:
+        return
+    from roaml.forest.script_values import condition_results  # noqa: PLC0415 - few trees contain conditions
+
+    results = condition_results(forest, entries_of(forest))
+    for use in conditions:
+        result = results.get((use.node, use.attribute.name))
+        if result is None or len(result.truth) != 1 or not result.values:
+            continue
+        (holds,) = result.truth
+        known = {name: values for name, values in result.values.items() if is_informative(values)}
+        why = ", ".join(
+            f"`{name}` is {'always ' if values.value is not None else ''}{described(values)}"
+            for name, values in list(known.items())[:MAX_NAMED]
+        )
+        effect = _EFFECTS.get((use.attribute.name, holds), "")
+        message = f"this condition is {'always' if holds else 'never'} true{_because(why)}{effect}"
+        yield RULE.at(use.attribute.value_span, message)
 
 
 _NEVER_TICKED, _NO_EFFECT = ", so the node is never ticked", ", so it has no effect"
