@@ -161,6 +161,7 @@ class _Linker:
     def linked(self) -> LinkedFile:
         self._check_variables()
         self._check_names()
+        self._check_interfaces()
         properties = [self._property(written) for written in self.file.properties]
         self._check_use()
         kept = tuple(linked for linked in properties if linked is not None)
@@ -215,6 +216,18 @@ class _Linker:
                 )
                 self.report(ProblemKind.REPEATED_ID, written.id.span, message)
             seen.add(name)
+
+    def _check_interfaces(self) -> None:
+        """Report ports whose variable has the name of another interface of the same type that no port listens to."""
+        listened = {(port.kind, port.name.value) for port in self.file.ports if port.name is not None}
+        for port in self.file.ports:
+            for name, variable in self.ports.namesakes(port).items():
+                if port.name is not None and (port.kind, name) not in listened:
+                    message = (
+                        f"`{variable}` is a variable of `{port.name.value}`, but no port listens to `{name}`, which "
+                        f"has the same type; did you mean `{name}`?"
+                    )
+                    self.report(ProblemKind.MISLEADING, port.name.span, message, (name,))
 
     def _check_use(self) -> None:
         if any(problem.kind in (ProblemKind.CONDITION, ProblemKind.FORM) for problem in self.problems):
@@ -501,7 +514,13 @@ class _Linker:
 MAX_STEPS = 1_000_000
 """The maximum number of steps of the clock in the bounds of a time interval."""
 
-_HINTS = (ProblemKind.NEVER_TOGETHER, ProblemKind.FALSE_AT_START, ProblemKind.BEYOND_END, ProblemKind.SHORT)
+_HINTS = (
+    ProblemKind.MISLEADING,
+    ProblemKind.NEVER_TOGETHER,
+    ProblemKind.FALSE_AT_START,
+    ProblemKind.BEYOND_END,
+    ProblemKind.SHORT,
+)
 
 
 def _text(name: WrittenName | None) -> str:

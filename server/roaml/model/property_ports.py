@@ -187,6 +187,24 @@ class PortLinker:
         timers = [t for t in rates(self.system) if t.automaton is sender.automaton and t.name in names]
         return max(timers, key=lambda timer: timer.hertz, default=None)
 
+    def namesakes(self, port: Port) -> Mapping[str, str]:
+        """The other interfaces of the kind and type of a port whose name ends with the id of a variable of the port ->
+        this id."""
+        if port.name is None or port.kind not in INTERFACE_KINDS:
+            return {}
+        own = port.name.value
+        channels = self._channels(port.kind)
+        channel = channels.get(sanitise(own) if port.kind is PortKind.TOPIC else own)
+        types = {endpoint.use.type for endpoint in channel.endpoints} if channel is not None else set()
+        ids = {variable.id.value for variable in port.variables if variable.id is not None} - {_last(own)}
+        return {
+            name: _last(name)
+            for other in channels.values()
+            if other is not channel and other.sources and {endpoint.use.type for endpoint in other.endpoints} & types
+            for name in _written_names(other, port.kind)
+            if _last(name) in ids
+        }
+
     def _channels(self, kind: PortKind) -> Mapping[str, Channel]:
         return {
             PortKind.TOPIC: self.system.topics,
@@ -494,3 +512,8 @@ def _article(word: str) -> str:
 
 def _either(names: Iterable[str]) -> str:
     return " or ".join(f"`{name}`" for name in names)
+
+
+def _last(name: str) -> str:
+    """The last part of the name of an interface."""
+    return name.rpartition("/")[2]

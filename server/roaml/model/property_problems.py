@@ -27,6 +27,7 @@ class ProblemKind(enum.Enum):
     NEVER_TOGETHER = "events-never-together"
     FALSE_AT_START = "event-false-at-start"
     UNUSED = "unused-port-variable"
+    MISLEADING = "misleading-handle"
 
 
 class Remedy(enum.Enum):

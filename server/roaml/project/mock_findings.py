@@ -4,12 +4,15 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from fractions import Fraction
 
 from roaml.diagnostics import Finding
+from roaml.durations import NANOSECONDS
 from roaml.expansion.uses import VARIABLE
 from roaml.forest.forest import Forest
-from roaml.mocks.mock import ALL, MockError, matches, mock_spans, read_mock
+from roaml.mocks.mock import ALL, MockError, matches, mock_for, mock_spans, read_mock, read_mocks
+from roaml.model.tree import TreeFile, TreeNode, nodes
 from roaml.rules.parser_rules import MOCK_SYNTAX, UNMATCHED_MOCK
 from roaml.rules.rule import did_you_mean, replacements
 from roaml.suggest import close_names
@@ -25,7 +28,7 @@ def mock_findings(
         beside: returns the files beside a file with an extension.
         forest: returns the trees in a file that is not in a system; `None` if it cannot be read.
     """
-    nodes, where = _nodes(source.path, beside, forest)
+    names, where = _nodes(source.path, beside, forest)
     for span in mock_spans(source.text):
         line = source.text[span.start : span.end]
         if VARIABLE.search(line):
@@ -35,11 +38,29 @@ def mock_findings(
         except MockError as error:
             yield MOCK_SYNTAX.at(span, str(error))
             continue
-        if nodes and pattern != ALL and not matches(pattern, nodes):
+        if names and pattern != ALL and not matches(pattern, names):
             at = Span(span.start, span.start + len(pattern))
-            close = close_names(pattern, nodes)
+            close = close_names(pattern, names)
             message = f"the mock `{pattern}` matches no node of {where}{did_you_mean(close) or '; remove it'}"
             yield UNMATCHED_MOCK.at(at, message, *replacements(at, close))
+
+
+def mocked_durations(file: TreeFile, text: str) -> Mapping[TreeNode, Fraction]:
+    """The leaves of a tree that a mock can let succeed, each with the time, in ns, that it then takes; empty if the
+    text is not a file of mocks. A duration that is drawn from a distribution may be 0."""
+    try:
+        mocks = read_mocks(text)
+    except MockError:
+        return {}
+    durations: dict[TreeNode, Fraction] = {}
+    for tree in file.trees:
+        for node in nodes(tree):
+            if node.children or node.plugin is None:
+                continue
+            mock = mock_for(mocks, node.name.value if node.name else "", node.plugin.value)
+            if mock is not None and mock.probability > 0 and isinstance(mock.duration, Fraction):
+                durations[node] = mock.duration * NANOSECONDS["ms"]
+    return durations
 
 
 def _nodes(

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from fractions import Fraction
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Tag
 from roaml.expr.types import Struct, Type
@@ -30,7 +31,7 @@ from roaml.model.size import Limits, Size
 from roaml.model.structs import StructDeclaration, StructOutline
 from roaml.model.system import System, SystemAutomaton
 from roaml.model.system_file import ListedFile, SystemFile, SystemSection
-from roaml.model.tree import TreeFile
+from roaml.model.tree import TreeFile, TreeNode
 from roaml.model.value_types import TypedMachine
 from roaml.model.values.analyse import NO_VALUES, MachineValues
 from roaml.record import Record, field
@@ -129,6 +130,8 @@ class TreeContext(Record, frozen=True):
             BehaviorTree.CPP.
         found_includes: the paths in `<include>` that name no file -> the paths of the files that are read instead,
             relative to this file.
+        mocked: the leaves of a file without a system that a mock can let succeed, each with the time, in ns, that it
+            then takes.
     """
 
     source: SourceFile
@@ -144,6 +147,7 @@ class TreeContext(Record, frozen=True):
     unknown_packages: frozenset[str] = frozenset()
     refusals: tuple[UntranslatablePart, ...] = ()
     found_includes: Mapping[str, str] = field(default_factory=dict)
+    mocked: Mapping[TreeNode, Fraction] = field(default_factory=dict)
 
     @property
     def forest(self) -> Forest | None:

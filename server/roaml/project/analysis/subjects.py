@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from fractions import Fraction
 from typing import Generic, TypeAlias, TypeVar
 
 from roaml.diagnostics import Finding, Symbol
@@ -21,12 +22,12 @@ from roaml.model.dialect import dialect_of
 from roaml.model.expand import TreeFileOutline
 from roaml.model.gaps import PlacedGap
 from roaml.model.json_schema import structs_in_json
-from roaml.model.kinds import GRAMMARS, PROJECT_EXTENSION, FileKind
+from roaml.model.kinds import GRAMMARS, PROJECT_EXTENSION, FileKind, mocks_path
 from roaml.model.machine import Dialect, Machine
 from roaml.model.property_links import LinkedFile
 from roaml.model.size import Limits
 from roaml.model.system import System
-from roaml.model.tree import Include
+from roaml.model.tree import Include, TreeFile, TreeNode
 from roaml.project.analysis.families import Families
 from roaml.project.analysis.gaps import Gaps
 from roaml.project.analysis.linking import Linking
@@ -446,7 +447,17 @@ class _Reader:
             self._unknown_packages(),
             self._refusals(),
             self._found_includes(),
+            self._mocked_durations(file) if self.system_path is None else {},
         )
+
+    def _mocked_durations(self, file: TreeFile) -> Mapping[TreeNode, Fraction]:
+        """The times, in ns, that the leaves of a tree take to succeed according to the mocks beside it."""
+        mocks = self.rooms.sources.source(mocks_path(self.path))
+        if mocks is None:
+            return {}
+        from roaml.project.mock_findings import mocked_durations  # noqa: PLC0415 - few projects have mocks
+
+        return mocked_durations(file, mocks.text)
 
     def _refusals(self) -> tuple[UntranslatablePart, ...]:
         """The nodes of this file that cannot be translated, with the reasons, if the tree is executed as

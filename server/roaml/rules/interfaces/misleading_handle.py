@@ -6,10 +6,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
+from roaml.model.property_links import LinkedFile
+from roaml.model.property_problems import ProblemKind
 from roaml.model.syntax import Name
 from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.interfaces import declared, find_use, intended, renamings
+from roaml.rules.support.property_problems import problems
 
 _WORDS = {
     SymbolKind.PUBLISHER: "publishes on the topic",
@@ -44,10 +47,15 @@ def check(context: MachineContext) -> Iterator[Finding]:
             yield RULE.at(span, message, *renamings(context, span, (name,)), related=related)
 
 
+def _ports(file: LinkedFile) -> Iterator[Finding]:
+    return problems(RULE, ProblemKind.MISLEADING, file)
+
+
 RULE = Rule(
     "misleading-handle",
     Severity.WARNING,
     "A handle has the name of another topic, service or action, which has no other side.",
     machine=check,
+    xml_properties=_ports,
     whole=True,
 )

@@ -4,8 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from fractions import Fraction
 
 from roaml.diagnostics import Finding, Severity
+from roaml.durations import NANOSECONDS
+from roaml.exact_number import exact_number
 from roaml.model.node_effects import tree_effects
 from roaml.model.property_links import LinkedFile
 from roaml.model.property_problems import ProblemKind
@@ -18,6 +21,7 @@ from roaml.rules.support.timing import duration, durations, port_durations, tick
 
 
 def _tree(context: TreeContext) -> Iterator[Finding]:
+    yield from _mocked(context)
     tick = tick_period(context)
     if tick is None:
         return
@@ -30,6 +34,50 @@ def _tree(context: TreeContext) -> Iterator[Finding]:
             )
             yield RULE.at(place_of(node, port), message)
     yield from _timeouts(context, {node: (port, ns) for (node, port), ns in times.items() if ns >= tick})
+
+
+def _mocked(context: TreeContext) -> Iterator[Finding]:
+    """Report timeouts and rates of a tree that are too short for the durations of the mocks beside it."""
+    forest = context.forest if context.mocked else None
+    for _, node in forest.own_nodes if forest is not None else ():
+        known = forest.known_node(node) if forest is not None else None
+        port = _TIMES.get(known.name) if known is not None and known.behaviour else None
+        setting = next((s for s in node.ports if s.attribute.name == port), None)
+        number = exact_number(setting.value.value) if setting is not None else None
+        if port is None or setting is None or number is None or number <= 0 or len(node.children) != 1:
+            continue
+        least = _least(context, node.children[0])
+        if port == "msec" and number * NANOSECONDS["ms"] <= least:
+            message = (
+                f"this timeout of {duration(number * NANOSECONDS['ms'])} ends its child before the child can succeed, "
+                f"which takes {duration(least)} at least with the mocks of this tree"
+            )
+            yield RULE.at(setting.value.span, message)
+        if port == "hz" and least * number > NANOSECONDS["s"]:
+            message = (
+                f"the child takes {duration(least)} at least with the mocks of this tree, so it is ticked anew at most "
+                f"{float(NANOSECONDS['s'] / least):.3g} times in a second, not {float(number):g} times"
+            )
+            yield RULE.at(setting.value.span, message)
+
+
+_TIMES = {"Timeout": "msec", "RateController": "hz"}
+"""The nodes whose time must be enough for their child, with the port of this time."""
+_IN_TURN = frozenset(("Sequence", "AsyncSequence", "SequenceWithMemory", "ReactiveSequence"))
+_PASSING = frozenset(("Timeout", "RetryUntilSuccessful", "Repeat", "RateController"))
+
+
+def _least(context: TreeContext, node: TreeNode) -> Fraction:
+    """The least time that a node takes until it succeeds, in ns."""
+    name = node.plugin.value if node.plugin is not None else ""
+    inside = [_least(context, child) for child in node.children if not child.scripts]
+    if not node.children:
+        return context.mocked.get(node, Fraction(0))
+    if name in _IN_TURN:
+        return sum(inside, Fraction(0))
+    if name == "Fallback":
+        return min(inside) if len(inside) == len(node.children) else Fraction(0)
+    return inside[0] if name in _PASSING and len(inside) == 1 else Fraction(0)
 
 
 def _timeouts(context: TreeContext, times: Mapping[TreeNode, tuple[str, int]]) -> Iterator[Finding]:
