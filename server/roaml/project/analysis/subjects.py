@@ -347,7 +347,20 @@ class _Reader:
         kind: Kind = "msg" if extension == "msg" else "srv" if extension == "srv" else "action"
         package = self.path.replace("\\", "/").split("/")[-3:-2]
         definition, findings = parse_interface(self.source.text, package[0] if package else "package", name, kind)
-        return (*findings, *self._misspelled_fields(definition, findings))
+        return (*findings, *self._misspelled_fields(definition, findings), *self._exchanged_sections(definition))
+
+    def _exchanged_sections(self, definition: Definition) -> Iterator[Finding]:
+        """The finding that the request and the response of a service are exchanged."""
+        if definition.kind != "srv":
+            return
+        users = [s for s in self.rooms.systems.paths if self.path in self.rooms.machines.interface_files_of(s)]
+        systems = [system for user in users if (system := self.rooms.linking.system(user)) is not None]
+        paths = dict.fromkeys(path for system in systems for path, _ in (*system.nodes, *system.plugins))
+        if paths:
+            from roaml.project.exchanged_sections import exchanged_sections  # noqa: PLC0415 - only for services
+
+            machines = (self.rooms.sources.machine(path) for path in paths)
+            yield from exchanged_sections(definition, (machine for machine in machines if machine is not None))
 
     def _misspelled_fields(self, definition: Definition, findings: tuple[Finding, ...]) -> Iterator[Finding]:
         """The types of fields that do not exist in a known package, or whose package resembles a known one. Other
