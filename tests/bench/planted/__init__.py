@@ -54,6 +54,8 @@ ROOTS = {
     "examples": PROJECT / "examples",
     "conformance": conformance.ROOT / "models",
     "real": conformance.ROOT.parent / "real",
+    "trees": conformance.ROOT / "trees",
+    "xmlprops": conformance.ROOT / "xml-properties",
 }
 
 

@@ -360,7 +360,7 @@ class _Reader:
             from roaml.project.exchanged_sections import exchanged_sections  # noqa: PLC0415 - only for services
 
             machines = (self.rooms.sources.machine(path) for path in paths)
-            yield from exchanged_sections(definition, (machine for machine in machines if machine is not None))
+            yield from exchanged_sections(self.source.text, definition, filter(None, machines))
 
     def _misspelled_fields(self, definition: Definition, findings: tuple[Finding, ...]) -> Iterator[Finding]:
         """The types of fields that do not exist in a known package, or whose package resembles a known one. Other
