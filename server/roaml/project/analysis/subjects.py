@@ -353,14 +353,20 @@ class _Reader:
         """The finding that the request and the response of a service are exchanged."""
         if definition.kind != "srv":
             return
-        users = [s for s in self.rooms.systems.paths if self.path in self.rooms.machines.interface_files_of(s)]
-        systems = [system for user in users if (system := self.rooms.linking.system(user)) is not None]
-        paths = dict.fromkeys(path for system in systems for path, _ in (*system.nodes, *system.plugins))
-        if paths:
+        end = f"/{definition.name}"
+        for user in self.rooms.systems.paths:
+            system = self.rooms.linking.system(user)
+            listed = (*system.nodes, *system.plugins) if system is not None else ()
+            paths = dict.fromkeys(p for p, outline in listed if any(u.type.endswith(end) for u in outline.interfaces))
+            machines = [machine for path in paths if (machine := self.rooms.sources.machine(path)) is not None]
+            if not machines:
+                continue
             from roaml.project.exchanged_sections import exchanged_sections  # noqa: PLC0415 - only for services
 
-            machines = (self.rooms.sources.machine(path) for path in paths)
-            yield from exchanged_sections(self.source.text, definition, filter(None, machines))
+            findings = tuple(exchanged_sections(self.source.text, definition, machines))
+            if findings and self.path in self.rooms.machines.interface_files_of(user):
+                yield from findings
+                return
 
     def _misspelled_fields(self, definition: Definition, findings: tuple[Finding, ...]) -> Iterator[Finding]:
         """The types of fields that do not exist in a known package, or whose package resembles a known one. Other
