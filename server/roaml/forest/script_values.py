@@ -44,7 +44,7 @@ IN_ORDER = frozenset(("Sequence", "AsyncSequence", "Fallback", "AsyncFallback"))
 """The nodes that tick their children one after the other and continue with the running child."""
 TRANSPARENT = frozenset(("Inverter", "ForceSuccess", "ForceFailure", "Timeout"))
 """The nodes with one child that they always tick, and only until it ends."""
-MAX_VISITS = 20_000
+MAX_VISITS = 5_000
 """The maximum number of nodes that are visited, each as often as a loop around it needs."""
 MAX_PASSES = 20
 """The maximum number of passes through a loop until its values are assumed to be unknown."""
