@@ -226,7 +226,8 @@ export function debugging(stage: Stage): void {
                 '.pane-timeline .event[data-step]:has(title:text("/arm/command: MoveToGoal"))',
             );
             // The drawing over steps replaces the one over time, perhaps during the click.
-            const message = messages.first().locator(".pulse");
+            // A message without a name and an arrow is its mark.
+            const message = messages.first().locator("xpath=descendant-or-self::*[contains(@class, 'pulse')]");
             const click = () => done(message.click({ force: true }));
             const lit = page.locator('.pane-ros .node[data-label="/arm/command"][data-look="message"]');
             await window.repeat(() => window.until(click), lit);

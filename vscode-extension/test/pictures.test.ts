@@ -6,6 +6,7 @@ import { partAt } from "../src/pictures/partAt";
 import {
     around,
     besideCorner,
+    amongOthers,
     bestDrawing,
     centered,
     fit,
@@ -241,6 +242,24 @@ test("a drawing that does not fit is shown around its root", () => {
     assert.deepEqual(rootAt(1000), { x: -24, y: 810, scale: 1 });
     assert.deepEqual(rootAt(0), { x: -24, y: -24, scale: 1 });
     assert.deepEqual(rootAt(1980), { x: -24, y: 1624, scale: 1 });
+});
+
+test("the first view shows the root and as many whole nodes as possible", () => {
+    const sight = { x: -24, y: -24, scale: 1 };
+    const drawing = { width: 1000, height: 300 };
+    const root = box(450, 0);
+    // With the root in the middle, the first child would be cut off.
+    const children = [box(290, 100), box(420, 100), box(550, 100)];
+    assert.equal(around(sight, drawing, root, 400, 400).x, 300);
+    const first = amongOthers(sight, drawing, root, children, [root, ...children], 400, 400);
+    assert.equal(first.x, 550 + 100 + 24 - 400);
+    // Without children, the root is in the middle, or at least visible.
+    assert.equal(amongOthers(sight, drawing, root, [], [root], 400, 400).x, 300);
+    assert.equal(amongOthers(sight, drawing, box(0, 0), children, children, 400, 400).x, -24);
+    // What is near the root is more important than others.
+    const near = [box(640, 100)];
+    const far = [box(180, 100), box(180, 140), box(380, 100)];
+    assert.ok(amongOthers(sight, drawing, root, near, [root, ...near, ...far], 400, 400).x >= 340);
 });
 
 function box(x: number, y: number): Box {

@@ -147,6 +147,66 @@ export function around(sight: Sight, drawing: Area, box: Box, width: number, hei
     return { ...sight, x: inside(x, sight.x, drawing.width, w), y: inside(y, sight.y, drawing.height, h) };
 }
 
+/**
+ * The view in which a box is visible, with as many other boxes as possible as a whole; those near it are more important.
+ * Among equally good views, the one with the box nearest to the middle. The box is in the middle if there are no others.
+ */
+export function amongOthers(
+    sight: Sight,
+    drawing: Area,
+    box: Box,
+    near: readonly Box[],
+    others: readonly Box[],
+    width: number,
+    height: number,
+): Sight {
+    const central = around(sight, drawing, box, width, height);
+    const [w, h] = [width / sight.scale, height / sight.scale];
+    const margin = MARGIN / sight.scale;
+    const places = (now: number, size: number, window: number, own: Part, all: readonly Part[]): readonly number[] => {
+        if (size <= window) return [now];
+        const edges = all.flatMap(({ at, length }) => [at - margin, at + length + margin - window]);
+        const inside = edges.map((at) => Math.max(-margin, Math.min(at, size + margin - window)));
+        const shows = (at: number) => at <= own.at && own.at + own.length <= at + window;
+        return [now, ...new Set(inside.filter(shows))].slice(0, MAX_PLACES);
+    };
+    const reachable = others.filter(({ x, y }) => Math.abs(x - box.x) < 2 * w && Math.abs(y - box.y) < 2 * h);
+    const columns = places(central.x, drawing.width, w, across(box), reachable.map(across));
+    const rows = places(central.y, drawing.height, h, along(box), reachable.map(along));
+    const value = (x: number, y: number): number => {
+        let sum = -(Math.abs(x - central.x) + Math.abs(y - central.y)) / 1e6;
+        for (const other of reachable) {
+            const [right, bottom] = [other.x + other.width, other.y + other.height];
+            if (other.x >= x && right <= x + w && other.y >= y && bottom <= y + h) sum += near.includes(other) ? 3 : 1;
+            else if (other.x < x + w && right > x && other.y < y + h && bottom > y) sum -= 0.5;
+        }
+        return sum;
+    };
+    let best = { x: central.x, y: central.y, value: value(central.x, central.y) };
+    for (const x of columns)
+        for (const y of rows) {
+            const now = value(x, y);
+            if (now > best.value) best = { x, y, value: now };
+        }
+    return { ...sight, x: best.x, y: best.y };
+}
+
+/** The maximum number of places in one direction that are compared. */
+const MAX_PLACES = 100;
+/** The extent of a box in one direction. */
+interface Part {
+    readonly at: number;
+    readonly length: number;
+}
+
+function across({ x, width }: Box): Part {
+    return { at: x, length: width };
+}
+
+function along({ y, height }: Box): Part {
+    return { at: y, length: height };
+}
+
 /** The smallest box around boxes. */
 export function union(boxes: readonly Box[]): Box {
     const [x, y] = [Math.min(...boxes.map((box) => box.x)), Math.min(...boxes.map((box) => box.y))];

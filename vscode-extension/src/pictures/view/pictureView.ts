@@ -20,7 +20,7 @@ import {
     type Words,
 } from "../contract";
 import {
-    around,
+    amongOthers,
     besideCorner,
     bestDrawing,
     fit,
@@ -283,7 +283,19 @@ export class PictureView {
         if (!this.drawing) return;
         const sight = fitLegibly(this.drawing, width, height, this.least);
         const first = this.box(this.first);
-        this.look(first ? around(sight, this.drawing, first, width, height) : sight);
+        this.look(first ? this.amongOthers(sight, this.drawing, first, width, height) : sight);
+    }
+
+    /** The view that shows a node with as many others as possible, first of all those to which its edges lead. */
+    private amongOthers(sight: Sight, drawing: Drawing, node: DrawnNode, width: number, height: number): Sight {
+        const { picture } = this;
+        const id = picture?.nodes[node.index]?.id;
+        const targets = new Set(picture?.edges.filter(({ source }) => source === id).map(({ target }) => target));
+        const parents = new Set(picture?.nodes.map(({ parent }) => parent));
+        const idOf = ({ index }: DrawnNode) => picture?.nodes[index]?.id ?? "";
+        const others = drawing.nodes.filter((other) => !parents.has(idOf(other)));
+        const near = others.filter((other) => targets.has(idOf(other)));
+        return amongOthers(sight, drawing, node, near, others, width, height);
     }
 
     /** The node that is shown first: that of the caret, otherwise the initial state, otherwise the first node. */
