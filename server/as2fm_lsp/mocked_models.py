@@ -164,6 +164,12 @@ def load_mocked_tree(
         tree = load_tree(path, run, settings, texts)
     except MissingMocksError as missing:
         if texts or (declared.has_mocks and declared.file != beside):  # nothing is written beside standard input
+            parents = list(dict.fromkeys(leaf.type for leaf in missing.leaves if leaf.children))
+            if parents:
+                raise MockError(
+                    f"{messages.shown(path)}: no library describes these nodes with children: {', '.join(parents)}; "
+                    f"state in mocks like which node they behave, for example `{parents[0]}: as Sequence`"
+                ) from None
             raise _missing_mocks(path, [leaf.type for leaf in missing.leaves], messages) from None
         leaves = missing.mockable
         if not uses_proposal:
@@ -219,7 +225,8 @@ def _review(
     """The error that asks the user to review proposed mocks. They are written if there was no file with mocks."""
     lines = "\n".join(f"  {leaf.line}" for leaf in leaves if leaf.is_missing)
     if not is_new:
-        return MockError(f"{messages.shown(beside)}: leaves have no mock; add lines for them, for example\n{lines}")
+        nodes = _noun(leaves)[1]
+        return MockError(f"{messages.shown(beside)}: {nodes} have no mock; add lines for them, for example\n{lines}")
     reason = _why_not_written(beside)
     try:
         if not reason:
@@ -231,7 +238,8 @@ def _review(
             f"{messages.shown(path)}: its leaves need mocks, and a proposal could not be written into "
             f"{messages.shown(beside)}: {reason}; write these lines into a file and name it with --mocks\n{lines}"
         )
-    leaves_ = "its leaf needs a mock" if (counted := _counted(leaves)) == "1 leaf" else f"its {counted} need mocks"
+    counted = _counted(leaves)
+    leaves_ = f"its {counted.removeprefix('1 ')} needs a mock" if counted in _SINGLE else f"its {counted} need mocks"
     events = sum(not leaf.is_missing for leaf in leaves)
     proposal = "a proposal" if not events else f"a proposal, with {events} more for random events,"
     return MockError(
@@ -240,11 +248,22 @@ def _review(
     )
 
 
+def _noun(leaves: Iterable[MockableLeaf]) -> tuple[str, str]:
+    """What nodes without a mock are called, one and several: nodes if some of them have children, otherwise leaves."""
+    has_parents = any(leaf.kind.has_children for leaf in leaves if leaf.is_missing)
+    return ("node", "nodes") if has_parents else ("leaf", "leaves")
+
+
+_SINGLE = ("1 leaf", "1 node")
+
+
 def _counted(leaves: Iterable[MockableLeaf]) -> str:
-    """How many leaves have no mock and, if one line describes several of them, how many kinds, each with a line."""
+    """How many leaves, or nodes if some have children, have no mock and, if one line describes several of them, how
+    many kinds, each with a line."""
     missing = [leaf for leaf in leaves if leaf.is_missing]
     count = sum(len(leaf.nodes) for leaf in missing)
-    text = "1 leaf" if count == 1 else f"{count} leaves"
+    one, many = _noun(missing)
+    text = f"1 {one}" if count == 1 else f"{count} {many}"
     return text if len(missing) == count else f"{text} of {len(missing)} {'kind' if len(missing) == 1 else 'kinds'}"
 
 

@@ -111,6 +111,20 @@ def test_settings(name: str, text: str, at: str, expected: str | None) -> None:
     assert shown is None if expected is None else expected in (shown or "")
 
 
+@pytest.mark.parametrize(
+    ("text", "at", "expected"),
+    [
+        ("Own: as Repeat(num_cycles=3)  # ours", "Repeat", "num_cycles"),
+        ("Own: as Repeat(num_cycles=3)", "Own", None),
+        ("Own: 0.5 in 2 s", "0.5", None),
+        ("Own: as Nothing", "Nothing", None),
+    ],
+)
+def test_mocks(text: str, at: str, expected: str | None) -> None:
+    shown = hover_in(text, at, "tree.mocks")
+    assert shown is None if expected is None else expected in (shown or "")
+
+
 def test_every_setting_has_documentation() -> None:
     names = {f"{table}.{name}" if table else name for table, names in TABLES_OF_SETTINGS.items() for name in names}
     assert set(SETTING_DOCUMENTATION) == names

@@ -89,6 +89,21 @@ def test_leaves_of_the_tree_are_offered_in_its_mocks() -> None:
     assert labels("/models/tree.mocks", "# mocks\nGr|", tree=TREE) == ["ComputePathToPose", "Grasp", "Look"]
 
 
+OWN = '<root BTCPP_format="4"><BehaviorTree ID="A"><Own><Grasp/></Own></BehaviorTree></root>'
+
+
+def test_nodes_with_children_and_what_they_behave_like_are_offered() -> None:
+    assert labels("/models/tree.mocks", "|", tree=OWN) == ["Grasp", "Own"]
+    found, _ = completions("/models/tree.mocks", "Own: |", tree=OWN)
+    assert found is not None
+    inserted = {item.label: item.snippet for item in found.items}
+    assert inserted["ForceSuccess"] == "as ForceSuccess"
+    assert "Sleep" not in inserted
+    assert "Inverter" in labels("/models/tree.mocks", "Own: as In|", tree=OWN)
+    assert labels("/models/tree.mocks", "Own: as Repeat(|)", tree=OWN) == ["num_cycles"]
+    assert labels("/models/tree.mocks", "Grasp: |", tree=OWN) == []
+
+
 def test_distributions_are_offered_as_durations_of_mocks() -> None:
     found, _ = completions("/models/tree.mocks", "Grasp: 0.9 in no|", tree=TREE)
     assert found is not None

@@ -102,6 +102,14 @@ def test_leaves_without_mocks_are_named(tmp_path: Path, capsys: pytest.CaptureFi
         ("Drive: often", "is not a probability"),
         ("Drive: 1.5", "is not a probability"),
         ("Drive: 0.5 in a while", "is not a duration"),
+        ("Drive: as Sequenc", "no library has this node with children; did you mean `Sequence`?"),
+        ("Drive: as Precondition", "its script cannot be set here"),
+        ("Drive: as Sleep", "no library has this node with children; for example `ForceSuccess`"),
+        ("Drive: as Repeat(cycles=3)", "`Repeat` has no port `cycles`; did you mean `num_cycles`?"),
+        ("Drive: as Inverter(x=3)", "`Inverter` has no port `x`; it has no ports"),
+        ("Drive: as Repeat(num_cycles)", "`num_cycles` does not set a port of `Repeat`"),
+        ("Drive: as Repeat(num_cycles={n})", "must be a constant here"),
+        ("Drive: as two words", "is not a node of a library; write it as `Repeat(num_cycles=3)`"),
     ],
 )
 def test_mocks_that_are_not_valid(mock: str, reason: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -111,8 +119,7 @@ def test_mocks_that_are_not_valid(mock: str, reason: str, tmp_path: Path, capsys
 @pytest.mark.parametrize(
     ("content", "reason"),
     [
-        ("<Mine><Drive/></Mine>", "such as `Inverter`, `ForceSuccess` or `Precondition`, or write `Mine` as a plugin"),
-        ("<Mine><Drive/><Drive/></Mine>", "its behaviour is not known; in a copy of the tree, write the node"),
+        ("<Mine><Drive/></Mine>", "these nodes with children: Mine; state in mocks like which node they behave, for"),
         (
             "<ScriptCondition code='level &gt; 3'/>",
             "nothing sets the entry `level`; give it a value at the start, with `--entry level=VALUE`",
@@ -128,9 +135,7 @@ def test_mocks_that_are_not_valid(mock: str, reason: str, tmp_path: Path, capsys
             "means the entry whose name",
         ),
         ("<LoopInt queue='{q}' value='{v}'><Drive/></LoopInt>", "a queue in the blackboard"),
-        ("<ManualSelector><Drive/></ManualSelector>", "asks a person to choose a child"),
-        ("<ManualSelector><Drive/></ManualSelector>", "such as `Sequence`, `Fallback` or `Switch2`, or write"),
-        ("<EntryUpdatedDecorator><Drive/></EntryUpdatedDecorator>", "such as `SkipUnlessUpdated`, or write"),
+        ("<ManualSelector><Drive/></ManualSelector>", "for example `ManualSelector: as Sequence`"),
     ],
 )
 def test_trees_that_are_rejected(content: str, reason: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

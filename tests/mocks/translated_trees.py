@@ -53,17 +53,26 @@ def forest_of(text: str, version: Version = NEWEST_VERSION) -> Forest:
 
 
 def with_mocks(
-    text: str, entries: dict[str, str], ticks: int, *, happens: bool = False, version: Version = NEWEST_VERSION
+    text: str,
+    entries: dict[str, str],
+    ticks: int,
+    *,
+    happens: bool = False,
+    version: Version = NEWEST_VERSION,
+    more: tuple[Mock, ...] = (),
 ) -> MockedTree:
     """A tree ticked at 10 Hz; `Act<n>` is RUNNING for n ticks.
 
     Args:
         happens: whether events of the world always occur.
         version: the version of BehaviorTree.CPP that executes the tree.
+        more: further mocks.
     """
     acts = [Mock(f"Act{n}", 0.6, Fraction(100 * n)) for n in range(4)]
     world = [Mock(node, float(happens)) for node in (*WORLD_CONTROLS, *WORLD_DECORATORS)]
-    options = MockOptions((*acts, *world, Mock("*", 0.6)), entries, max_time=ticks * 10**8 + 5 * 10**7, counts=True)
+    options = MockOptions(
+        (*acts, *world, *more, Mock("*", 0.6)), entries, max_time=ticks * 10**8 + 5 * 10**7, counts=True
+    )
     return mocked(forest_of(text, version), options)
 
 

@@ -32,7 +32,8 @@ def add_mocks(parser: argparse.ArgumentParser) -> argparse._ArgumentGroup:
     add = group.add_argument
     add("--mock", action="append", default=[], metavar="'NODE: P in TIME'", help="leaves with this name or type "
         "succeed with probability P; actions are RUNNING for TIME before, such as '2 s' or 'normal(2 s, "
-        "300 ms)'; `*` in NODE matches any text; may be repeated")  # fmt: skip
+        "300 ms)'; 'NODE: as TYPE(PORT=VALUE)' executes nodes with children like a node of a library; `*` in NODE "
+        "matches any text; may be repeated")  # fmt: skip
     add(
         "--mocks",
         type=InputPath,

@@ -79,7 +79,7 @@ def register(context: Context) -> None:
         return {
             "uri": session.convert.uri(known.path),
             "exists": known.exists,
-            "rows": [_row(leaf) for leaf in known.leaves],
+            "rows": [_row(leaf) for leaf in known.leaves if not leaf.kind.has_children],
             "result": "" if found is None else f"{SUCCEEDS}: {result_words(current, found)}",
             "problem": "",
         }

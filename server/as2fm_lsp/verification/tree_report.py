@@ -63,10 +63,26 @@ def assumptions(mocked: MockedTree) -> str:
         text += "; drawn durations are rounded up to ticks"
         if max(cut) > 0:
             text += f", and the most extreme ones, with a probability of at most {max(cut):.1g}, are cut"
+    if likes := _likes(mocked):
+        text += f"; executed like nodes of the library: {likes}"
     if mocked.assumed:
         names = ", ".join(f"`{node.name}`" for node in mocked.assumed)
         text += f"; at each tick, the event of {names} has the probability {EVENT_PROBABILITY:g} (no mock)"
     return text
+
+
+def _likes(mocked: MockedTree) -> str:
+    """The nodes that are executed like nodes of libraries, by their types, or by their names if those of a type
+    differ; "" if there are none."""
+    likes: dict[str, dict[str, str]] = {}
+    for node in mocked.tree.nodes:
+        if node.own_type:
+            likes.setdefault(node.own_type, {})[node.name] = node.like
+    shown: dict[str, str] = {}
+    for type_, names in likes.items():
+        same = set(names.values())
+        shown |= {type_: same.pop()} if len(same) == 1 else names
+    return ", ".join(f"`{own}` as `{like}`" for own, like in shown.items())
 
 
 def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf, is_whole: bool) -> Iterator[str]:
@@ -233,6 +249,11 @@ def as_row(mocked: MockedTree, outcome: TreeOutcome) -> dict[str, Any]:
             {"node": leaf.node.name, "number": leaf.node.number, "mock": leaf.mock.behaviour(), "cut": leaf.drawn.cut}
             for leaf in mocked.leaves
             if leaf.drawn is not None
+        ],
+        "like": [
+            {"node": n.name, "number": n.number, "type": n.own_type, "like": n.like}
+            for n in mocked.tree.nodes
+            if n.own_type
         ],
         "assumed": [{"node": n.name, "number": n.number, "probability": EVENT_PROBABILITY} for n in mocked.assumed],
     }

@@ -14,9 +14,13 @@ from roaml.text import Span
 
 if TYPE_CHECKING:
     from roaml.distributions.outcomes import Outcomes
+    from roaml.mocks.likeness import Likeness
     from roaml.model.drawn_durations import DrawnDuration
 
 _MOCK = regex(r"(?P<name>.+?)\s*:\s*(?P<probability>[^\s:]+)(?:\s+in\s+(?P<duration>.+))?\Z")
+KEYWORD = "as"
+"""The word before the node of a library like which a node is executed."""
+_LIKE = regex(rf"(?P<name>.+?)\s*:\s*{KEYWORD}\s+(?P<like>.+)\Z")
 ALL = "*"
 TREE_MARK = "/"
 """Separates the name of a tree from that of a node."""
@@ -47,18 +51,21 @@ def drawn_ticks(duration: DrawnDuration, rate: Fraction) -> Outcomes:
 
 
 class Mock(Record, frozen=True):
-    """A mock: the behaviour of the leaves whose name or type matches a pattern.
+    """A mock: the behaviour of the leaves, or of the nodes with children, whose name or type matches a pattern.
 
     Attributes:
         pattern: the name of a node or of its type; `*` matches any text and `?` any character. In a system with several
             trees, the name of a tree can precede it: `anna/Grasp`.
         probability: the probability of SUCCESS or, for nodes that depend on the world, of their event at a tick.
         duration: the time for which an action is RUNNING, in ms or as a distribution.
+        like: the node of a library like which nodes with children are executed; `None` for a mock of leaves, of which
+            alone `probability` and `duration` are.
     """
 
     pattern: str
     probability: float
     duration: Fraction | DrawnDuration = Fraction(0)
+    like: Likeness | None = None
 
     def behaviour(self, *, is_instant: bool = False) -> str:
         """The probability and the duration, as they are written in a mock: `0.9 in 2 s`.
@@ -66,6 +73,8 @@ class Mock(Record, frozen=True):
         Args:
             is_instant: whether the node ignores the duration, such as a condition.
         """
+        if self.like is not None:
+            return f"{KEYWORD} {self.like.text}"
         share = f"{self.probability:g}"
         if is_instant or not self.duration:
             return share
@@ -81,6 +90,13 @@ def read_mock(text: str) -> Mock:
     Raises:
         MockError: `text` is not a valid mock.
     """
+    if (like := _LIKE.match(text.strip())) is not None:
+        from roaml.mocks.likeness import LikenessError, read_likeness  # noqa: PLC0415 - few mocks need the libraries
+
+        try:
+            return Mock(like["name"], 1.0, like=read_likeness(like["like"]))
+        except LikenessError as error:
+            raise MockError(f"{error} in `{text.strip()}`") from None
     match = _MOCK.match(text.strip())
     if match is None:
         raise MockError(f"`{text.strip()}` is not a mock; write one as `NODE: 0.9 in 2 s`")
@@ -128,8 +144,13 @@ def named_mocks(mocks: Mapping[str, str]) -> tuple[Mock, ...]:
     return tuple(read_mock(f"{node}: {mock}") for node, mock in mocks.items())
 
 
+def likeness_for(mocks: Sequence[Mock], name: str, type_: str, tree: str = "") -> Mock | None:
+    """The mock that states like which node of a library a node with children is executed, selected as by `mock_for`."""
+    return _selected([mock for mock in mocks if mock.like is not None], name, type_, tree)
+
+
 def mock_for(mocks: Sequence[Mock], name: str, type_: str, succeeds: bool = False, tree: str = "") -> Mock | None:
-    """The mock for a node: the mock with the name of the node as pattern, otherwise the mock with the type of the node
+    """The mock for a leaf: the mock with the name of the node as pattern, otherwise the mock with the type of the node
     as pattern, otherwise the first mock whose pattern matches, otherwise the mock `*`. `None` if no mock matches. Of
     mocks for the same name or type, the one that begins with the name of the tree is used.
 
@@ -137,6 +158,10 @@ def mock_for(mocks: Sequence[Mock], name: str, type_: str, succeeds: bool = Fals
         succeeds: whether the node is known to always succeed. Then a mock with the probability 1 replaces the mock `*`.
         tree: the name of the executed tree; "" if it has none.
     """
+    return _selected([mock for mock in mocks if mock.like is None], name, type_, tree, succeeds=succeeds)
+
+
+def _selected(mocks: Sequence[Mock], name: str, type_: str, tree: str, *, succeeds: bool = False) -> Mock | None:
     for exact in node_words(name, tree) + node_words(type_, tree):
         for mock in mocks:
             if mock.pattern == exact:

@@ -27,6 +27,7 @@ from roaml.lower.programs.nodes import (
     compiled_scripts,
     event_probability,
     flags_at,
+    is_own_parent,
     port_values,
     program_of,
 )
@@ -108,11 +109,11 @@ class MockedTree(Record, frozen=True, eq=False):
 
 
 class MissingMocksError(Exception):
-    """Raised if leaves have no mock.
+    """Raised if nodes have no mock.
 
     Attributes:
-        leaves: these leaves.
-        mockable: all leaves of the tree whose behaviour a mock determines, with proposals.
+        leaves: these nodes: leaves, and nodes with children that no library describes.
+        mockable: all nodes of the tree whose behaviour a mock determines, with proposals.
     """
 
     def __init__(self, leaves: Sequence[ExecutedNode], mockable: Sequence[MockableLeaf]) -> None:
@@ -126,9 +127,9 @@ def mocked(forest: Forest, options: MockOptions) -> MockedTree:
 
     Raises:
         TreeRefusal: the tree cannot be translated.
-        MissingMocksError: a leaf needs a mock and has none.
+        MissingMocksError: a leaf, or a node with children that no library describes, has no mock.
     """
-    return _Builder(unfold(forest), options).build()
+    return _Builder(unfold(forest, options.mocks), options).build()
 
 
 class _Builder:
@@ -142,6 +143,9 @@ class _Builder:
     def build(self) -> MockedTree:
         missing = []
         for node in self.tree.nodes:
+            if is_own_parent(node, self.tree.version):
+                missing.append(node)
+                continue
             program = program_of(node, self.tree.version)
             self.programs[node.number] = program
             if program is None and self.find_mock(node) is None:

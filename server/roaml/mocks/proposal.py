@@ -11,9 +11,10 @@ from fractions import Fraction
 from roaml.forest.forest import Forest
 from roaml.libraries.programs.statuses import SUCCESS
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree
-from roaml.lower.programs.nodes import EVENT_PROBABILITY, event_probability, program_of
+from roaml.lower.programs.nodes import EVENT_PROBABILITY, event_probability, is_own_parent, program_of
 from roaml.mocks.assumptions import Assumption, Constant, assumption
 from roaml.mocks.guards import guards_of
+from roaml.mocks.likeness import Likeness
 from roaml.mocks.mock import ALL, Mock, mock_for
 from roaml.mocks.unfolding import unfold
 from roaml.record import Record
@@ -31,21 +32,38 @@ ACTION = Assumption(0.9, Fraction(1000), "no library describes it: a common acti
 
 
 class LeafKind(Enum):
-    """What the mock of a leaf determines."""
+    """What the mock of a node determines."""
 
     CONDITION = "condition"
     SYNCHRONOUS = "action without delay"
     ACTION = "action"
     EVENT = "event"
+    CONTROL = "control node"
+    DECORATOR = "decorator"
 
     @property
     def has_duration(self) -> bool:
         """Whether the duration of the mock has an effect."""
         return self is LeafKind.ACTION
 
+    @property
+    def has_children(self) -> bool:
+        """Whether the mock states like which node of a library the node is executed."""
+        return self in (LeafKind.CONTROL, LeafKind.DECORATOR)
+
+
+SEQUENCE = "Sequence"
+"""The type of the node of the library that is proposed for nodes with children. With one child, it returns the status
+of this child."""
+_PARENTS = {
+    LeafKind.DECORATOR: "no library describes it: it returns the status of its child",
+    LeafKind.CONTROL: "no library describes it: it ticks its children one after the other while they succeed",
+}
+
 
 class MockableLeaf(Record, frozen=True, eq=False):
-    """Leaves that one mock describes: those of a type, or those of a name if the proposals for the type differ.
+    """Leaves that one mock describes: those of a type, or those of a name if the proposals for the type differ; or
+    nodes with children that no library describes.
 
     Attributes:
         kind: what the mock determines.
@@ -84,7 +102,7 @@ def mockable_leaves(forest: Forest, mocks: Sequence[Mock] = ()) -> tuple[Mockabl
     Raises:
         TreeRefusal: the file has no executed tree, or the tree is invalid.
     """
-    return leaves_of(unfold(forest), mocks)
+    return leaves_of(unfold(forest, mocks), mocks)
 
 
 def leaves_of(tree: ExecutedTree, mocks: Sequence[Mock]) -> tuple[MockableLeaf, ...]:
@@ -102,6 +120,7 @@ def proposed_text(tree: str, leaves: Sequence[MockableLeaf]) -> str:
         f"# Proposed mocks for the leaves of {tree}. They are assumptions, not measurements:",
         "# replace them by what you know of your robot.",
         "# NODE: probability of SUCCESS in TIME",
+        *(["# NODE: as a node of a library"] if any(leaf.kind.has_children for leaf in leaves) else []),
     )
     return "\n".join([*head, *(leaf.line for leaf in leaves)]) + "\n"
 
@@ -137,7 +156,8 @@ def _groups(tree: ExecutedTree, mocks: Sequence[Mock]) -> Iterator[MockableLeaf]
                 longest = max(same, key=lambda p: p.assumption.duration)
                 pattern = mock.pattern if mock is not None and mock.pattern in _words(same) else name
                 assumed = longest.assumption
-                proposed = Mock(_pattern(pattern), assumed.probability, assumed.duration)
+                like = Likeness(SEQUENCE) if longest.kind.has_children else None
+                proposed = Mock(_pattern(pattern), assumed.probability, assumed.duration, like)
                 yield MockableLeaf(longest.kind, mock, proposed, assumed.reason, tuple(p.node for p in same))
 
 
@@ -159,6 +179,8 @@ def _by_mock(proposals: Sequence[_Proposal], mocks: Sequence[Mock]) -> list[tupl
 
 
 def _mock_of(proposal: _Proposal, mocks: Sequence[Mock]) -> Mock | None:
+    if proposal.kind.has_children:
+        return None
     if proposal.kind is LeafKind.EVENT:
         mocks = [mock for mock in mocks if mock.pattern != ALL]
     return mock_for(mocks, proposal.node.name, proposal.node.type)
@@ -170,6 +192,9 @@ def _proposal(node: ExecutedNode, tree: ExecutedTree, guards: Mapping[int, froze
     Args:
         guards: see `guards_of`.
     """
+    if is_own_parent(node, tree.version):
+        kind = LeafKind.DECORATOR if len(node.children) == 1 else LeafKind.CONTROL
+        return _Proposal(node, kind, Assumption(1.0, Fraction(0), _PARENTS[kind]))
     program = program_of(node, tree.version)
     if program is not None:
         if not program.reads_world or event_probability(node) is not None:

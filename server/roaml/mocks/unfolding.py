@@ -4,12 +4,15 @@ entries to which names in this use refer (docs/spec/mocks.md#blackboard)."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from roaml.forest.expanded import forest_outlines
 from roaml.forest.forest import Forest
+from roaml.libraries.version import Version
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree, FrameNames, TreeLinks, identifier
+from roaml.lower.programs.nodes import is_own_parent
 from roaml.lower.programs.refusal import TreeRefusal
+from roaml.mocks.mock import Mock, likeness_for
 from roaml.model.expand import (
     MAX_NODES,
     MAX_SUBTREES,
@@ -20,6 +23,7 @@ from roaml.model.expand import (
     expand,
 )
 from roaml.model.tree import Tree
+from roaml.record import replace
 from roaml.text import Location
 
 UNNAMED = "BehaviorTree_0"
@@ -33,8 +37,11 @@ class _Names(FrameNames, frozen=True, eq=False):
         return identifier(super().entry(name))
 
 
-def unfold(forest: Forest) -> ExecutedTree:
+def unfold(forest: Forest, mocks: Sequence[Mock] = ()) -> ExecutedTree:
     """The executed tree of the analysed file.
+
+    Args:
+        mocks: those that state like which nodes of libraries other nodes with children are executed are applied.
 
     The nodes have the numbers of a system's tree and of pictures, which do not number `<SubTree>`; these have the
     numbers after the last node.
@@ -52,7 +59,8 @@ def unfold(forest: Forest) -> ExecutedTree:
     for value in (value for frame in expansion.frames for value in frame.remapped.values()):
         if isinstance(value, PortConstant):
             links.initial[identifier(value.variable)] = value.text
-    nodes = tuple(_nodes(forest, expansion, links))
+    version = forest.settings.version
+    nodes = tuple(_like_library(node, mocks, version) for node in _nodes(forest, expansion, links))
     return ExecutedTree(name or UNNAMED, nodes, links.initial, forest.settings.version)
 
 
@@ -69,6 +77,18 @@ def _nodes(forest: Forest, expansion: Expansion, links: TreeLinks) -> Iterator[E
         children = tuple(before + entered[child][0] if entered[child] else child for child in instance.children)
         known = forest.known_node(links.source(instance.source))
         yield links.node(instance, uses[instance.use].frame, known, children)
+
+
+def _like_library(node: ExecutedNode, mocks: Sequence[Mock], version: Version) -> ExecutedNode:
+    """A node as it is executed: a node with children that no library describes like the one that a mock names."""
+    if not is_own_parent(node, version):
+        return node
+    mock = likeness_for(mocks, node.name, node.type)
+    if mock is None or mock.like is None:
+        return node
+    written = {port for port, _, _, _ in node.ports()}
+    constants = tuple((port, value) for port, value in mock.like.ports if port not in written)
+    return replace(node, type=mock.like.type, known=mock.like.node, constants=constants, own_type=node.type)
 
 
 def _check(forest: Forest, tree: Tree, expansion: Expansion, links: TreeLinks) -> None:

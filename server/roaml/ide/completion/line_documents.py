@@ -12,6 +12,8 @@ from roaml.diagnostics import Symbol
 from roaml.distributions.laws import LAWS
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank
 from roaml.interfaces import PRIMITIVES
+from roaml.mocks.likeness import library_parents
+from roaml.mocks.mock import KEYWORD
 from roaml.model.config_files import CONFIG_FILE
 from roaml.model.kinds import MOCKS_EXTENSION, FileKind
 from roaml.model.tree import nodes
@@ -29,6 +31,8 @@ _WORD_AFTER = regex(r"[\w/-]*", re.ASCII)
 _KEY = regex(r"\s*([\w-]*)\Z", re.ASCII)
 _VALUE = regex(r"^\s*([\w.-]+)\s*=[^=]*\Z", re.ASCII)
 _DURATION = regex(r":.*\sin\s+\w*\Z")
+_LIKE = regex(r"^\s*(.+?)\s*:\s*(as\s+)?\w*\Z")
+_PORT_OF_LIKE = regex(r":\s*as\s+(\w+)\s*\((?:[^)]*,)?\s*\w*\Z")
 _CODE_SETTINGS = ("select", "ignore", "severity")
 
 
@@ -46,6 +50,8 @@ def in_lines(analysis: Analysis, path: str, offset: int) -> tuple[Span, list[Com
         items = list(_in_configuration(text[:offset], line))
         return (_word(text, offset), items) if items else None
     if path.endswith(MOCKS_EXTENSION):
+        if "#" not in line and (likes := list(_likes(analysis, path, line))):
+            return _word(text, offset), likes
         if "#" in line or (":" in line and not _DURATION.search(line)):
             return None
         return _word(text, offset), list(_durations() if ":" in line else _nodes(analysis, path))
@@ -116,8 +122,31 @@ def _nodes(analysis: Analysis, path: str) -> Iterator[CompletionItem]:
         for node in nodes(tree):
             if node.plugin is not None and not node.is_subtree and not node.children:
                 names.setdefault(node.plugin.value, "node")
+    names.update((name, "node with children") for name in _own_parents(analysis, path))
     for name, detail in names.items():
         yield CompletionItem(name, ItemKind.PLUGIN, detail=detail)
+
+
+def _own_parents(analysis: Analysis, path: str) -> Iterator[str]:
+    """The types of the nodes with children that no library describes, of the tree that a file of mocks belongs to."""
+    forest = analysis.forest(f"{path.removesuffix(MOCKS_EXTENSION)}.xml")
+    for _, _, node in forest.all_nodes if forest is not None else ():
+        if node.plugin is None or node.is_subtree or not node.children:
+            continue
+        known = forest.declaration(node) if forest is not None else None
+        if known is None or not known.behaviour:
+            yield node.plugin.value
+
+
+def _likes(analysis: Analysis, path: str, line: str) -> Iterator[CompletionItem]:
+    """The nodes of libraries like which a node with children can be executed, and their ports."""
+    if (ports := _PORT_OF_LIKE.search(line)) is not None:
+        known = library_parents().get(ports[1])
+        for port in known.ports if known is not None else ():
+            yield CompletionItem(port.name, ItemKind.PORT, f"{port.name}=$1", port.text)
+    elif (like := _LIKE.match(line)) is not None and (like[2] or like[1] in _own_parents(analysis, path)):
+        for name, node in library_parents().items():
+            yield CompletionItem(name, ItemKind.PLUGIN, name if like[2] else f"{KEYWORD} {name}", node.text)
 
 
 def _durations() -> Iterator[CompletionItem]:

@@ -16,6 +16,7 @@ from roaml.ide.hover.expression import in_expression
 from roaml.ide.hover.library_node import of_library
 from roaml.ide.hover.listed_file import listed_file
 from roaml.ide.hover.markup import in_markup
+from roaml.ide.hover.mock import mock_at
 from roaml.ide.hover.place import Place, place_at
 from roaml.ide.hover.possible_values import possible_values
 from roaml.ide.hover.property_file import global_variable, in_json
@@ -23,7 +24,7 @@ from roaml.ide.hover.setting import setting_at
 from roaml.ide.hover.tree import tree_node
 from roaml.ide.hover.xml_property_file import compared_number, property_tag
 from roaml.model.config_files import CONFIG_FILES
-from roaml.model.kinds import FileKind
+from roaml.model.kinds import MOCKS_EXTENSION, FileKind
 from roaml.project.analysis import Analysis
 from roaml.project.paths import name_of
 from roaml.record import Record
@@ -48,6 +49,10 @@ def hover(analysis: Analysis, path: str, offset: int) -> Hover | None:
         source = analysis.source(path)
         setting = None if source is None else setting_at(path, source.text, offset)
         return None if setting is None else Hover(*setting)
+    if path.endswith(MOCKS_EXTENSION):
+        source = analysis.source(path)
+        mock = None if source is None else mock_at(source.text, offset)
+        return None if mock is None else Hover(*mock)
     place = place_at(analysis, path, offset)
     if place is None:
         return None

@@ -60,6 +60,8 @@ class ExecutedNode(Record, frozen=True, eq=False):
         type: the name of its type; `SubTree` for a subtree.
         name: its name; if it has none, the name of its type or of the subtree.
         known: the declaration of its type; `None` if there is none.
+        constants: ports that the tree does not set, with constants.
+        own_type: the type in the tree, if the node is executed like one of another type; otherwise "".
         frame: the mapping of names to entries in the use of its tree.
     """
 
@@ -71,6 +73,8 @@ class ExecutedNode(Record, frozen=True, eq=False):
     frame: Names
     children: tuple[int, ...]
     origin: Location
+    constants: tuple[tuple[str, str], ...] = ()
+    own_type: str = ""
 
     @property
     def is_subtree(self) -> bool:
@@ -80,13 +84,21 @@ class ExecutedNode(Record, frozen=True, eq=False):
     def automaton(self) -> str:
         return f"{NODE_PREFIX}{self.number}_{self.name}"
 
+    @property
+    def like(self) -> str:
+        """The type like which the node is executed, with `constants`, as a mock states it."""
+        ports = ", ".join(f"{port}={value}" for port, value in self.constants)
+        return f"{self.type}({ports})" if ports else self.type
+
     def ports(self) -> Iterator[tuple[str, str | None, str, Span]]:
-        """The ports that the tree sets: name, entry to which the port is bound (`None` for a constant), text, and
-        position of the text."""
+        """The ports that the tree sets, then those of `constants`: name, entry to which the port is bound (`None` for a
+        constant), text, and position of the text."""
         for setting in ports_of(self.node):
             bound = entry_of(setting)
             entry = None if bound is None else self.frame.entry(bound)
             yield setting.key.value, entry, setting.value.value, setting.value.span
+        for port, text in self.constants:
+            yield port, None, text, self.node.element.name_span
 
 
 class ExecutedTree(Record, frozen=True, eq=False):

@@ -42,7 +42,7 @@ def program_of(node: ExecutedNode, version: Version = NEWEST_VERSION) -> NodePro
     if is_library and node.type in known_programs:
         _check_children(node)
         return known_programs[node.type]
-    if node.children:
+    if is_own_parent(node, version):
         raise TreeRefusal(node.origin, _own_parent(node))
     if node.known is not None and node.known.kind in (NodeKind.CONTROL, NodeKind.DECORATOR):
         raise TreeRefusal(node.origin, f"`{node.type}` needs children", is_reported=True)
@@ -52,6 +52,12 @@ def program_of(node: ExecutedNode, version: Version = NEWEST_VERSION) -> NodePro
             node.origin, f"`{node.type}` cannot be a node of a tree: it is {absent.reason}", is_reported=True
         )
     return None
+
+
+def is_own_parent(node: ExecutedNode, version: Version = NEWEST_VERSION) -> bool:
+    """Whether a node with children has no program of a library in a version of BehaviorTree.CPP."""
+    is_library = node.known is not None and bool(node.known.behaviour)
+    return bool(node.children) and not node.is_subtree and not (is_library and node.type in programs(version))
 
 
 def _own_parent(node: ExecutedNode) -> str:
@@ -75,7 +81,8 @@ def _check_children(node: ExecutedNode) -> None:
     assert node.known is not None
     least, most = node.known.children
     if not least <= len(node.children) <= most:
-        reason = f"`{node.type}` has {len(node.children)} children, but needs {_range(least, most)}"
+        who = f"`{node.own_type}`, which is executed like `{node.type}`," if node.own_type else f"`{node.type}`"
+        reason = f"{who} has {len(node.children)} children, but needs {_range(least, most)}"
         raise TreeRefusal(node.origin, reason, is_reported=True)
 
 
