@@ -70,6 +70,7 @@ NOTHING = {
     "verify": "main --max-transitions --property --expect --confidence --epsilon --method "
     "--max-traces --max-steps --seed --jobs --uniform "
     "--scheduler --exhaustive --max-states --max-memory --no-reductions --stuck --separate --traces-limit --dask "
+    "--uniform "
     "--over-time --band --quantiles "
     f"--format {MODEL} --stdin-filename",
     "compare": "old new --property --structure --scheduler --exhaustive --max-states --max-transitions --confidence "

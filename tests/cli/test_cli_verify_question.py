@@ -279,6 +279,18 @@ def test_the_note_names_each_property_once(command: Command, tmp_path: Path) -> 
     assert out.count("\n  help: use --exhaustive ") == 1
 
 
+def test_an_infinite_exact_reward_states_its_reason(command: Command, tmp_path: Path) -> None:
+    """The coin shows no head with 0.7, and then the condition is never reached."""
+    written = coin()
+    reward = {"op": "Emax", "exp": 1, "accumulate": ["steps"], "reach": op("=", "x", 1)}
+    finite = {**reward, "reach": op("≥", "x", 0)}
+    written["properties"] = [{"name": "cost", "expression": reward}, {"name": "free", "expression": finite}]
+    lines = command("verify", write(tmp_path, written)).out.splitlines()
+    assert lines[0].startswith("cost (expected value): = ∞ for all schedulers, exact, ")
+    assert lines[2] == "  infinite: some traces never reach the condition up to which the reward is accumulated"
+    assert lines[3].startswith("free (expected value): = 0 for all schedulers, exact, ")
+
+
 def test_ends_of_examples_are_shown_only_in_verbose_output(command: Command, tmp_path: Path) -> None:
     """The traces end where no step is possible, which says nothing about an exact value."""
     written = coin()

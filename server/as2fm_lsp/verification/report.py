@@ -183,6 +183,9 @@ def _heading(name: str, question: Question) -> str:
     return f"{name} ({what})" if what else name
 
 
+_INFINITE = "infinite: some traces never reach the condition up to which the reward is accumulated"
+
+
 def _computed_lines(result: Result, computed: Computed, *, is_whole: bool) -> list[str]:
     sample = computed.sample
     name = _heading(result.name, computed.question)
@@ -197,6 +200,8 @@ def _computed_lines(result: Result, computed: Computed, *, is_whole: bool) -> li
         uniform_estimate=estimate,
         is_whole=is_whole,
     )
+    if computed.question.is_reward and computed.asked_value()[0].lower == math.inf:
+        lines.append(f"  {_INFINITE}")
     if computed.reason:
         lines.append(f"  {computed.reason}")
     if sample is not None:
@@ -296,7 +301,7 @@ def _remarks(answer: Answer, *, is_whole: bool) -> list[str]:
     are_shown = answer.tally.traces and (is_whole or not ends.are_ordinary(answer.tally))
     lines = [f"  ends: {ends.as_line(answer.tally)}"] if are_shown else []
     if answer.question.is_reward and answer.failures:
-        lines.append("  infinite: some traces never reach the condition up to which the reward is accumulated")
+        lines.append(f"  {_INFINITE}")
     if answer.question.is_reward and answer.tally.successes:
         lines.append(_reward_remark(answer))
     ratio = ratio_of(answer.question, answer.options)
