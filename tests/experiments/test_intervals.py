@@ -86,8 +86,8 @@ def test_several_intervals_and_values(tmp_path: Path, capsys: pytest.CaptureFixt
 def test_a_probability_of_0_at_an_end_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["verify", model(tmp_path), "--constant", "p=[0,0.6]"]) == 2
     assert "is 0 at one of their ends" in capsys.readouterr().err
-    assert run(["verify", system(tmp_path), "--set", "loss=[0,0.5]"]) == 1
-    assert "`prob` should be a number above 0" in capsys.readouterr().err
+    assert run(["verify", system(tmp_path), "--set", "loss=[0,0.5]"]) == 2
+    assert "is 0 at one of their ends" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("up", [SQUARE, LIMITED])
