@@ -207,16 +207,22 @@ def keep_proposal(path: str, leaves: Sequence[MockableLeaf]) -> int:
 
 
 def _keep_proposal(path: str, beside: str, leaves: Sequence[MockableLeaf], messages: MockMessages) -> None:
+    reason = _keeping_error(path, beside, leaves)
+    if reason:
+        messages.write(f"uses proposed mocks, which could not be written into {messages.shown(beside)}: {reason}")
+    else:
+        messages.write(f"proposed mocks for {_counted(leaves)}: review them in {messages.shown(beside)}")
+
+
+def _keeping_error(path: str, beside: str, leaves: Sequence[MockableLeaf]) -> str:
+    """Write proposed mocks; return why they could not be written, "" if they are."""
     reason = _why_not_written(beside)
     try:
         if not reason:
             keep_proposal(path, leaves)
     except OSError as error:
-        reason = error.strerror or str(error)
-    if reason:
-        messages.write(f"uses proposed mocks, which could not be written into {messages.shown(beside)}: {reason}")
-    else:
-        messages.write(f"proposed mocks for {_counted(leaves)}: review them in {messages.shown(beside)}")
+        return error.strerror or str(error)
+    return reason
 
 
 def _review(
@@ -227,12 +233,7 @@ def _review(
     if not is_new:
         nodes = _noun(leaves)[1]
         return MockError(f"{messages.shown(beside)}: {nodes} have no mock; add lines for them, for example\n{lines}")
-    reason = _why_not_written(beside)
-    try:
-        if not reason:
-            keep_proposal(path, leaves)
-    except OSError as error:
-        reason = error.strerror or str(error)
+    reason = _keeping_error(path, beside, leaves)
     if reason:
         return MockError(
             f"{messages.shown(path)}: its leaves need mocks, and a proposal could not be written into "

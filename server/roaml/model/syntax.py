@@ -96,13 +96,8 @@ def value_of(document: Document, element: Element, name: str) -> Value | None:
     attribute = element.get(name)
     if attribute is not None:
         return expression_of(document, attribute)
-    child = element.find(name)
-    if child is None:
-        return None
-    if (read := port_read(child)) is not None:
-        return read
-    source = document.content(child)
-    return None if source is None else expression_from(source)
+    child = _child_value(document, element, name)
+    return expression_from(child) if isinstance(child, Decoded) else child
 
 
 def text_or_port(document: Document, element: Element, name: str) -> Name | PortRead | None:
@@ -110,13 +105,16 @@ def text_or_port(document: Document, element: Element, name: str) -> Name | Port
     attribute = element.get(name)
     if attribute is not None:
         return name_of(attribute)
+    child = _child_value(document, element, name)
+    return Name(child.text, child.span(0, len(child.text))) if isinstance(child, Decoded) else child
+
+
+def _child_value(document: Document, element: Element, name: str) -> Decoded | PortRead | None:
+    """The `<bt_get_input>` or the text in the child element `name`; `None` if there is neither."""
     child = element.find(name)
     if child is None:
         return None
-    if (read := port_read(child)) is not None:
-        return read
-    source = document.content(child)
-    return None if source is None else Name(source.text, source.span(0, len(source.text)))
+    return port_read(child) or document.content(child)
 
 
 def port_read(element: Element) -> PortRead | None:

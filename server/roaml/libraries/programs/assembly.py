@@ -299,22 +299,21 @@ def program_place(name: str) -> Location | None:
     return None
 
 
-@functools.cache
-def before(given: frozenset[str]) -> tuple[Instruction, ...]:
-    """The instructions before the tick of a node that has the conditions `given` (docs/spec/mocks.md#conditions)."""
-    return _Assembler(given).function(ast.parse(_BEFORE).body)
+def segments(program: NodeProgram, given: frozenset[str]) -> dict[str, tuple[Instruction, ...]]:
+    """The instructions of a node that has the conditions and scripts `given` (docs/spec/mocks.md#conditions): before
+    its tick, of the tick, after it, of a halt, and after the halt."""
+    return {
+        "before": _around(_BEFORE, given),
+        "tick": program.tick,
+        "after": _around(_AFTER, given),
+        "halt": program.halt,
+        "halted": _around('script("_onHalted")', given),
+    }
 
 
 @functools.cache
-def after(given: frozenset[str]) -> tuple[Instruction, ...]:
-    """The instructions after the tick of a node that has the scripts `given`."""
-    return _Assembler(given).function(ast.parse(_AFTER).body)
-
-
-@functools.cache
-def halted(given: frozenset[str]) -> tuple[Instruction, ...]:
-    """The instructions after a node that has the scripts `given` was halted."""
-    return _Assembler(given).function(ast.parse('script("_onHalted")').body)
+def _around(text: str, given: frozenset[str]) -> tuple[Instruction, ...]:
+    return _Assembler(given).function(ast.parse(text).body)
 
 
 def _program(definition: ast.ClassDef, base: NodeProgram | None) -> NodeProgram:

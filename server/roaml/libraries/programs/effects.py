@@ -196,15 +196,8 @@ class _Run(Record, eq=False):
     ports: dict[str, Known] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        program, given = self.program, self.situation.scripts
-        self.segments = {
-            "before": assembly.before(given),
-            "tick": program.tick,
-            "after": assembly.after(given),
-            "halt": program.halt,
-            "halted": assembly.halted(given),
-        }
-        self.declared = frozenset(program.variables)
+        self.segments = assembly.segments(self.program, self.situation.scripts)
+        self.declared = frozenset(self.program.variables)
         self.ports = dict(self.situation.ports)
 
     # ------------------------------------------------------------ explorations

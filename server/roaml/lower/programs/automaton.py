@@ -166,13 +166,8 @@ class _Explorer(Record, eq=False, dict=True):
 
     def __post_init__(self) -> None:
         program = self.code.program
-        given = frozenset(self.code.scripts)
         self.segments: dict[str, Sequence[Instruction | Step]] = {
-            "before": assembly.before(given),
-            "tick": program.tick,
-            "after": assembly.after(given),
-            "halt": program.halt,
-            "halted": assembly.halted(given),
+            **assembly.segments(program, frozenset(self.code.scripts))
         }
         self.kept = {"status", *program.fixed}
         self.declared = dict(program.variables)
