@@ -122,7 +122,10 @@ def test_a_port_with_a_number_that_no_model_can_have(tmp_path: Path, number: str
     assert [(d.code, d.severity) for d in diagnostics] == [("port-value", severity)]
 
 
-@pytest.mark.parametrize(("value", "severity"), [("_msg.data", Severity.HINT), ("n + _msg.data", Severity.WARNING)])
+@pytest.mark.parametrize(
+    ("value", "severity"),
+    [("_msg.data", Severity.HINT), ("n + _msg.data", Severity.WARNING), ("_msg.data == 1 ? 1 : 2", Severity.WARNING)],
+)
 def test_a_variable_that_counts_and_is_never_read(value: str, severity: Severity, tmp_path: Path) -> None:
     text = f"""
 -- main.xml --
@@ -154,14 +157,17 @@ def severities(folder: Path, text: str, code: str) -> list[Severity]:
 OVERWRITTEN = """
 <ascxml name="M" version="1.0" initial="a">
     <datamodel><data id="x" type="int32" expr="0" /></datamodel>
-    <state id="a"><onentry><assign location="x" expr="{}" /><assign location="x" expr="3" /></onentry></state>
+    <state id="a"><onentry><assign location="x" expr="{}" /><assign location="x" expr="{}" /></onentry></state>
 </ascxml>
 """
 
 
-@pytest.mark.parametrize(("first", "severity"), [("0", Severity.INFORMATION), ("1", Severity.WARNING)])
-def test_the_initial_value_may_be_overwritten(tmp_path: Path, first: str, severity: Severity) -> None:
-    assert severities(tmp_path, OVERWRITTEN.format(first), "overwritten-value") == [severity]
+@pytest.mark.parametrize(
+    ("first", "second", "severity"),
+    [("0", "3", Severity.INFORMATION), ("1", "3", Severity.WARNING), ("0", "0", Severity.WARNING)],
+)
+def test_another_value_may_replace_the_initial_one(tmp_path: Path, first: str, second: str, severity: Severity) -> None:
+    assert severities(tmp_path, OVERWRITTEN.format(first, second), "overwritten-value") == [severity]
 
 
 MEETING = """

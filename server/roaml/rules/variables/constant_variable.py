@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.expr.tree import Index, Member, Name, access_path, walk
-from roaml.expr.types import Scalar, Type, leaves
+from roaml.expr.types import Scalar, leaves
 from roaml.model.machine import Assign, Chart, Data, Declaration
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Expression
@@ -66,7 +66,7 @@ def _constant(
         message = f"`{name}` is always {shown}, because all assignments assign its initial value; assign other values"
         yield RULE.at(data.id.span, message)
     else:
-        unread = next(_unread(context, chart, context.typed.variables[chart.scope][name]), None)
+        unread = next(_unread(context, chart, name), None)
         if unread is not None:
             message = f"`{name}` is always {shown}, because nothing assigns it, and nothing reads `{unread}`"
             yield RULE.at(data.id.span, f"{message}; assign received data to it, or remove it")
@@ -118,11 +118,13 @@ def _variables(expression: Expression) -> set[str]:
     return {node.name for node in walk(expression.tree) if isinstance(node, Name)}
 
 
-def _unread(context: MachineContext, chart: Chart, type_: Type) -> Iterator[str]:
-    """The places of data that arrive in handlers of a chart, have the kind of the scalar `type_`, and are not read."""
+def _unread(context: MachineContext, chart: Chart, name: str) -> Iterator[str]:
+    """The places of data that arrive in handlers of a chart, have the kind of the scalar variable `name`, and are not
+    read. Those of a response also have its name, because clients do not need all fields of a response."""
+    type_ = context.typed.variables[chart.scope][name]
     for handler in (handler for state in chart.states for handler in state.handlers):
         part, declaration = handler.trigger, find_handle(context.machine, handler)
-        if part not in _RECEIVED or declaration is None or declaration.type is None:
+        if part not in (*_RECEIVED, ProtocolPart.RESPONSE) or declaration is None or declaration.type is None:
             continue
         interface = context.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
         struct = dict(interface.parts).get(section_of(part)) if isinstance(interface, InterfaceType) else None
@@ -130,6 +132,8 @@ def _unread(context: MachineContext, chart: Chart, type_: Type) -> Iterator[str]
         for path, leaf in leaves(struct) if struct is not None else ():
             place = ".".join((data_place(part) or "", *path))
             is_alike = isinstance(leaf, Scalar) and isinstance(type_, Scalar) and leaf.kind is type_.kind
+            if part is ProtocolPart.RESPONSE and path[-1] != name:
+                continue
             if is_alike and not any(is_within(place, outer) for outer in read):
                 yield place
 

@@ -38,8 +38,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 def _of_body(body: Sequence[Statement], declared: Container[str], initial: Mapping[str, str]) -> Iterator[Finding]:
     """Report the assignments to a declared variable to which an earlier statement of the same body assigns a value that
-    nothing between them reads. The severity is information if this is the initial value: often everything is reset, and
-    some of it set."""
+    nothing between them reads. The severity is information if this is the initial value, followed by another one: often
+    everything is reset, and some of it set."""
     unread: dict[str, Assign] = {}
     for statement in body:
         if isinstance(statement, NoEffect):
@@ -63,7 +63,9 @@ def _of_body(body: Sequence[Statement], declared: Container[str], initial: Mappi
             related = [Related(earlier.element.name_span, "the value that is never read")]
             was = earlier.value
             is_reset = isinstance(was, Expression) and was.text.strip() == initial.get(place)
-            severity = Severity.INFORMATION if is_reset else None
+            again = statement.value
+            is_repeated = isinstance(was, Expression) and isinstance(again, Expression) and was.text == again.text
+            severity = Severity.INFORMATION if is_reset and not is_repeated else None
             yield RULE.at(statement.location.span, message, severity=severity, related=related)
         unread[place] = statement
 

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping, Sequence, Set
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Tag
 from roaml.edit.elements import removal, remove
-from roaml.expr.operators import OperatorKind
 from roaml.expr.tree import Binary, Call, Expr, Name, access_path, walk
 from roaml.model.behavior.knowledge import variables_in
 from roaml.model.machine import Assign, CallChild, Chart, Data, Param, ReturnStatus, RosSend, Send, Statement
@@ -178,7 +177,7 @@ def _is_received(statement: Assign) -> bool:
 def _computes(node: Expr, variable: str) -> bool:
     if isinstance(node, Name):
         return node.name == variable
-    return isinstance(node, Call) or (isinstance(node, Binary) and node.operator.kind is OperatorKind.ARITHMETIC)
+    return isinstance(node, Call | Binary)
 
 
 def _used(values: list[Value], chart: Chart) -> set[str]:
