@@ -56,17 +56,17 @@ def check(context: MachineContext) -> Iterator[Finding]:
 def _copied(parts: Sequence[_Part], known: Iterable[str]) -> Iterator[Finding]:
     """Parts that use a name with the word of a similar part, although the name with their own word exists."""
     names = frozenset(known)
-    similar: dict[tuple[object, ...], list[_Part]] = {}
+    similar: dict[tuple[object, ...], list[tuple[str, _Part]]] = {}
     for part in parts:
-        words = words_of(part.name)
-        for number in range(len(words) if len(words) > 1 else 0):
-            similar.setdefault((part.kind, number, *words[:number], *words[number + 1 :]), []).append(part)
+        words = words_of(part.name) if part.uses else []
+        for number, word in enumerate(words if len(words) > 1 else ()):
+            key = (part.kind, number, *words[:number], *words[number + 1 :])
+            similar.setdefault(key, []).append((word, part))
     for group in similar.values():
-        for part in group:
-            for other in group:
-                words_differ = difference(other.name, part.name)
-                if words_differ is not None:
-                    yield from _copies(part, other, *words_differ, names)
+        for own, part in group:
+            for word, other in group:
+                if word != own:
+                    yield from _copies(part, other, word, own, names)
 
 
 def _copies(part: _Part, other: _Part, word: str, own: str, known: frozenset[str]) -> Iterator[Finding]:
