@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.model.behavior.knowledge import variables_in
-from roaml.model.machine import Assign, Branch, Handler, If, State, Statement, Target
+from roaml.model.machine import Assign, Branch, Handler, If, ReturnHalted, State, Statement, Target
 from roaml.model.syntax import Expression
 from roaml.model.triggers import trigger
 from roaml.model.value_types import GOAL_STATUSES
@@ -18,7 +18,10 @@ from roaml.rules.rule import MachineContext, Rule
 from roaml.text import Span
 from roaml.xml_syntax import Element, Text
 
-_SUCCEEDED = next(code for code, name in GOAL_STATUSES.items() if name == "STATUS_SUCCEEDED")
+_SUCCEEDED, _ABORTED = (
+    next(code for code, name in GOAL_STATUSES.items() if name == status)
+    for status in ("STATUS_SUCCEEDED", "STATUS_ABORTED")
+)
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -120,7 +123,8 @@ def _handlers(context: MachineContext, state: State) -> Iterator[Finding]:
         spans = [handler.targets[0].body[0].element.name_span for handler in handlers if handler.targets[0].body]
         if part is ProtocolPart.RESULT:
             codes = {handler.type.code for handler in handlers}
-            if len(does) == 1 and _SUCCEEDED in codes and len(codes) > 1:
+            ends = any(isinstance(s, ReturnHalted) for handler in handlers for s in handler.targets[0].body)
+            if len(does) == 1 and codes == {_SUCCEEDED, _ABORTED} and not ends:
                 yield from _alike("the handlers for the success and the failure of this goal do the same", spans)
         elif len(does) == 1 and handlers[-1].cond is None and all(handler.cond for handler in handlers[:-1]):
             yield from _alike("all handlers of this event do the same, so their conditions have no effect", spans)
