@@ -513,28 +513,19 @@ def check_trees(context: TreeContext) -> Iterator[Finding]:
         if result is None or len(result.truth) != 1 or not result.values:
             continue
         (holds,) = result.truth
+        if _SKIPPING.get(use.attribute.name) is not holds:
+            continue  # other constants are often settings
         known = {name: values for name, values in result.values.items() if is_informative(values)}
         why = ", ".join(
             f"`{name}` is {'always ' if values.value is not None else ''}{described(values)}"
             for name, values in list(known.items())[:MAX_NAMED]
         )
-        effect = _EFFECTS.get((use.attribute.name, holds), "")
-        message = f"this condition is {'always' if holds else 'never'} true{_because(why)}{effect}"
+        message = f"this condition is {'always' if holds else 'never'} true{_because(why)}, so the node is never ticked"
         yield RULE.at(use.attribute.value_span, message)
 
 
-_NEVER_TICKED, _NO_EFFECT = ", so the node is never ticked", ", so it has no effect"
-_EFFECTS = {
-    ("_skipIf", True): _NEVER_TICKED,
-    ("_skipIf", False): _NO_EFFECT,
-    ("_failureIf", True): _NEVER_TICKED,
-    ("_failureIf", False): _NO_EFFECT,
-    ("_successIf", True): _NEVER_TICKED,
-    ("_successIf", False): _NO_EFFECT,
-    ("_while", True): _NO_EFFECT,
-    ("_while", False): _NEVER_TICKED,
-}
-"""The effects of conditions of nodes that are always, or never, true."""
+_SKIPPING = {"_skipIf": True, "_failureIf": True, "_successIf": True, "_while": False}
+"""Conditions of a node -> the result with which the node is not ticked."""
 
 
 RULE = Rule(
