@@ -317,6 +317,67 @@ def test_the_last_line_names_properties_without_the_uniform_value(
     assert f"\ncomputed from all reachable states: {values}" in text
 
 
+@pytest.mark.parametrize("returns", [False, True])
+def test_a_step_is_taken_alone_if_no_step_that_depends_on_it_can_be_reached(*, returns: bool) -> None:
+    """`c` reads what `a` writes, but only in the location `l`, to which it returns or not. The property sees each step
+    of `c`."""
+    steps = [
+        edge("m", way("o", 0.5, z=1), way("n", 0.5, z=2)),
+        edge("o", way("l" if returns else "n", z=3)),
+        edge("l", way("n", z=4), guard=op("=", "w", 1)),
+    ]
+    written = document(
+        automaton("a", "l m", [edge("l", way("m", w=1))]),
+        automaton("c", "m l n o", steps),
+        variables=[variable("w"), variable("z")],
+        properties={"p": probability(op("F", op("=", "z", 4)))},
+    )
+    spaces = both(*question_of(written))
+    assert spaces is not None
+    check(*spaces)
+    assert len(spaces[1].search.choices_of(0)) == (2 if returns else 1)
+
+
+@pytest.mark.parametrize("is_written", [False, True])
+def test_a_condition_that_is_false_stays_false_if_no_step_writes_its_variables(*, is_written: bool) -> None:
+    """`c` reads what `a` writes only where a condition on `y` holds, which a step of `c` writes or not."""
+    steps = [
+        edge("m", way("o", 0.5, z=1, **({"y": 1} if is_written else {})), way("n", 0.5, z=2)),
+        edge("o", way("l", z=3), guard=op("=", "y", 1)),
+        edge("l", way("n", z=op("+", "w", 3))),
+    ]
+    written = document(
+        automaton("a", "l m", [edge("l", way("m", w=1))]),
+        automaton("c", "m l n o", steps),
+        variables=[variable("w"), variable("y"), variable("z")],
+        properties={"p": probability(op("F", op("=", "z", 4)))},
+    )
+    spaces = both(*question_of(written))
+    assert spaces is not None
+    check(*spaces)
+    assert len(spaces[1].search.choices_of(0)) == (2 if is_written else 1)
+
+
+@pytest.mark.parametrize("value", ["x", op("-", "x", 0)])
+@pytest.mark.parametrize("is_left", [False, True])
+def test_conditions_that_can_be_undefined_are_evaluated_where_they_can_be_reached(value: Any, *, is_left: bool) -> None:
+    """A condition of `c` for a step that is never possible contains a variable that `a` writes."""
+    never = edge("l" if is_left else "o", "n", action="never", guard=op("=", value, 7))
+    steps = [edge("l", way("m", z=1)), edge("m", way("o", 0.5, z=2), way("n", 0.5, z=3)), never]
+    written = document(
+        automaton("a", "l m", [edge("l", way("m", x=1))]),
+        automaton("c", "l m n o" if not is_left else "m l n o", steps),
+        automaton("d", "l m", [edge("m", "l", action="never")]),
+        variables=[variable("x"), variable("z")],
+        syncs=[[None, "never", "never"]],
+        properties={"p": probability(op("F", op("=", "z", 3)))},
+    )
+    spaces = both(*question_of(written))
+    assert spaces is not None
+    check(*spaces)
+    assert len(spaces[1].search.choices_of(0)) == (1 if is_left or value == "x" else 2)
+
+
 def test_two_of_three_vectors_suffice() -> None:
     """`r` goes with `a` or with `b`. What `c` does with `d` matters only after that."""
     written = document(

@@ -17,6 +17,12 @@ cdef class AmpleSets:
     cdef int[::1] open_guards, frozen_at, candidates, busy_with
     cdef int[::1] own_start, own_slot, gates_start, gates, gate_slot_start, gate_slot, list_end, list_slot
     cdef int[::1] random_vector, members, smallest
+    cdef int[::1] group_place, stirred_start, stirred, guarded_start, guarded, alarm_start, alarm
+    cdef int[::1] read_start, read, written_start, written
+    cdef int[::1] possible_at, missing, gate_missing, reached_at, reached_before, last_reached
+    cdef i64[::1] marked, is_read, is_written, possible, counted, gate_counted, taken, offered, is_stirred, is_open, reached
+    cdef i64[::1] has_reached, forbidden
+    cdef int possible_count, reached_count
     cdef int writes_seen, is_fleeting, count, handled, alone, chosen, chosen_rank
     cdef int is_early, takes_several, member_count
     cdef i64 runs, searches
@@ -26,6 +32,8 @@ cdef class AmpleSets:
     cpdef int find(self) noexcept
     @cython.locals(i=int, vector=int)
     cpdef int find_early(self) noexcept
+    @cython.locals(count=int, i=int, vector=int)
+    cpdef int find_unreached(self) noexcept
     @cython.locals(best=int, i=int, k=int)
     cpdef int find_several(self) noexcept
     @cython.locals(i=int, k=int, vector=int)
@@ -58,3 +66,18 @@ cdef class AmpleSets:
     cdef int _is_stopped(self, int slot) noexcept
     @cython.locals(missing=int, at=int, end=int, slot=int)
     cdef void _list(self, int gate) noexcept
+    @cython.locals(i=int, group=int, k=int, place=int, other=int, followed=int, visited=int)
+    cdef int _is_unreached(self, int vector) noexcept
+    @cython.locals(i=int)
+    cdef int _add_possible(self, int vector) noexcept
+    @cython.locals(i=int, variable=int, k=int, group=int, place=int, slot=int, instance=int)
+    cdef int _follow(self, int vector) noexcept
+    @cython.locals(group=int)
+    cdef int _visit(self, int place) noexcept
+    @cython.locals(slot=int, edge=int, vector=int, gate=int, i=int)
+    cdef int _offer(self, int group) noexcept
+    cdef int _offer_to(self, int vector) noexcept
+    @cython.locals(k=int, instance=int, edge=int, way=int, place=int)
+    cdef int _leave(self, int group) noexcept
+    @cython.locals(guard=int, holds=int)
+    cdef int _is_open(self, int group, int edge) noexcept

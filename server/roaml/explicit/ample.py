@@ -7,6 +7,8 @@
   before α is taken. An instance is frozen if each vector in which it can take part at its location waits for a frozen
   instance; if a vector waits only for other instances, one of them is added.
 - α may be taken alone if all participants are frozen, and if each vector that depends on α has a frozen participant.
+- α may also be taken alone if no vector that depends on it can be reached without it, as far as the locations show that
+  each instance can reach on its own.
 - A vector may be taken alone *early* although participants that it leaves unchanged are not frozen, if no trace ends
   before it is taken, which the search checks.
 - Several vectors suffice together if what was said about α is true of all of them, and if chance decides nothing before
@@ -76,12 +78,52 @@ class AmpleSets:
         self.chosen_rank = 0
         self.writes_seen = 0
         self.candidates = array("i", [0] * (len(self.kernel.enabled) + 1))
+        self._prepare_reached(tables)
         self.random_vector = tables.random_vector
         self.is_early = 0
         self.takes_several = 0
         self.members = array("i", [0] * (len(self.kernel.enabled) + 1))
         self.member_count = 0
         self.smallest = array("i", [0] * (len(self.kernel.enabled) + 1))
+
+    def _prepare_reached(self, tables: Independence) -> None:
+        """Set the attributes for what can be reached without a vector."""
+        self.group_place = tables.group_place
+        self.stirred_start = tables.stirred_start
+        self.stirred = tables.stirred
+        self.guarded_start = tables.guarded_start
+        self.guarded = tables.guarded
+        self.alarm_start = tables.alarm_start
+        self.alarm = tables.alarm
+        self.read_start = tables.read_start
+        self.read = tables.read
+        self.written_start = tables.written_start
+        self.written = tables.written
+        self.is_read = array("q", [0] * (tables.variables + 1))
+        self.is_written = array("q", [0] * (tables.variables + 1))
+        vectors = len(self.kernel.enabled) + 1
+        gates = len(tables.gate_slot_start)
+        slots = len(self.kernel.slot_instance)
+        locations = len(self.kernel.location_mark)
+        self.marked = array("q", [0] * self.kernel.instances)
+        self.possible = array("q", [0] * vectors)
+        self.possible_at = array("i", [0] * vectors)
+        self.possible_count = 0
+        self.counted = array("q", [0] * vectors)
+        self.missing = array("i", [0] * vectors)
+        self.gate_counted = array("q", [0] * gates)
+        self.gate_missing = array("i", [0] * gates)
+        self.taken = array("q", [0] * slots)
+        self.offered = array("q", [0] * slots)
+        self.is_stirred = array("q", [0] * len(tables.guarded_start))
+        self.is_open = array("q", [0] * (len(tables.group_place) + 1))
+        self.forbidden = array("q", [0] * locations)
+        self.reached = array("q", [0] * locations)
+        self.reached_at = array("i", [0] * locations)
+        self.reached_before = array("i", [0] * locations)
+        self.reached_count = 0
+        self.has_reached = array("q", [0] * self.kernel.instances)
+        self.last_reached = array("i", [0] * self.kernel.instances)
 
     def find(self) -> int:
         """The vector with the smallest number among those that may be taken alone; -1 if there is none. If all of these
@@ -125,6 +167,18 @@ class AmpleSets:
             vector = -1
         self.is_early = 0
         return vector
+
+    def find_unreached(self) -> int:
+        """After `find` has found none, or one that writes variables that the goal reads: another vector that may be
+        taken alone, because no vector that depends on it can be reached without it; -1 if there is none."""
+        count = self.kernel.enabled_count
+        if count == 0 or (count == 1 and self.is_fleeting != 0) or self.kernel.enabled[0] >= self.kernel.first_held:
+            return -1
+        for i in range(count):
+            vector = self.candidates[i]
+            if self._kind(vector) == HIDDEN and self._is_single(vector) != 0 and self._is_unreached(vector) != 0:
+                return vector
+        return -1
 
     def find_several(self) -> int:
         """The number of the vectors in `smallest`, which suffice in the current state; 0 if all are needed."""
@@ -353,3 +407,173 @@ class AmpleSets:
                 end += 1
                 missing -= 1
         self.list_end[gate] = end
+
+    # ------------------------------------------------------------ what can be reached
+
+    def _is_unreached(self, vector: int) -> int:
+        """Whether no vector that depends on an enabled vector can be reached without it, if each instance can be in
+        each of the locations that it can reach, whatever the locations of the others are."""
+        self.runs += 1
+        self.alone = vector
+        self.possible_count = 0
+        self.reached_count = 0
+        for i in range(self.kernel.all_start[vector], self.kernel.all_start[vector + 1]):
+            self.marked[self.kernel.slot_instance[self.kernel.all_slot[i]]] = self.runs
+            group = self._group(self.kernel.all_slot[i])
+            for k in range(self.read_start[group], self.read_start[group + 1]):
+                self.is_read[self.read[k]] = self.runs
+            for k in range(self.written_start[group], self.written_start[group + 1]):
+                self.is_written[self.written[k]] = self.runs
+        for i in range(self.alarm_start[vector], self.alarm_start[vector + 1]):
+            place = self.group_place[self.alarm[i]]
+            if self.kernel.place[self.kernel.slot_instance[self.kernel.group_slot[self.alarm[i]]]] == place:
+                return 0
+            self.forbidden[place] = self.runs
+        for i in range(self.kernel.enabled_count):
+            other = self.kernel.enabled[i]
+            if other != vector and self._add_possible(other) == 0:
+                return 0
+        followed = 0
+        visited = 0
+        while True:
+            if visited < self.reached_count:
+                if self._visit(self.reached_at[visited]) == 0:
+                    return 0
+                visited += 1
+            elif followed < self.possible_count:
+                if self._follow(self.possible_at[followed]) == 0:
+                    return 0
+                followed += 1
+            else:
+                return 1
+
+    def _add_possible(self, vector: int) -> int:
+        """Note that a vector may become possible; return 0 if the vector that would be taken alone depends on it."""
+        if self.possible[vector] == self.runs or vector >= self.kernel.first_held:
+            return 1
+        for i in range(self.kernel.all_start[vector], self.kernel.all_start[vector + 1]):
+            if self.marked[self.kernel.slot_instance[self.kernel.all_slot[i]]] == self.runs:
+                return 0
+        self.possible[vector] = self.runs
+        self.possible_at[self.possible_count] = vector
+        self.possible_count += 1
+        return 1
+
+    def _follow(self, vector: int) -> int:
+        """Note the effects of a vector; return 0 as `_add_possible`."""
+        for i in range(self.stirred_start[vector], self.stirred_start[vector + 1]):
+            variable = self.stirred[i]
+            if self.is_stirred[variable] == self.runs:
+                continue
+            self.is_stirred[variable] = self.runs
+            for k in range(self.guarded_start[variable], self.guarded_start[variable + 1]):
+                group = self.guarded[k]
+                if self.is_open[group] == self.runs:
+                    continue
+                self.is_open[group] = self.runs
+                place = self.group_place[group]
+                slot = self.kernel.group_slot[group]
+                if (
+                    self.reached[place] == self.runs or self.kernel.place[self.kernel.slot_instance[slot]] == place
+                ) and self._offer(group) == 0:
+                    return 0
+        for i in range(self.kernel.all_start[vector], self.kernel.all_start[vector + 1]):
+            slot = self.kernel.all_slot[i]
+            if self.taken[slot] == self.runs:
+                continue
+            self.taken[slot] = self.runs
+            group = self._group(slot)
+            if group >= 0 and self._leave(group) == 0:
+                return 0
+            instance = self.kernel.slot_instance[slot]
+            place = self.last_reached[instance] if self.has_reached[instance] == self.runs else -1
+            while place >= 0:
+                for group in range(self.kernel.group_start[place], self.kernel.group_start[place + 1]):
+                    if self.kernel.group_slot[group] == slot and self._leave(group) == 0:
+                        return 0
+                place = self.reached_before[place]
+        return 1
+
+    def _visit(self, place: int) -> int:
+        """Note what is possible in a location that an instance can reach; return 0 as `_add_possible`."""
+        if self.forbidden[place] == self.runs:
+            return 0
+        for group in range(self.kernel.group_start[place], self.kernel.group_start[place + 1]):
+            if self._offer(group) == 0:
+                return 0
+        return 1
+
+    def _offer(self, group: int) -> int:
+        """Note that a slot has an edge that may become enabled, if a group has one; return 0 as `_add_possible`."""
+        slot = self.kernel.group_slot[group]
+        if self.taken[slot] == self.runs and self._leave(group) == 0:
+            return 0
+        if self.kernel.ready[slot] != 0 or self.offered[slot] == self.runs:
+            return 1
+        edge = self.kernel.edge_start[group]
+        while self._is_open(group, edge) == 0:
+            edge += 1
+            if edge == self.kernel.edge_start[group + 1]:
+                return 1
+        self.offered[slot] = self.runs
+        vector = self.kernel.slot_vector[slot]
+        if vector >= 0:
+            return self._offer_to(vector)
+        gate = -2 - vector
+        if gate < 0:
+            return 1
+        if self.gate_counted[gate] != self.runs:
+            self.gate_counted[gate] = self.runs
+            self.gate_missing[gate] = self.kernel.gate_missing[gate]
+        self.gate_missing[gate] -= 1
+        if self.gate_missing[gate] == 0:
+            for i in range(self.kernel.gate_start[gate], self.kernel.gate_start[gate + 1]):
+                if self._offer_to(self.kernel.gate_vector[i]) == 0:
+                    return 0
+        return 1
+
+    def _offer_to(self, vector: int) -> int:
+        """Note that a slot or gate of a vector may become ready; return 0 as `_add_possible`."""
+        if self.counted[vector] != self.runs:
+            self.counted[vector] = self.runs
+            self.missing[vector] = self.kernel.vector_missing[vector]
+        self.missing[vector] -= 1
+        return 1 if self.missing[vector] != 0 else self._add_possible(vector)
+
+    def _leave(self, group: int) -> int:
+        """Note the locations to which the edges of a group lead that may become enabled; return 0 as
+        `_add_possible`."""
+        for k in range(self.read_start[group], self.read_start[group + 1]):
+            if self.is_written[self.read[k]] == self.runs:
+                return 0
+        for k in range(self.written_start[group], self.written_start[group + 1]):
+            if self.is_written[self.written[k]] == self.runs or self.is_read[self.written[k]] == self.runs:
+                return 0
+        instance = self.kernel.slot_instance[self.kernel.group_slot[group]]
+        for edge in range(self.kernel.edge_start[group], self.kernel.edge_start[group + 1]):
+            if self._is_open(group, edge) == 0:
+                continue
+            for way in range(self.kernel.way_start[edge], self.kernel.way_start[edge + 1]):
+                place = self.kernel.way_target[way]
+                if self.reached[place] == self.runs or self.kernel.place[instance] == place:
+                    continue
+                self.reached[place] = self.runs
+                self.reached_at[self.reached_count] = place
+                self.reached_count += 1
+                self.reached_before[place] = (
+                    self.last_reached[instance] if self.has_reached[instance] == self.runs else -1
+                )
+                self.has_reached[instance] = self.runs
+                self.last_reached[instance] = place
+        return 1
+
+    def _is_open(self, group: int, edge: int) -> int:
+        """Whether the guard of an edge may become true: it is true, or a variable that its group reads may change."""
+        guard = self.kernel.guard[edge]
+        if guard < 0 or self.is_open[group] == self.runs:
+            return 1
+        holds = self.kernel._is_true(guard)
+        if self.kernel.fault != 0:
+            self.kernel.fault = 0
+            return 1
+        return holds

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Iterable
+from functools import cached_property
 
 from roaml.explicit.uses import VariableUses, bits
 from roaml.record import Record
@@ -39,6 +40,15 @@ class Independence(Record, frozen=True, eq=False):
         own_start, own_slot: the slots of each vector that are in no other vector.
         gates_start, gates: the gates of each vector (`roaml.smc.kernel` defines gates).
         gate_slot_start, gate_slot: the slots of each gate.
+        group_place: for each group, its location.
+        stirred_start, stirred: for each vector, the variables in guards that it writes; they are numbered apart.
+        guarded_start, guarded: for each of these variables, the groups whose guards read it.
+        alarm_start, alarm: for each vector, one group of each location of another instance in which a guard that can
+            be undefined reads a variable that the vector writes.
+        read_start, read: for each group, the variables that its edges read, and those in guards of its location that
+            can be undefined.
+        written_start, written: for each group, the variables that its edges write.
+        variables: the number of variables.
         random_vector: the vectors in whose steps chance may decide between several destinations.
         is_fleeting: whether a state with only one choice need not be a state of the search: the goal does not depend on
             conditions that hold in a state for ever.
@@ -58,6 +68,18 @@ class Independence(Record, frozen=True, eq=False):
     gates: Ints
     gate_slot_start: Ints
     gate_slot: Ints
+    group_place: Ints
+    stirred_start: Ints
+    stirred: Ints
+    guarded_start: Ints
+    guarded: Ints
+    alarm_start: Ints
+    alarm: Ints
+    read_start: Ints
+    read: Ints
+    written_start: Ints
+    written: Ints
+    variables: int
     random_vector: Ints
     is_fleeting: bool
 
@@ -125,6 +147,39 @@ class IndependenceAnalysis:
                     for variable in bits(variables):
                         users[variable] = users.get(variable, 0) | 1 << vector
 
+    @cached_property
+    def _uses_of_groups(self) -> tuple[Ints, Ints, Ints, Ints, Ints, Ints, Ints, Ints, Ints, Ints, Ints]:
+        """The attributes of the tables from `group_place` to `written`."""
+        program = self.program
+        places = array("i")
+        reads = list[int]()
+        guarded: dict[int, list[int]] = {}
+        alarms: list[list[int]] = [[] for _ in self.legend.vectors]
+        for location, (instance, _) in enumerate(self.legend.locations):
+            fragile = 0
+            for number in range(program.group_start[location], program.group_start[location + 1]):
+                places.append(location)
+                fragile |= self.groups[number].fragile
+                for variable in bits(self.groups[number].guards):
+                    if variable in self.writers:
+                        guarded.setdefault(variable, []).append(number)
+            for number in range(program.group_start[location], program.group_start[location + 1]):
+                reads.append(self.groups[number].reads | fragile)
+            for vector in bits(_union(self.writers, fragile) & ~self.vectors_of_instance[instance]):
+                alarms[vector].append(program.group_start[location])
+        stirred: list[list[int]] = [[] for _ in self.legend.vectors]
+        for number, variable in enumerate(guarded):
+            for vector in bits(self.writers[variable]):
+                stirred[vector].append(number)
+        return (
+            places,
+            *_ranges(stirred),
+            *_ranges(guarded.values()),
+            *_ranges(alarms),
+            *_ranges(bits(mask) for mask in reads),
+            *_ranges(bits(group.writes) for group in self.groups),
+        )
+
     def _group(self, instance: int, steps: Iterable[EdgeStep]) -> _Group:
         reads = writes = guards = fragile = 0
         for step in steps:
@@ -180,6 +235,8 @@ class IndependenceAnalysis:
             *_ranges(guard_lists),
             array("i", open_guards),
             *_participants(program),
+            *self._uses_of_groups,
+            len(self.legend.layout.storages),
             self.random_vector,
             is_fleeting=AT_END not in goal.lower,
         )

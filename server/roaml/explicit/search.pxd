@@ -101,7 +101,7 @@ cdef class StateSearch(PackedStates):
     cdef int _may_be_taken(self, i64 at, i64 state) except? -9
     @cython.locals(count=int, branches=int, _=int)
     cdef int _list_destinations(self, i64 at, i64 end) except? -9
-    @cython.locals(vector=int)
+    @cython.locals(vector=int, unreached=int)
     cdef int _alone(self) except? -9
     @cython.locals(found=int, i=int, cell=int)
     cdef int _may_end_before(self, int vector) except? -9

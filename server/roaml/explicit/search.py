@@ -767,6 +767,11 @@ class StateSearch(PackedStates):
     def _alone(self) -> int:
         """The vector that may be taken alone in the current state; -1 if there is none."""
         vector = self.ample.find()
+        if vector < 0 or self.ample.writes_seen != 0:
+            unreached = self.ample.find_unreached()
+            if unreached >= 0:
+                self.ample.writes_seen = 0
+                vector = unreached
         if vector < 0:
             vector = self.ample.find_early()
             if vector >= 0 and self._may_end_before(vector) != 0:
