@@ -189,19 +189,19 @@ class PortLinker:
 
     def namesakes(self, port: Port) -> Mapping[str, str]:
         """The other interfaces of the kind and type of a port whose name ends with the id of a variable of the port ->
-        this id."""
+        this id. Ids that the name of the port contains are not doubted: `/scan_filtered` takes the place of `/scan`."""
         if port.name is None or port.kind not in INTERFACE_KINDS:
             return {}
         own = port.name.value
         channels = self._channels(port.kind)
         channel = channels.get(sanitise(own) if port.kind is PortKind.TOPIC else own)
         types = {endpoint.use.type for endpoint in channel.endpoints} if channel is not None else set()
-        ids = {variable.id.value for variable in port.variables if variable.id is not None} - {_last(own)}
+        ids = {v.id.value for v in port.variables if v.id is not None and v.id.value not in own}
         return {
             name: _last(name)
             for other in channels.values()
             if other is not channel and other.sources and {endpoint.use.type for endpoint in other.endpoints} & types
-            for name in _written_names(other, port.kind)
+            for name in sorted(_written_names(other, port.kind))[:1]
             if _last(name) in ids
         }
 
