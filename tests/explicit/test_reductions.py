@@ -378,6 +378,26 @@ def test_conditions_that_can_be_undefined_are_evaluated_where_they_can_be_reache
     assert len(spaces[1].search.choices_of(0)) == (1 if is_left or value == "x" else 2)
 
 
+@pytest.mark.parametrize("enters", [True, False])
+def test_conditions_are_undefined_before_a_step_that_nobody_else_needs(*, enters: bool) -> None:
+    """`a` writes x before it takes part in `go`. Before that, a condition of `j` for `go` is undefined: once `j` has
+    entered `l`, or once `b` has written y."""
+    divided = op("=", op("%", 1, "x"), 0)
+    go = edge("l", "n", action="go", guard=divided if enters else op("∧", op("=", "y", 1), divided))
+    written = document(
+        automaton("a", "l m", [edge("l", way("m", x=1)), edge("m", "l", action="go")]),
+        automaton("j", "m l n" if enters else "l n", [edge("m", "l"), go] if enters else [go]),
+        automaton("b", "l m", [edge("l", way("m", y=1))]),
+        variables=[variable("x"), variable("y"), variable("z")],
+        syncs=[["go", "go", None]],
+        properties={"p": probability(op("F", op("=", "z", 1)))},
+    )
+    spaces = both(*question_of(written))
+    assert spaces is not None
+    assert spaces[0].problem is not None
+    check(*spaces)
+
+
 def test_two_of_three_vectors_suffice() -> None:
     """`r` goes with `a` or with `b`. What `c` does with `d` matters only after that."""
     written = document(

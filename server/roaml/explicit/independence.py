@@ -34,7 +34,8 @@ class Independence(Record, frozen=True, eq=False):
             MAX_DEPENDENT_VECTORS vectors of other instances depend on it, WRITES if its edges write a variable that the
             goal reads, and HIDDEN otherwise.
         dependent_start, dependent_vector: for each group that is not NEVER, the vectors of other instances that depend
-            on it.
+            on it, or that change the value of a guard that can be undefined and reads what the group writes, or have it
+            evaluated.
         guard_start, guard_vector: for each group, the vectors of other instances that write a variable in its guards.
         open_guards: for each slot, whether one of its groups has such vectors.
         own_start, own_slot: the slots of each vector that are in no other vector.
@@ -156,10 +157,9 @@ class IndependenceAnalysis:
         guarded: dict[int, list[int]] = {}
         alarms: list[list[int]] = [[] for _ in self.legend.vectors]
         for location, (instance, _) in enumerate(self.legend.locations):
-            fragile = 0
+            fragile = self._fragile(location)
             for number in range(program.group_start[location], program.group_start[location + 1]):
                 places.append(location)
-                fragile |= self.groups[number].fragile
                 for variable in bits(self.groups[number].guards):
                     if variable in self.writers:
                         guarded.setdefault(variable, []).append(number)
@@ -179,6 +179,35 @@ class IndependenceAnalysis:
             *_ranges(bits(mask) for mask in reads),
             *_ranges(bits(group.writes) for group in self.groups),
         )
+
+    @cached_property
+    def _evaluations(self) -> dict[int, dict[int, int]]:
+        """For each variable in guards that can be undefined, and each instance with such guards: the vectors that lead
+        to the location of such a guard, or write a variable in one of the guards that can be undefined there. Without
+        them, none of these guards is evaluated that was not before, or with new values."""
+        program = self.program
+        vectors_of_slot = [sum(1 << vector for vector in slot.vectors) for slot in self.legend.slots]
+        entering = [0] * len(self.legend.locations)
+        for number, slot in enumerate(program.group_slot):
+            first, last = program.edge_start[number], program.edge_start[number + 1]
+            for way in range(program.way_start[first], program.way_start[last]):
+                if program.way_move[way] >= 0:
+                    entering[program.way_target[way]] |= vectors_of_slot[slot]
+        found: dict[int, dict[int, int]] = {}
+        for location, (instance, _) in enumerate(self.legend.locations):
+            fragile = self._fragile(location)
+            vectors = entering[location] | _union(self.writers, fragile)
+            for variable in bits(fragile):
+                of_variable = found.setdefault(variable, {})
+                of_variable[instance] = of_variable.get(instance, 0) | vectors
+        return found
+
+    def _fragile(self, location: int) -> int:
+        """The variables in guards of a location that can be undefined."""
+        fragile = 0
+        for number in range(self.program.group_start[location], self.program.group_start[location + 1]):
+            fragile |= self.groups[number].fragile
+        return fragile
 
     def _group(self, instance: int, steps: Iterable[EdgeStep]) -> _Group:
         reads = writes = guards = fragile = 0
@@ -211,13 +240,14 @@ class IndependenceAnalysis:
         for location, (instance, _) in enumerate(self.legend.locations):
             own = self.vectors_of_instance[instance]
             numbers = range(program.group_start[location], program.group_start[location + 1])
-            fragile = 0
-            for number in numbers:
-                fragile |= self.groups[number].fragile
+            fragile = self._fragile(location)
             for number in numbers:
                 group = self.groups[number]
                 dependent = _union(self.writers, group.reads | group.writes | fragile)
                 dependent |= _union(self.readers, group.writes)
+                for variable in bits(group.writes):
+                    for other, vectors in self._evaluations.get(variable, {}).items():
+                        dependent |= vectors if other != instance else 0
                 dependent &= ~own
                 kind = NEVER
                 if dependent.bit_count() <= MAX_DEPENDENT_VECTORS:
