@@ -216,6 +216,17 @@ async def test_counterexample_leads_to_the_models(robot: Path) -> None:
     assert all(step["time"].endswith(" s") for step in steps if step["who"])
 
 
+async def test_the_sentence_of_a_property_is_before_the_cause(tmp_path: Path) -> None:
+    shutil.copytree(EXAMPLE.parent / "delivery_robot", tmp_path / "robot")
+    main, name = tmp_path / "robot" / "main.xml", "never_delivers_when_empty"
+    tree = tmp_path / "robot" / "tree.xml"
+    tree.write_text(tree.read_text().replace('level="30"', 'level="0"'))
+    async with connect(tmp_path / "robot") as client:
+        await verify(client, main, [name], {**QUICK, "expectations": {name: ">= 0.95"}})
+        explanation = await why(client, main, name)
+    assert explanation["heading"].startswith("hands_over && battery <= 10 never holds. By chance (0.2), Building ")
+
+
 async def test_the_whole_state_at_a_step_of_a_counterexample(robot: Path) -> None:
     main = robot / "main_with_bug.xml"
     async with connect(robot) as client:

@@ -91,7 +91,7 @@ def register(context: Context) -> None:
             return None
         return {
             "property": result.name,
-            "heading": " ".join(filter(None, (markdown.plain(own_words(target, result.name)), why.heading))),
+            "heading": _heading(markdown.plain(own_words(target, result.name)), why.heading),
             "verdict": why.verdict.value,
             "seed": known.result.traces.options.seed,
             "trace": why.trace,
@@ -116,6 +116,14 @@ def register(context: Context) -> None:
             await background.in_thread(lambda _: run.jump(max(step, earlier)), context.requests.checkpoint)
         last = len(run.steps)
         return [_state_row(row) for row in overview(run, sources, min(step, last), min(earlier, last))]
+
+
+def _heading(sentence: str, summary: str) -> str:
+    """What a property requires, if its file says so, and the summary of a trace, which can begin with a word that is no
+    name: `by chance`."""
+    begins_with_word = summary.startswith(("by chance", "by choice", "delayed by "))
+    after = f"{summary[0].upper()}{summary[1:]}" if begins_with_word else summary
+    return f"{sentence} {after}" if sentence else summary
 
 
 def _is_tree_to_verify(context: Context, analysis: Analysis, path: str) -> bool:

@@ -127,8 +127,10 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
      */
     private async showParting(): Promise<void> {
         const here = this.parting?.sides[0];
-        if (!here) return;
+        if (!here || !this.shown) return;
         this.isPartingShown = true;
+        // The rows state the same as the message, below which only two of them would be visible.
+        this.view.message = this.shown.stale ? vscode.l10n.t("The files have changed since then.") : "";
         this.changed.fire(undefined);
         await this.select(here);
     }
