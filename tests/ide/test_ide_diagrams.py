@@ -446,6 +446,9 @@ def test_closed_namespaces(tmp_path: Path) -> None:
     assert closed_namespaces(picture, ["unknown", "topic go"]) == picture
     inner = closed_namespaces(picture, ["namespace /fleet/a"])
     assert within(inner) == {name: box for name, box in within(picture).items() if box != "/fleet/a"}
+    labels = {node.id: node.label for node in picture.nodes}
+    hidden = {node.label: [labels[name] for name in node.hides] for node in inner.nodes if node.hides}
+    assert hidden == {"/fleet/a": ["a", "/fleet/a/at"]}
     assert shown(closed_namespaces(picture, ["namespace /fleet/a", "namespace /fleet"])) == [
         "namespace | /fleet | … 5 parts",
         "node | c",

@@ -78,6 +78,7 @@ async def test_pictures(tmp_path: Path) -> None:
         "label": "driving",
         "details": [],
         "parent": "",
+        "hides": [],
         "initial": True,
         "place": {"uri": uri, "range": {"start": {"line": 14, "character": 4}, "end": {"line": 24, "character": 12}}},
         "actions": ["addState", "addTransition", "rename", "deleteTransition", "delete"],

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import * as fs from "node:fs";
 import * as path from "node:path";
 import type { Frame, Locator } from "playwright-core";
-import { MEND, sample, type Stage } from "./support/stage";
+import { fleet, MEND, sample, type Stage } from "./support/stage";
 import { themes } from "./support/themes";
 import type { Window } from "./support/window";
 import { ROOT } from "./support/paths";
@@ -270,6 +270,29 @@ export function debugging(stage: Stage): void {
             await window.becomes(() => page.locator(".node[data-look]").count(), 0);
         },
     );
+
+    stage.test("a collapsed namespace has the messages of its topics", fleet, async (window) => {
+        const { page } = window;
+        await window.openFile("main.xml");
+        await window.running();
+        await window.run("AS2FM: Show ROS Graph");
+        const picture = await window.picture();
+        await picture.locator('.node[data-label="/anna/go_to"]').click({ modifiers: ["Alt"] });
+        await picture.locator("circle.breakpoint").waitFor();
+        const anna = picture.locator('.node[data-label="/anna"]');
+        await anna.getByText("/anna").dblclick();
+        await anna.filter({ hasText: "… 6 parts" }).locator(".card").waitFor();
+        // In the group of the picture, a file would cover it.
+        await window.clickTab("main.xml");
+        await startRun(window);
+        await choicesOf(window).getByText(POSITION).first().waitFor();
+        await page.keyboard.press("F5");
+        await page.locator(".debug-call-stack .monaco-list-row", { hasText: "<ros_topic_publish>" }).first().waitFor();
+        await window.repeat(() => window.press("F10"), anna.and(picture.locator('[data-look="message"]')));
+        await window.screenshot("ros-graph-message-inside");
+        await stop(window);
+        await window.becomes(() => picture.locator(".node[data-look]").count(), 0);
+    });
 
     stage.test("a message that is published by hand is received", fromStart, async (window) => {
         await start(window, "main_with_bug.xml");

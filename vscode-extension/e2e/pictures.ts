@@ -3,8 +3,8 @@ import assert from "node:assert/strict";
 import * as fs from "node:fs";
 import * as path from "node:path";
 import type { Frame, Locator, Page } from "playwright-core";
-import { MEND, sample, SharedFolder, type Stage } from "./support/stage";
-import { OUTPUT, ROOT } from "./support/paths";
+import { fleet, MEND, sample, SharedFolder, type Stage } from "./support/stage";
+import { OUTPUT } from "./support/paths";
 import type { Window } from "./support/window";
 import { temporaryFolder, write } from "./support/workbench";
 
@@ -302,13 +302,6 @@ async function chooseItem(window: Window, label: string): Promise<void> {
 async function choose({ page }: Window, title: string, option: string): Promise<void> {
     await page.locator(".quick-input-widget", { hasText: title }).waitFor();
     await page.locator(".quick-input-list .monaco-list-row", { hasText: option }).first().click();
-}
-
-/** Three robots, each in a namespace. */
-function fleet(): string {
-    const folder = temporaryFolder("fleet");
-    fs.cpSync(path.join(ROOT, "examples/fleet"), folder, { recursive: true });
-    return folder;
 }
 
 const VISITS = 12;

@@ -21,6 +21,7 @@ import {
     zoom,
 } from "../src/pictures/view/find";
 import { badgeOf, isOf, nodeCoverageWords, summaryOf } from "../src/pictures/view/coverage";
+import { shownActivity } from "../src/pictures/view/shown";
 import { edgeHint, edgeWords, legendOf, nodeWords } from "../src/pictures/view/words";
 
 const URI = "file:///m.ascxml";
@@ -35,7 +36,7 @@ function place(startLine: number, startColumn: number, endLine: number, endColum
 
 function node(id: string, more: Partial<PictureNode> = {}): PictureNode {
     const places = { place: null, actions: [], use: null, useActions: [] };
-    return { id, kind: "state", label: id, details: [], parent: "", initial: false, ...places, ...more };
+    return { id, kind: "state", label: id, details: [], parent: "", hides: [], initial: false, ...places, ...more };
 }
 
 function edge(source: string, target: string, more: Partial<PictureEdge> = {}): PictureEdge {
@@ -318,4 +319,21 @@ test("a coverage is painted only on the picture for which it was asked", () => {
     const coverage = { traces: 1, simulated: 1, isStale: false, system: "", nodes };
     assert.ok(isOf({ ...coverage, edges: MACHINE.edges.map(() => 1) }, MACHINE));
     assert.ok(!isOf({ ...coverage, edges: [] }, MACHINE));
+});
+
+test("a collapsed namespace has the activity of its parts", () => {
+    const collapsed = node("namespace /a", { kind: "namespace", hides: ["node a", "topic /a/go"] });
+    const picture: Picture = { ...MACHINE, kind: "ros", nodes: [collapsed, node("topic /all"), node("node b")] };
+    const nodes = { "topic /a/go": "message", "topic /all": "message" };
+    const edges = [
+        { from: "node a", to: "topic /all" },
+        { from: "topic /all", to: "node b" },
+    ];
+    assert.deepEqual(shownActivity(picture, { nodes, edges }), {
+        nodes: { "namespace /a": "message", "topic /all": "message" },
+        edges: [
+            { from: "namespace /a", to: "topic /all" },
+            { from: "topic /all", to: "node b" },
+        ],
+    });
 });

@@ -94,6 +94,7 @@ def _converted(session: Session, analysis: Analysis, kind: DiagramKind, picture:
                 "label": node.label,
                 "details": [detail.text for detail in node.details],
                 "parent": node.parent,
+                "hides": list(node.hides),
                 "initial": node.initial,
                 "place": place(node.place),
                 "actions": [action.value for action in parts.actions(node.place)],

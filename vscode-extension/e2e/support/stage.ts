@@ -6,7 +6,7 @@ import { setTimeout as wait } from "node:timers/promises";
 import { after, before, test } from "node:test";
 import { inspect, isDeepStrictEqual } from "node:util";
 import { FIRST_TIMEOUT_MS, INSTALLATION_TIMEOUT_MS, TIMEOUT_MS, type Window } from "./window";
-import { EXTENSION } from "./paths";
+import { EXTENSION, ROOT } from "./paths";
 import { temporaryFolder, Workbench, write, type Options } from "./workbench";
 
 /** The time limit for compiling the kernel, in ms. It only prevents an endless wait. */
@@ -182,3 +182,10 @@ export function sample(change: Readonly<Record<string, (text: string) => string>
 }
 
 export const MEND = { "nodes/battery.ascxml": (text: string) => text.replace("levle", "level") };
+
+/** Three robots, each in a namespace. */
+export function fleet(): string {
+    const folder = temporaryFolder("fleet");
+    fs.cpSync(path.join(ROOT, "examples/fleet"), folder, { recursive: true });
+    return folder;
+}

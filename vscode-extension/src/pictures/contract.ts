@@ -107,6 +107,8 @@ export interface PictureNode {
     readonly label: string;
     readonly details: readonly string[];
     readonly parent: string;
+    /** The ids of the nodes that it replaces: those in a collapsed namespace. */
+    readonly hides: readonly string[];
     readonly initial: boolean;
     /** The place in a file that the node represents; that of a subtree is its `<BehaviorTree>`. */
     readonly place: Place | null;

@@ -124,6 +124,7 @@ class DiagramNode(Record, frozen=True):
         title: the parts of the label, for nodes of trees and subtrees.
         use: the place of the `<SubTree>` of a subtree; `None` for other nodes.
         change: what happened to the node; `None` if the diagram compares no versions.
+        hides: the ids of the nodes that it replaces, those in a collapsed namespace; empty for other nodes.
     """
 
     id: str
@@ -136,6 +137,7 @@ class DiagramNode(Record, frozen=True):
     title: TreeNodeTitle | None = None
     use: Location | None = None
     change: Change | None = None
+    hides: tuple[str, ...] = ()
 
 
 class DiagramEdge(Record, frozen=True):

@@ -77,8 +77,8 @@ def with_parents(picture: Picture, ids: Collection[str]) -> set[str]:
 
 
 def closed_namespaces(picture: Picture, ids: Collection[str]) -> Picture:
-    """The graph in which namespaces are single nodes, which have the edges of what they contain. The last of the
-    details of such a node is the number of nodes that it contains. Other ids are ignored."""
+    """The graph in which namespaces are single nodes, which have the edges of what they contain, and hide it. The
+    last of the details of such a node is the number of nodes that it contains. Other ids are ignored."""
     closed = {node.id for node in picture.nodes if node.id in ids and node.kind is DiagramNodeKind.NAMESPACE}
     closed -= content(picture, closed)
     if not closed:
@@ -86,7 +86,7 @@ def closed_namespaces(picture: Picture, ids: Collection[str]) -> Picture:
     inside = {name: content(picture, {name}) for name in closed}
     representative = {node: name for name, nodes in inside.items() for node in nodes}
     nodes = tuple(
-        replace(node, details=(*node.details, _hidden(picture, inside[node.id]))) if node.id in closed else node
+        _closed(picture, node, inside[node.id]) if node.id in closed else node
         for node in picture.nodes
         if node.id not in representative
     )
@@ -103,6 +103,9 @@ def closed_namespaces(picture: Picture, ids: Collection[str]) -> Picture:
     return replace(picture, nodes=nodes, edges=tuple(edges.values()))
 
 
-def _hidden(picture: Picture, ids: Collection[str]) -> Detail:
-    count = sum(node.id in ids and node.kind is not DiagramNodeKind.NAMESPACE for node in picture.nodes)
-    return Detail(DetailKind.COUNT, "… 1 part" if count == 1 else f"… {count} parts")
+def _closed(picture: Picture, namespace: DiagramNode, ids: Collection[str]) -> DiagramNode:
+    inside = [node for node in picture.nodes if node.id in ids]
+    count = sum(node.kind is not DiagramNodeKind.NAMESPACE for node in inside)
+    detail = Detail(DetailKind.COUNT, "… 1 part" if count == 1 else f"… {count} parts")
+    hides = tuple(node.id for node in inside)
+    return replace(namespace, details=(*namespace.details, detail), hides=hides)

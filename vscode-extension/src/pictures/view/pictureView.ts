@@ -42,6 +42,7 @@ import { Minimap } from "./minimap";
 import { MockPane } from "./mocks";
 import { menuOf } from "./menu";
 import { element, pngData, sceneOf, type Scene } from "./scene";
+import { shownActivity } from "./shown";
 import { legendOf, type LegendEntry } from "./words";
 import { theme } from "./theme";
 
@@ -451,22 +452,23 @@ export class PictureView {
     /** Show where a run is: active states, statuses of nodes, messages. */
     private showActivity(activity: Activity): void {
         const { picture, scene } = this;
-        const before = this.activity;
+        const earlier = this.activity;
         this.activity = activity;
         if (!picture || !scene) return;
+        const [before, now] = [shownActivity(picture, earlier), shownActivity(picture, activity)];
         for (const [index, group] of scene.nodes) {
             const id = picture.nodes[index]?.id ?? "";
-            const look = activity.nodes[id];
+            const look = now.nodes[id];
             if (look === undefined) delete group.dataset["look"];
             else group.dataset["look"] = look;
             if (look !== undefined && look !== "idle" && look !== before.nodes[id]) emphasise(group);
         }
         for (const [index, groups] of scene.edges) {
             const edge = picture.edges[index];
-            const isActive = activity.edges.some(({ from, to }) => from === edge?.source && to === edge.target);
+            const isActive = now.edges.some(({ from, to }) => from === edge?.source && to === edge.target);
             for (const group of groups) group.classList.toggle("active", isActive);
         }
-        this.revealActivity(picture, activity);
+        this.revealActivity(picture, now);
     }
 
     /** Show the node that is next; otherwise the innermost node that is running, or the ends of an active edge. */
