@@ -13,13 +13,14 @@ from typing import TYPE_CHECKING
 
 from roaml.disk import UnreadableReason, read, required
 from roaml.exact_number import exact_fraction
-from roaml.mocks.mock import Mock, MockError, read_mock, read_mocks, unused
+from roaml.mocks.mock import Mock, MockableWords, MockError, read_mock, read_mocks
 from roaml.project.settings import Settings, ament_prefixes
 from roaml.record import Record, field, replace
 from roaml.text import decode
 
 if TYPE_CHECKING:
     from roaml.api.trees import LoadedTree
+    from roaml.lower.programs.executed import ExecutedNode
     from roaml.mocks.proposal import MockableLeaf
 
 MAX_RATE = 10_000
@@ -151,6 +152,7 @@ def load_mocked_tree(
         MissingMocksError,
         MockOptions,
     )
+    from roaml.mocks.unfolding import mockable_words  # noqa: PLC0415
     from roaml.model.kinds import mocks_path  # noqa: PLC0415
 
     beside = mocks_path(path)
@@ -168,7 +170,8 @@ def load_mocked_tree(
             if parents:
                 raise MockError(
                     f"{messages.shown(path)}: no library describes these nodes with children: {', '.join(parents)}; "
-                    f"state in mocks like which node they behave, for example `{parents[0]}: as Sequence`"
+                    "declare in mocks which nodes of a library they behave like, for example "
+                    f"`{parents[0]}: as Sequence`"
                 ) from None
             raise _missing_mocks(path, [leaf.type for leaf in missing.leaves], messages) from None
         leaves = missing.mockable
@@ -178,17 +181,17 @@ def load_mocked_tree(
         declared = replace(declared, file=beside if os.path.isfile(beside) else None)
         proposed = tuple(leaf.proposed for leaf in leaves if leaf.mock is None)
         tree = load_tree(path, replace(run, mocks=mocks + proposed), settings, texts)
-    _report_unused(unused(mocks, [(node.name, node.type) for node in tree.mocked.tree.nodes]), messages)
+    _report_unused(mocks, mockable_words(tree.mocked.tree), messages)
     if declared.file is None:
         return tree
     return replace(tree, target=replace(tree.target, files=(*tree.target.files, os.path.abspath(declared.file))))
 
 
-def keep_proposal(path: str, leaves: Sequence[MockableLeaf]) -> int:
+def keep_proposal(path: str, leaves: Sequence[MockableLeaf]) -> str:
     """Write the proposed mocks of a tree into the file beside it, or add those that it lacks.
 
     Returns:
-        The number of leaves that had no mock.
+        The number of leaves that had no mock, in words, such as `2 leaves`; "" if all had one.
 
     Raises:
         OSError: the file cannot be read or written.
@@ -203,7 +206,8 @@ def keep_proposal(path: str, leaves: Sequence[MockableLeaf]) -> int:
     else:
         text = proposed_text(os.path.basename(path), leaves)
     write_file(beside, text)
-    return sum(len(leaf.nodes) for leaf in leaves if leaf.is_missing)
+    missing = [node for leaf in leaves if leaf.is_missing for node in leaf.nodes]
+    return count_of_nodes(missing) if missing else ""
 
 
 def _keep_proposal(path: str, beside: str, leaves: Sequence[MockableLeaf], messages: MockMessages) -> None:
@@ -231,7 +235,7 @@ def _review(
     """The error that asks the user to review proposed mocks. They are written if there was no file with mocks."""
     lines = "\n".join(f"  {leaf.line}" for leaf in leaves if leaf.is_missing)
     if not is_new:
-        nodes = _noun(leaves)[1]
+        nodes = _noun(any(leaf.kind.has_children for leaf in leaves if leaf.is_missing))[1]
         return MockError(f"{messages.shown(beside)}: {nodes} have no mock; add lines for them, for example\n{lines}")
     reason = _keeping_error(path, beside, leaves)
     if reason:
@@ -249,9 +253,18 @@ def _review(
     )
 
 
-def _noun(leaves: Iterable[MockableLeaf]) -> tuple[str, str]:
-    """What nodes without a mock are called, one and several: nodes if some of them have children, otherwise leaves."""
-    has_parents = any(leaf.kind.has_children for leaf in leaves if leaf.is_missing)
+def count_of_nodes(nodes: Sequence[ExecutedNode]) -> str:
+    """The number of nodes without a mock, such as `2 leaves`; `2 nodes` if some of them have children."""
+    one, many = _noun(any(node.children for node in nodes))
+    return f"1 {one}" if len(nodes) == 1 else f"{len(nodes)} {many}"
+
+
+def _noun(has_parents: bool) -> tuple[str, str]:
+    """What nodes without a mock are called, one and several.
+
+    Args:
+        has_parents: whether some of them have children.
+    """
     return ("node", "nodes") if has_parents else ("leaf", "leaves")
 
 
@@ -262,10 +275,10 @@ def _counted(leaves: Iterable[MockableLeaf]) -> str:
     """How many leaves, or nodes if some have children, have no mock and, if one line describes several of them, how
     many kinds, each with a line."""
     missing = [leaf for leaf in leaves if leaf.is_missing]
-    count = sum(len(leaf.nodes) for leaf in missing)
-    one, many = _noun(missing)
-    text = f"1 {one}" if count == 1 else f"{count} {many}"
-    return text if len(missing) == count else f"{text} of {len(missing)} {'kind' if len(missing) == 1 else 'kinds'}"
+    nodes = [node for leaf in missing for node in leaf.nodes]
+    text = count_of_nodes(nodes)
+    kinds = "1 kind" if len(missing) == 1 else f"{len(missing)} kinds"
+    return text if len(missing) == len(nodes) else f"{text} of {kinds}"
 
 
 def _why_not_written(beside: str) -> str:
@@ -301,10 +314,11 @@ def mocked_system_texts(
 
         return values_of_parameters(path, ros_paths, settings, texts)
 
-    mocked = mock_system(path, declared.mocks(parameters), ros_paths, settings, texts)
+    mocks = declared.mocks(parameters)
+    mocked = mock_system(path, mocks, ros_paths, settings, texts)
     if mocked.missing:
         raise _missing_mocks(path, mocked.missing, messages)
-    _report_unused(mocked.unused, messages)
+    _report_unused(mocks, mocked.words, messages)
     leaves = len({mock.leaf.type for mock in mocked.planned})
     parts = [f"{leaves} {'type' if leaves == 1 else 'types'} of leaves"]
     if mocked.events:
@@ -327,6 +341,7 @@ def _missing_mocks(path: str, types: Iterable[str], messages: MockMessages) -> M
     return MockError(f"{messages.shown(path)}: these leaves need mocks: {listed}; for example {messages.example}")
 
 
-def _report_unused(mocks: Iterable[Mock], messages: MockMessages) -> None:
+def _report_unused(mocks: Iterable[Mock], words: MockableWords, messages: MockMessages) -> None:
     for mock in mocks:
-        messages.write(f"the mock `{mock.pattern}` matches no node of the tree")
+        if reason := words.why_unused(mock):
+            messages.write(f"the mock `{mock.pattern}` {reason}")

@@ -73,7 +73,8 @@ def test_mocks_of_a_tree(command: Command, tmp_path: Path) -> None:
     written = (tmp_path / "tree.mocks").read_text()
     assert written.startswith("Find: 0.25 in 3 s\n")
     assert "\nGrasp: " in written
-    assert command("init", "--mocks", "tree.xml") == (0, "", "as2fm-lsp: tree.mocks: every leaf has a mock already\n")
+    complete = "as2fm-lsp: tree.mocks: every node that needs a mock has one already\n"
+    assert command("init", "--mocks", "tree.xml") == (0, "", complete)
 
 
 def test_mocks_of_what_is_not_a_tree(command: Command, tmp_path: Path) -> None:

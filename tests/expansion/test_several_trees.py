@@ -420,8 +420,33 @@ def test_defaults_of_mocks_are_declared_in_the_files_of_all_trees(fleet: Path) -
 
 def test_a_mock_that_matches_nothing_in_its_tree_is_named(fleet: Path) -> None:
     mocks = tuple(map(read_mock, ("*: 1", "anna/HandOver: 1", "ana/*: 1", "a*: 1", "anna/Lift: 1", "c*/Hand*: 1")))
-    unused = mock_system(str(without_hand_over(fleet)), mocks).unused
-    assert [mock.pattern for mock in unused] == ["ana/*", "a*", "anna/Lift"]
+    words = mock_system(str(without_hand_over(fleet)), mocks).words
+    assert {mock.pattern: reason for mock in mocks if (reason := words.why_unused(mock))} == {
+        "ana/*": "matches no node of the trees; remove it",
+        "a*": "matches no node of the trees; remove it",
+        "anna/Lift": "matches no node of the trees; did you mean `anna/Drive`?",
+    }
+
+
+@pytest.mark.parametrize("pattern", ["Lock", "outer", "*", "carl/Lock", "carl/*"])
+def test_own_nodes_with_children_need_plugins(pattern: str, fleet: Path) -> None:
+    main = without_hand_over(fleet)
+    replaced(
+        fleet / "deliver.xml", ("<Sequence>", '<Lock name="outer"><Sequence>'), ("</Sequence>", "</Sequence></Lock>")
+    )
+    mocks = (read_mock("*: 1"), read_mock(f"{pattern}: as Sequence"))
+    with pytest.raises(MockError, match="cannot be used for `Lock`: in a system, a node with children needs a plugin"):
+        mock_system(str(main), mocks)
+    assert mock_system(str(main), (read_mock("*: 1"), read_mock("dora/Lock: as Sequence"))).planned
+
+
+def test_the_picture_shows_the_mocks_of_each_tree(fleet: Path) -> None:
+    main = without_hand_over(fleet)
+    mocks = tuple(map(read_mock, ("HandOver: 0.9", "carl/HandOver: 0.5")))
+    picture = tree_picture(api.check([str(main)]).snapshot.analysis, str(main), mocks)
+    assert picture is not None
+    shown = [(detail.text, node.id) for node in picture.nodes for detail in node.details if "mock" in detail.text]
+    assert shown == [("mock: 0.9", "1003"), ("mock: 0.9", "2003"), ("mock: 0.5", "3003")]
 
 
 def test_an_event_of_a_shared_node_has_one_probability(fleet: Path) -> None:

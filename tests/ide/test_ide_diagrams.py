@@ -219,6 +219,20 @@ def test_mocks_of_leaves(tmp_path: Path) -> None:
     }
 
 
+def test_mocks_of_nodes_with_children(tmp_path: Path) -> None:
+    """They are shown for nodes that no library describes."""
+    tree = """<root BTCPP_format="4"><BehaviorTree ID="M"><Lock name="a"><Sequence>
+        <Again><Pick/></Again><Pick/></Sequence></Lock></BehaviorTree></root>"""
+    mocks = "*: 0.5\nLock: as Inverter\n*: as Sequence\nAgain: as Repeat(num_cycles=3)\nPick: as Fallback\n"
+    analysis = load(tmp_path, {"tree.xml": tree, "tree.mocks": mocks})
+    picture = tree_picture(analysis, str(tmp_path / "tree.xml"))
+    assert mocks_shown(picture) == {
+        "a : Lock": "mock: as Inverter",
+        "Again": "mock: as Repeat(num_cycles=3)",
+        "Pick": "mock: 0.5",
+    }
+
+
 def test_a_file_of_mocks_that_is_not_valid_is_not_shown(tmp_path: Path) -> None:
     analysis = load(tmp_path, {"tree.xml": MOCKED, "tree.mocks": "FollowPath 0.5"})
     assert mocks_shown(tree_picture(analysis, str(tmp_path / "tree.xml"))) == {}

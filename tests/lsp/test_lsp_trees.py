@@ -184,6 +184,18 @@ async def test_mocks_are_shown_and_edited(tree: Path) -> None:
         assert "from 0 to 1" in (await set_mock(client, tree, pattern="Wait", probability=2))["problem"]
 
 
+async def test_an_edit_keeps_the_mocks_of_nodes_with_children(tree: Path) -> None:
+    """A leaf and a node with children can have the same name."""
+    nodes = "<Sequence><Own><Own/></Own><Lock><AlwaysSuccess/></Lock></Sequence>"
+    tree.write_text(f'<root BTCPP_format="4"><BehaviorTree ID="M">{nodes}</BehaviorTree></root>', "utf-8")
+    tree.with_suffix(".mocks").write_text("Own: as Inverter\n*: 0.9\n", encoding="utf-8")
+    async with connect(tree.parent, options=COMMANDS) as client:
+        client.open(tree, language="xml")
+        answer = await set_mock(client, tree, pattern="Own", probability=0.25, milliseconds=0)
+        assert edited(answer) == [(2, 0, "Own: 0.25\n")]
+        assert "no leaf has the name" in (await set_mock(client, tree, pattern="Lock", probability=1))["problem"]
+
+
 async def test_an_edit_keeps_a_drawn_duration(tree: Path) -> None:
     beside = tree.with_suffix(".mocks")
     beside.write_text("Wait: 0.5 in normal(1 s, 200 ms)\n*: 0.9\n", encoding="utf-8")

@@ -98,17 +98,52 @@ def test_a_proposal_for_nodes_with_children(tmp_path: Path, capsys: pytest.Captu
     """A decorator returns the status of its child; a control node is a Sequence."""
     content = "<Fallback><Lock><A/></Lock><ManualSelector><B/><A/></ManualSelector></Fallback>"
     path = write(tmp_path, content)
+    assert run(["init", "--mocks", str(path)]) == 0
+    assert capsys.readouterr().out.splitlines()[0].endswith("tree.mocks with proposed mocks for 5 nodes")
+    path.with_suffix(".mocks").unlink()
     assert run(["verify", str(path)]) == 2
     assert "its 5 nodes of 4 kinds need mocks; a proposal is in" in capsys.readouterr().err
     text = path.with_suffix(".mocks").read_text("utf-8")
-    assert "\n# NODE: as a node of a library\n" in text
+    assert "\n# NODE: as TYPE, a node of a library\n" in text
     assert "\nLock: as Sequence  # decorator: no library describes it: it returns the status of its child\n" in text
     assert "\nManualSelector: as Sequence  # control node: " in text
     assert run(["verify", str(path)]) == 0
     # A fails with 0.1, and then B or A with 1 - 0.9^2.
     assert capsys.readouterr().out.startswith("succeeds: = 0.981 for all schedulers, exact, ")
     assert run(["init", "--mocks", str(path)]) == 0
-    assert "every leaf has a mock already" in capsys.readouterr().err
+    assert "every node that needs a mock has one already" in capsys.readouterr().err
+
+
+def notes(capsys: pytest.CaptureFixture[str], path: Path, *mocks: str) -> list[str]:
+    assert run(["verify", str(path), *(part for mock in mocks for part in ("--mock", mock))]) == 0
+    return [line.removeprefix("as2fm-lsp: the mock ") for line in capsys.readouterr().err.splitlines()]
+
+
+def test_mocks_without_effect_are_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A mock of leaves does not apply to nodes with children, nor the other way round; the node of the library like
+    which a node is executed is not in the tree."""
+    path = write(tmp_path, "<Lock name='outer'><Again name='again'><Pick/></Again></Lock>")
+    used = ("Lock: as Sequence", "again: as RetryUntilSuccessful(num_attempts=2)", "*: 0.5", "Pick: 0.5")
+    assert notes(capsys, path, *used) == []
+    assert notes(
+        capsys, path, *used, "Pick: as Inverter", "outer: 0.5", "Sequence: as Fallback", "Lok: as Inverter"
+    ) == [
+        "`Pick` is for nodes with children that no library describes, but the node is not one of these; remove it",
+        "`outer` is for leaves, but the node has children; write for example `outer: as Sequence`",
+        "`Sequence` matches no node of the tree; remove it",
+        "`Lok` matches no node of the tree; did you mean `Lock`?",
+    ]
+
+
+@pytest.mark.parametrize("pattern", ["controller", "Own", "GoalUpdatedController"])
+def test_the_event_of_a_declared_node_has_a_mock(
+    pattern: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = write(tmp_path, "<Own name='controller'><A/></Own>")
+    mocks = ("*: 1", "Own: as GoalUpdatedController", f"{pattern}: 0.3")
+    assert notes(capsys, path, *mocks) == []
+    assert run(["verify", str(path), *(part for mock in mocks for part in ("--mock", mock))]) == 0
+    assert "(no mock)" not in capsys.readouterr().out
 
 
 def test_a_wrong_number_of_children_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -109,6 +109,8 @@ def test_leaves_without_mocks_are_named(tmp_path: Path, capsys: pytest.CaptureFi
         ("Drive: as Inverter(x=3)", "`Inverter` has no port `x`; it has no ports"),
         ("Drive: as Repeat(num_cycles)", "`num_cycles` does not set a port of `Repeat`"),
         ("Drive: as Repeat(num_cycles={n})", "must be a constant here"),
+        ("Drive: as", "names no node of a library; write a mock as `NODE: 0.9 in 2 s`, or for a node with children as"),
+        ("Drive: as Sequenc", "`Drive: as Sequenc` is not a mock: a node cannot be executed like"),
         ("Drive: as two words", "is not a node of a library; write it as `Repeat(num_cycles=3)`"),
     ],
 )
@@ -119,7 +121,10 @@ def test_mocks_that_are_not_valid(mock: str, reason: str, tmp_path: Path, capsys
 @pytest.mark.parametrize(
     ("content", "reason"),
     [
-        ("<Mine><Drive/></Mine>", "these nodes with children: Mine; state in mocks like which node they behave, for"),
+        (
+            "<Mine><Drive/></Mine>",
+            "these nodes with children: Mine; declare in mocks which nodes of a library they behave like, for",
+        ),
         (
             "<ScriptCondition code='level &gt; 3'/>",
             "nothing sets the entry `level`; give it a value at the start, with `--entry level=VALUE`",

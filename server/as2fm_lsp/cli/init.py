@@ -54,10 +54,10 @@ def _write_mocks(tree: str) -> int:
     except OSError as error:
         complain(f"{beside}: {error.strerror or error}")
         return USAGE
-    if count == 0:
-        note(f"{beside}: every leaf has a mock already")
+    if not count:
+        note(f"{beside}: every node that needs a mock has one already")
         return CLEAN
-    print_text(f"wrote {beside} with proposed mocks for {count} {'leaf' if count == 1 else 'leaves'}\n")
+    print_text(f"wrote {beside} with proposed mocks for {count}\n")
     print_text(f"\nnext: review the values, then as2fm-lsp verify {shlex.quote(tree)}\n")
     return CLEAN
 

@@ -94,7 +94,7 @@ def register(context: Context) -> None:
         if isinstance(known, str):
             return {"edit": None, "uri": "", "problem": known}
         pattern = string(params, "pattern")
-        if all(leaf.proposed.pattern != pattern for leaf in known.leaves):
+        if known.leaf(pattern) is None:
             return {"edit": None, "uri": "", "problem": f"no leaf has the name or type `{pattern}`"}
         probability = _number(params, "probability", 1)
         duration = _number(params, "milliseconds", MAX_MILLISECONDS)

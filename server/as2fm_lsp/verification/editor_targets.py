@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 
 from as2fm_lsp.context import Context
-from as2fm_lsp.mocked_models import keep_proposal
+from as2fm_lsp.mocked_models import count_of_nodes, keep_proposal
 from roaml import api
 from roaml.api.trees import loaded_tree
 from roaml.ide.verifiable import Texts, expected_beside, fingerprint
@@ -79,8 +79,7 @@ def _tree(context: Context, snapshot: Snapshot, path: str) -> EditorTarget:
 def _kept(context: Context, path: str, missing: MissingMocksError) -> str:
     """Keep the proposal in the file beside the tree, unless the user edits this file; return what was done."""
     beside = mocks_path(path)
-    name, count = os.path.basename(beside), len(missing.leaves)
-    leaves = "1 leaf" if count == 1 else f"{count} leaves"
+    name, leaves = os.path.basename(beside), count_of_nodes(missing.leaves)
     if context.session.text(beside) is not None:
         return f"{leaves} without a mock in {name}: proposed values were used."
     try:

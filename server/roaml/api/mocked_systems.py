@@ -14,7 +14,7 @@ from roaml.project.settings import Settings
 from roaml.record import Record
 
 if TYPE_CHECKING:
-    from roaml.mocks.mock import Mock
+    from roaml.mocks.mock import Mock, MockableWords
     from roaml.mocks.system_mocks import PlannedMock
 
 
@@ -26,14 +26,14 @@ class SystemMocks(Record, frozen=True):
         planned: the new plugins.
         missing: the types of the leaves that have neither a plugin nor a matching mock.
         events: the number of nodes that read an event of the world, such as a new goal, and have a mock for it.
-        unused: the mocks that match no node.
+        words: what mocks can call the nodes.
     """
 
     texts: Mapping[str, str]
     planned: tuple[PlannedMock, ...]
     missing: tuple[str, ...]
     events: int
-    unused: tuple[Mock, ...]
+    words: MockableWords
 
 
 def mock_system(
@@ -52,8 +52,15 @@ def mock_system(
         PathError: the path cannot be read, or is not a system file.
         MockError: a mock cannot be used for the nodes that it matches.
     """
-    from roaml.mocks.mock import node_words, unused  # noqa: PLC0415 - a check starts faster without these
-    from roaml.mocks.system_mocks import all_defaults, event_edits, inputs, listing, plan  # noqa: PLC0415
+    from roaml.mocks.mock import MockableWords, node_words  # noqa: PLC0415 - a check starts faster without these
+    from roaml.mocks.system_mocks import (  # noqa: PLC0415
+        all_defaults,
+        check_likenesses,
+        event_edits,
+        inputs,
+        listing,
+        plan,
+    )
     from roaml.project.system_leaves import missing_leaves, plugin_paths, tick_rates  # noqa: PLC0415
     from roaml.text import apply_edits  # noqa: PLC0415
 
@@ -62,6 +69,7 @@ def mock_system(
     system, document = analysis.system(main), analysis.document(main)
     if analysis.kind(main) is not FileKind.SYSTEM or system is None or document is None or document.root is None:
         raise PathError(f"{path}: not a system file")
+    check_likenesses(system, mocks)
     leaves = missing_leaves(analysis, system)
     planned, missing = plan(leaves, mocks, tick_rates(system), plugin_paths(analysis, main))
     changed = {mock.path: mock.text for mock in planned}
@@ -79,5 +87,6 @@ def mock_system(
         source = analysis.source(file)
         assert source is not None
         changed[file] = apply_edits(source.text, tuple(changes))
-    nodes = [(*node_words(i.name, i.tree), *node_words(i.plugin, i.tree)) for i in system.instances]
-    return SystemMocks(changed, tuple(planned), tuple(leaf.type for leaf in missing), events, unused(mocks, nodes))
+    words = dict.fromkeys(w for i in system.instances for name in (i.name, i.plugin) for w in node_words(name, i.tree))
+    nodes = MockableWords("the tree" if len(system.trees) < 2 else "the trees", tuple(words))
+    return SystemMocks(changed, tuple(planned), tuple(leaf.type for leaf in missing), events, nodes)

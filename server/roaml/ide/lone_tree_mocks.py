@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 
 from roaml.ide.code_actions.action import WorkspaceEdit
 from roaml.mocks.mock import Mock, read_mocks
@@ -28,6 +27,11 @@ class LoneTreeMocks(Record, frozen=True, eq=False):
     path: str
     exists: bool
     leaves: tuple[MockableLeaf, ...]
+
+    def leaf(self, pattern: str) -> MockableLeaf | None:
+        """The leaves whose mock has a pattern; `None` if there are none. Nodes with children are not among them."""
+        leaves = (leaf for leaf in self.leaves if not leaf.kind.has_children)
+        return next((leaf for leaf in leaves if leaf.proposed.pattern == pattern), None)
 
 
 def lone_tree_mocks(analysis: Analysis, path: str) -> LoneTreeMocks:
@@ -56,7 +60,7 @@ def set_mock(analysis: Analysis, path: str, known: LoneTreeMocks, mock: Mock) ->
         mock: the mock, with the pattern of one of the leaves.
     """
     source = analysis.source(known.path)
-    leaf = next((leaf for leaf in known.leaves if leaf.proposed.pattern == mock.pattern), None)
+    leaf = known.leaf(mock.pattern)
     is_instant = leaf is not None and not leaf.kind.has_duration
     written = f"{mock.pattern}: {mock.behaviour(is_instant=is_instant)}"
     text = source.text if source is not None else proposed_text(name_of(path), known.leaves)
@@ -67,16 +71,12 @@ def set_mock(analysis: Analysis, path: str, known: LoneTreeMocks, mock: Mock) ->
 
 
 def _place(text: str, pattern: str, written: str) -> tuple[Span, str]:
-    """The text to replace, and its replacement: the first line with this pattern, which is the one that applies;
-    otherwise a new line at the end."""
+    """The text to replace, and its replacement: the first line with this pattern for leaves, which is the one that
+    applies; otherwise a new line at the end."""
     for line in re.finditer(r"[^\r\n]+", text):
         code = line[0].partition("#")[0]
-        if _patterns(code) == [pattern]:
+        if [mock.pattern for mock in read_mocks(code) if mock.like is None] == [pattern]:
             start = line.start() + len(code) - len(code.lstrip())
             return Span(start, line.start() + len(code.rstrip())), written
     separator = "" if not text or text.endswith("\n") else "\n"
     return Span(len(text), len(text)), f"{separator}{written}\n"
-
-
-def _patterns(line: str) -> Sequence[str]:
-    return [mock.pattern for mock in read_mocks(line)]

@@ -6,10 +6,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.forest.forest import CPP
+from roaml.forest.forest import CPP, Forest
 from roaml.libraries import Node, node_in_libraries
-from roaml.libraries.programs.assembly import programs
+from roaml.libraries.programs.assembly import is_executable, programs
 from roaml.libraries.scripts import script_ports
+from roaml.model.tree import TreeNode
 from roaml.record import Record
 from roaml.regex import regex
 from roaml.roles import NodeKind
@@ -61,6 +62,14 @@ def _parents() -> Iterator[Node]:
         node = CPP.nodes.get(name) or node_in_libraries(name)
         if node is not None and node.kind in (NodeKind.CONTROL, NodeKind.DECORATOR):
             yield node
+
+
+def needs_likeness(forest: Forest, node: TreeNode) -> bool:
+    """Whether a node of a tree without a system has children, and is not executed by a library."""
+    if node.plugin is None or not node.children or forest.calls_tree(node):
+        return False
+    known = forest.known_node(node)
+    return not is_executable(known.name if known else node.plugin.value, known, forest.settings.version)
 
 
 def read_likeness(text: str) -> Likeness:

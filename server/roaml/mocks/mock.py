@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from roaml.record import Record
 from roaml.regex import regex
+from roaml.suggest import close_names, did_you_mean
 from roaml.text import Span
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ _MOCK = regex(r"(?P<name>.+?)\s*:\s*(?P<probability>[^\s:]+)(?:\s+in\s+(?P<durat
 KEYWORD = "as"
 """The word before the node of a library like which a node is executed."""
 _LIKE = regex(rf"(?P<name>.+?)\s*:\s*{KEYWORD}\s+(?P<like>.+)\Z")
+_FORMS = "`NODE: 0.9 in 2 s`, or for a node with children as `NODE: as Sequence`"
 ALL = "*"
 TREE_MARK = "/"
 """Separates the name of a tree from that of a node."""
@@ -96,10 +98,12 @@ def read_mock(text: str) -> Mock:
         try:
             return Mock(like["name"], 1.0, like=read_likeness(like["like"]))
         except LikenessError as error:
-            raise MockError(f"{error} in `{text.strip()}`") from None
+            raise MockError(f"`{text.strip()}` is not a mock: {error}") from None
     match = _MOCK.match(text.strip())
     if match is None:
-        raise MockError(f"`{text.strip()}` is not a mock; write one as `NODE: 0.9 in 2 s`")
+        raise MockError(f"`{text.strip()}` is not a mock; write one as {_FORMS}")
+    if match["probability"] == KEYWORD:
+        raise MockError(f"`{text.strip()}` names no node of a library; write a mock as {_FORMS}")
     try:
         probability = float(match["probability"])
     except ValueError:
@@ -180,11 +184,36 @@ def node_words(word: str, tree: str) -> tuple[str, ...]:
     return (f"{tree}{TREE_MARK}{word}", word) if tree else (word,)
 
 
-def unused(mocks: Sequence[Mock], nodes: Iterable[Iterable[str]]) -> tuple[Mock, ...]:
-    """The mocks, except `*`, that match none of the nodes. A node is given by its name, its type, and further
-    `node_words`."""
-    words = {word for node in nodes for word in node}
-    return tuple(mock for mock in mocks if mock.pattern != ALL and not matches(mock.pattern, words))
+class MockableWords(Record, frozen=True):
+    """What mocks can call the nodes of trees: their names, their types, and further `node_words`.
+
+    Attributes:
+        trees: the trees in words, such as `the tree`.
+        nodes: the words for nodes that are executed by a library, or have no children.
+        parents: the words for nodes with children that a mock can declare to be executed like a node of a library.
+    """
+
+    trees: str
+    nodes: tuple[str, ...]
+    parents: tuple[str, ...] = ()
+
+    def why_unused(self, mock: Mock) -> str:
+        """Why a mock has no effect and what to do, as the end of a sentence that begins with the mock; "" if it may
+        have one. `*` may always have one."""
+        own, others = (self.nodes, self.parents) if mock.like is None else (self.parents, self.nodes)
+        if mock.pattern == ALL or matches(mock.pattern, own):
+            return ""
+        if not matches(mock.pattern, others):
+            return f"matches no node of {self.trees}{did_you_mean(self.close(mock)) or '; remove it'}"
+        if mock.like is None:
+            return f"is for leaves, but the node has children; write for example `{mock.pattern}: {KEYWORD} Sequence`"
+        return "is for nodes with children that no library describes, but the node is not one of these; remove it"
+
+    def close(self, mock: Mock) -> tuple[str, ...]:
+        """The words for nodes that are similar to the pattern of a mock, the most similar first; empty if it matches a
+        node."""
+        words = (*self.nodes, *self.parents)
+        return () if matches(mock.pattern, words) else close_names(mock.pattern, words)
 
 
 def matches(pattern: str, words: Iterable[str]) -> bool:

@@ -235,7 +235,7 @@ class _Builder:
 
     def event(self, node: ExecutedNode) -> float:
         exact = [mock for mock in self.options.mocks if mock.pattern != "*"]
-        mock = mock_for(exact, node.name, node.type)
+        mock = mock_for(exact, node.name, node.own_type or node.type) or mock_for(exact, node.name, node.type)
         if mock is not None:
             return mock.probability
         probability = event_probability(node)

@@ -117,10 +117,10 @@ def proposed_text(tree: str, leaves: Sequence[MockableLeaf]) -> str:
         tree: the name of the file with the tree.
     """
     head = (
-        f"# Proposed mocks for the leaves of {tree}. They are assumptions, not measurements:",
+        f"# Proposed mocks for {tree}. They are assumptions, not measurements:",
         "# replace them by what you know of your robot.",
         "# NODE: probability of SUCCESS in TIME",
-        *(["# NODE: as a node of a library"] if any(leaf.kind.has_children for leaf in leaves) else []),
+        *(["# NODE: as TYPE, a node of a library"] if any(leaf.kind.has_children for leaf in leaves) else []),
     )
     return "\n".join([*head, *(leaf.line for leaf in leaves)]) + "\n"
 

@@ -9,7 +9,7 @@ from xml.sax.saxutils import quoteattr
 
 from roaml.libraries.node import EVENT_ATTRIBUTE
 from roaml.libraries.programs.assembly import reads_world
-from roaml.mocks.mock import ALL, Mock, MockError, mock_for
+from roaml.mocks.mock import ALL, Mock, MockError, likeness_for, mock_for
 from roaml.mocks.plugin import mock_plugin
 from roaml.mocks.system_leaves import SystemLeaf
 from roaml.model.expand import node_at
@@ -72,6 +72,24 @@ def plan(
 def _mock_in(tree: str, names: tuple[str, ...], leaf: SystemLeaf, mocks: Sequence[Mock]) -> Mock | None:
     """The mock for the leaves of one type in a tree, in which they have `names`."""
     return mock_for(mocks, names[0] if len(names) == 1 else leaf.type, leaf.type, leaf.succeeds, tree)
+
+
+def check_likenesses(system: System, mocks: Sequence[Mock]) -> None:
+    """Check that no mock declares a node of a system to be executed like a node of a library.
+
+    Raises:
+        MockError: a mock does.
+    """
+    for instance in system.instances:
+        if not instance.children or system.plugin(instance.plugin, instance.tree)[1] is not None:
+            continue
+        mock = likeness_for(mocks, instance.name, instance.plugin, instance.tree)
+        if mock is not None:
+            raise MockError(
+                f"the mock `{mock.pattern}: {mock.behaviour()}` cannot be used for `{instance.plugin}`: in a system, a "
+                f"node with children needs a plugin; write one, or write a node of a library instead of "
+                f"`{instance.plugin}`"
+            )
 
 
 def inputs(mock: PlannedMock, source: str, trees: Container[str]) -> Iterator[str]:

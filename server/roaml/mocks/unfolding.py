@@ -8,11 +8,12 @@ from collections.abc import Iterator, Sequence
 
 from roaml.forest.expanded import forest_outlines
 from roaml.forest.forest import Forest
+from roaml.libraries.programs.assembly import reads_world
 from roaml.libraries.version import Version
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree, FrameNames, TreeLinks, identifier
 from roaml.lower.programs.nodes import is_own_parent
 from roaml.lower.programs.refusal import TreeRefusal
-from roaml.mocks.mock import Mock, likeness_for
+from roaml.mocks.mock import Mock, MockableWords, likeness_for
 from roaml.model.expand import (
     MAX_NODES,
     MAX_SUBTREES,
@@ -89,6 +90,19 @@ def _like_library(node: ExecutedNode, mocks: Sequence[Mock], version: Version) -
     written = {port for port, _, _, _ in node.ports()}
     constants = tuple((port, value) for port, value in mock.like.ports if port not in written)
     return replace(node, type=mock.like.type, known=mock.like.node, constants=constants, own_type=node.type)
+
+
+def mockable_words(tree: ExecutedTree) -> MockableWords:
+    """What mocks can call the nodes of an executed tree. A node that is executed like one whose event depends on the
+    world can have a mock for the event, too."""
+    nodes: dict[str, None] = {}
+    parents: dict[str, None] = {}
+    for node in tree.nodes:
+        if node.own_type:
+            parents.update(dict.fromkeys((node.name, node.own_type)))
+        if not node.own_type or reads_world(node.type):
+            nodes.update(dict.fromkeys((node.name, node.own_type or node.type, node.type)))
+    return MockableWords("the tree", tuple(nodes), tuple(parents))
 
 
 def _check(forest: Forest, tree: Tree, expansion: Expansion, links: TreeLinks) -> None:

@@ -11,11 +11,11 @@ from roaml.diagnostics import Finding
 from roaml.durations import NANOSECONDS
 from roaml.expansion.uses import VARIABLE
 from roaml.forest.forest import Forest
-from roaml.mocks.mock import ALL, MockError, matches, mock_for, mock_spans, read_mock, read_mocks
+from roaml.mocks.likeness import needs_likeness
+from roaml.mocks.mock import MockableWords, MockError, mock_for, mock_spans, read_mock, read_mocks
 from roaml.model.tree import TreeFile, TreeNode, nodes
 from roaml.rules.parser_rules import MOCK_SYNTAX, UNMATCHED_MOCK
-from roaml.rules.rule import did_you_mean, replacements
-from roaml.suggest import close_names
+from roaml.rules.rule import replacements
 from roaml.text import SourceFile, Span
 
 
@@ -28,21 +28,21 @@ def mock_findings(
         beside: returns the files beside a file with an extension.
         forest: returns the trees in a file that is not in a system; `None` if it cannot be read.
     """
-    names, where = _nodes(source.path, beside, forest)
+    words = _words(source.path, beside, forest)
     for span in mock_spans(source.text):
         line = source.text[span.start : span.end]
         if VARIABLE.search(line):
             continue
         try:
-            pattern = read_mock(line).pattern
+            mock = read_mock(line)
         except MockError as error:
             yield MOCK_SYNTAX.at(span, str(error))
             continue
-        if names and pattern != ALL and not matches(pattern, names):
-            at = Span(span.start, span.start + len(pattern))
-            close = close_names(pattern, names)
-            message = f"the mock `{pattern}` matches no node of {where}{did_you_mean(close) or '; remove it'}"
-            yield UNMATCHED_MOCK.at(at, message, *replacements(at, close))
+        reason = words.why_unused(mock) if words.nodes or words.parents else ""
+        if reason:
+            at = Span(span.start, span.start + len(mock.pattern))
+            fixes = replacements(at, words.close(mock))
+            yield UNMATCHED_MOCK.at(at, f"the mock `{mock.pattern}` {reason}", *fixes)
 
 
 def mocked_durations(file: TreeFile, text: str) -> Mapping[TreeNode, Fraction]:
@@ -63,16 +63,19 @@ def mocked_durations(file: TreeFile, text: str) -> Mapping[TreeNode, Fraction]:
     return durations
 
 
-def _nodes(
+def _words(
     path: str, beside: Callable[[str, str], Iterable[str]], forest: Callable[[str], Forest | None]
-) -> tuple[tuple[str, ...], str]:
-    """The names and types of the nodes that the mocks of a file may describe, and a phrase for their trees: the tree
-    `fetch.xml` beside `fetch.mocks`; if there is none, all trees of the folder."""
+) -> MockableWords:
+    """The names and types of the nodes that the mocks of a file may describe: those of the tree `fetch.xml` beside
+    `fetch.mocks`; if there is none, of all trees of the folder."""
     tree = f"{os.path.splitext(path)[0]}.xml"
     is_beside = forest(tree) is not None
     words: dict[str, None] = {}
+    parents: dict[str, None] = {}
     for other in (tree,) if is_beside else beside(path, ".xml"):
         trees = forest(other)
         for _, _, node in trees.all_nodes if trees is not None else ():
-            words.update((name.value, None) for name in (node.name, node.plugin) if name is not None)
-    return tuple(words), f"`{os.path.basename(tree)}`" if is_beside else "the trees in this folder"
+            own = [name.value for name in (node.name, node.plugin) if name is not None]
+            (parents if trees is not None and needs_likeness(trees, node) else words).update(dict.fromkeys(own))
+    phrase = f"`{os.path.basename(tree)}`" if is_beside else "the trees in this folder"
+    return MockableWords(phrase, tuple(words), tuple(parents))

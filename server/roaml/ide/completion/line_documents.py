@@ -12,7 +12,7 @@ from roaml.diagnostics import Symbol
 from roaml.distributions.laws import LAWS
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank
 from roaml.interfaces import PRIMITIVES
-from roaml.mocks.likeness import library_parents
+from roaml.mocks.likeness import library_parents, needs_likeness
 from roaml.mocks.mock import KEYWORD
 from roaml.model.config_files import CONFIG_FILE
 from roaml.model.kinds import MOCKS_EXTENSION, FileKind
@@ -131,10 +131,7 @@ def _own_parents(analysis: Analysis, path: str) -> Iterator[str]:
     """The types of the nodes with children that no library describes, of the tree that a file of mocks belongs to."""
     forest = analysis.forest(f"{path.removesuffix(MOCKS_EXTENSION)}.xml")
     for _, _, node in forest.all_nodes if forest is not None else ():
-        if node.plugin is None or node.is_subtree or not node.children:
-            continue
-        known = forest.declaration(node) if forest is not None else None
-        if known is None or not known.behaviour:
+        if forest is not None and node.plugin is not None and needs_likeness(forest, node):
             yield node.plugin.value
 
 

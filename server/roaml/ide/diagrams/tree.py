@@ -23,7 +23,8 @@ from roaml.ide.diagrams.diagram import (
 )
 from roaml.libraries import BEHAVIORTREE_CPP, Node, library, node_in_libraries
 from roaml.libraries.programs.assembly import reads_world
-from roaml.mocks.mock import ALL, Mock, mock_for
+from roaml.mocks.likeness import needs_likeness
+from roaml.mocks.mock import ALL, Mock, likeness_for, mock_for
 from roaml.model.expand import Frame, Instance, Reference, TreeUse, expand, node_at, tree_called
 from roaml.model.kinds import FileKind
 from roaml.model.system import System, builtin_plugins
@@ -235,21 +236,35 @@ class _Tree:
         return None if forest is None or known is None or forest.is_machine(known) else known
 
     def mock(self, instance: Instance, kind: DiagramNodeKind) -> Iterator[Detail]:
-        """The line with the mock of a leaf, or of a node that depends on an event of the world."""
-        if not self.mocks or (self.system is not None and self.system.plugin(instance.plugin)[0]):
+        """The line with the mock of a leaf, of a node that depends on an event of the world, or of a node with children
+        that is executed like a node of a library."""
+        if not self.mocks or (self.system is not None and self.system.plugin(instance.plugin, instance.tree)[0]):
             return
         known = self.declaration(instance) or node_in_libraries(instance.plugin)
         if reads_world(instance.plugin):
-            event = mock_for(self.events, instance.name, instance.plugin)
+            event = mock_for(self.events, instance.name, instance.plugin, tree=instance.tree)
             if event is not None:
                 yield Detail(DetailKind.MOCK, f"mock: event {event.behaviour(is_instant=True)}")
             return
-        if instance.children or instance.plugin in library(BEHAVIORTREE_CPP).nodes:
+        if instance.children:
+            like = self.likeness(instance)
+            if like is not None:
+                yield Detail(DetailKind.MOCK, f"mock: {like.behaviour()}")
             return
-        mock = mock_for(self.mocks, instance.name, instance.plugin, known is not None and known.succeeds)
+        if instance.plugin in library(BEHAVIORTREE_CPP).nodes:
+            return
+        succeeds = known is not None and known.succeeds
+        mock = mock_for(self.mocks, instance.name, instance.plugin, succeeds, instance.tree)
         if mock is not None:
             is_instant = kind is DiagramNodeKind.CONDITION or (known is not None and known.is_synchronous)
             yield Detail(DetailKind.MOCK, f"mock: {mock.behaviour(is_instant=is_instant)}")
+
+    def likeness(self, instance: Instance) -> Mock | None:
+        """The mock that declares like which node of a library a node with children is executed."""
+        forest, node = self.forests.get(instance.source.path), self.written[instance.number]
+        if self.system is not None or forest is None or node is None or not needs_likeness(forest, node):
+            return None
+        return likeness_for(self.mocks, instance.name, instance.plugin)
 
 
 def _ports(instance: Instance) -> Iterator[Detail]:

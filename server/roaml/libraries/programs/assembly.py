@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping
 from typing import TypeAlias
 
 from roaml.disk import path_of_resource, resource
-from roaml.libraries import BEHAVIORTREE_CPP, library
+from roaml.libraries import BEHAVIORTREE_CPP, Node, library
 from roaml.libraries.version import NEWEST_VERSION, Version, first_patch
 from roaml.record import Record, astuple, field
 from roaml.regex import regex
@@ -281,6 +281,16 @@ _CLASS = regex(
 def programs(version: Version = NEWEST_VERSION) -> Programs:
     """Name of a node -> its program in a version of BehaviorTree.CPP."""
     return Programs(version)
+
+
+def is_executable(name: str, known: Node | None, version: Version = NEWEST_VERSION) -> bool:
+    """Whether nodes with a type have a program in a version of BehaviorTree.CPP.
+
+    Args:
+        known: the declaration of the type; `None` if there is none. A model can declare another node with the name of
+            one of a library.
+    """
+    return known is not None and bool(known.behaviour) and name in programs(version)
 
 
 def reads_world(name: str) -> bool:

@@ -10,7 +10,7 @@ from roaml.forest.cpp_types import mismatch
 from roaml.forest.forest import CPP, port_type
 from roaml.libraries import LIBRARIES, Port, library, node_in_libraries
 from roaml.libraries.node import EVENT_ATTRIBUTE
-from roaml.libraries.programs.assembly import NodeProgram, programs
+from roaml.libraries.programs.assembly import NodeProgram, is_executable, programs
 from roaml.libraries.programs.statuses import RUNNING, STATUS_CODES, Known
 from roaml.libraries.scripts import script_ports
 from roaml.libraries.version import NEWEST_VERSION, Version
@@ -38,8 +38,7 @@ def program_of(node: ExecutedNode, version: Version = NEWEST_VERSION) -> NodePro
     known_programs = programs(version)
     if node.is_subtree and node.children:
         return known_programs[node.type]
-    is_library = node.known is not None and bool(node.known.behaviour)
-    if is_library and node.type in known_programs:
+    if is_executable(node.type, node.known, version):
         _check_children(node)
         return known_programs[node.type]
     if is_own_parent(node, version):
@@ -56,8 +55,7 @@ def program_of(node: ExecutedNode, version: Version = NEWEST_VERSION) -> NodePro
 
 def is_own_parent(node: ExecutedNode, version: Version = NEWEST_VERSION) -> bool:
     """Whether a node with children has no program of a library in a version of BehaviorTree.CPP."""
-    is_library = node.known is not None and bool(node.known.behaviour)
-    return bool(node.children) and not node.is_subtree and not (is_library and node.type in programs(version))
+    return bool(node.children) and not node.is_subtree and not is_executable(node.type, node.known, version)
 
 
 def _own_parent(node: ExecutedNode) -> str:
