@@ -428,6 +428,22 @@ def test_a_mock_that_matches_nothing_in_its_tree_is_named(fleet: Path) -> None:
     }
 
 
+def test_a_mock_of_a_name_that_is_not_used_is_named(fleet: Path) -> None:
+    """Nodes of a type share a plugin, so a name among several has no mock of its own; neither in the picture."""
+    main = without_hand_over(fleet)
+    hand_over = '<HandOver place="{place}" />'
+    two = f'<Sequence><HandOver name="give" place="{{place}}" />{hand_over}</Sequence>'
+    replaced(fleet / "deliver.xml", (hand_over, two))
+    mocks = tuple(map(read_mock, ("give: 0.5", "bert/gi*: 0.5", "HandOver: 0.9")))
+    mocked = mock_system(str(main), mocks)
+    assert [mocked.words.why_unused(mock).partition(",")[0] for mock in mocks] == ["is for one name"] * 2 + [""]
+    assert {mock.mock.pattern for mock in mocked.planned} == {"HandOver"}
+    picture = tree_picture(api.check([str(main)]).snapshot.analysis, str(main), mocks)
+    assert picture is not None
+    shown = {detail.text for node in picture.nodes for detail in node.details if "mock" in detail.text}
+    assert shown == {"mock: 0.9"}
+
+
 @pytest.mark.parametrize("pattern", ["Lock", "outer", "*", "carl/Lock", "carl/*"])
 def test_own_nodes_with_children_need_plugins(pattern: str, fleet: Path) -> None:
     main = without_hand_over(fleet)

@@ -52,13 +52,13 @@ def mock_system(
         PathError: the path cannot be read, or is not a system file.
         MockError: a mock cannot be used for the nodes that it matches.
     """
-    from roaml.mocks.mock import MockableWords, node_words  # noqa: PLC0415 - a check starts faster without these
-    from roaml.mocks.system_mocks import (  # noqa: PLC0415
+    from roaml.mocks.system_mocks import (  # noqa: PLC0415 - a check starts faster without these
         all_defaults,
         check_likenesses,
         event_edits,
         inputs,
         listing,
+        mockable_words,
         plan,
     )
     from roaml.project.system_leaves import missing_leaves, plugin_paths, tick_rates  # noqa: PLC0415
@@ -87,6 +87,6 @@ def mock_system(
         source = analysis.source(file)
         assert source is not None
         changed[file] = apply_edits(source.text, tuple(changes))
-    words = dict.fromkeys(w for i in system.instances for name in (i.name, i.plugin) for w in node_words(name, i.tree))
-    nodes = MockableWords("the tree" if len(system.trees) < 2 else "the trees", tuple(words))
-    return SystemMocks(changed, tuple(planned), tuple(leaf.type for leaf in missing), events, nodes)
+    return SystemMocks(
+        changed, tuple(planned), tuple(leaf.type for leaf in missing), events, mockable_words(system, leaves)
+    )

@@ -191,11 +191,14 @@ class MockableWords(Record, frozen=True):
         trees: the trees in words, such as `the tree`.
         nodes: the words for nodes that are executed by a library, or have no children.
         parents: the words for nodes with children that a mock can declare to be executed like a node of a library.
+        ambiguous: the names of nodes that share a mock with nodes of other names, because a system has one plugin for
+            each type and tree.
     """
 
     trees: str
     nodes: tuple[str, ...]
     parents: tuple[str, ...] = ()
+    ambiguous: tuple[str, ...] = ()
 
     def why_unused(self, mock: Mock) -> str:
         """Why a mock has no effect and what to do, as the end of a sentence that begins with the mock; "" if it may
@@ -203,6 +206,8 @@ class MockableWords(Record, frozen=True):
         own, others = (self.nodes, self.parents) if mock.like is None else (self.parents, self.nodes)
         if mock.pattern == ALL or matches(mock.pattern, own):
             return ""
+        if mock.like is None and matches(mock.pattern, self.ambiguous):
+            return "is for one name, but nodes of the same type have other names; write a mock for the type"
         if not matches(mock.pattern, others):
             return f"matches no node of {self.trees}{did_you_mean(self.close(mock)) or '; remove it'}"
         if mock.like is None:
@@ -212,7 +217,7 @@ class MockableWords(Record, frozen=True):
     def close(self, mock: Mock) -> tuple[str, ...]:
         """The words for nodes that are similar to the pattern of a mock, the most similar first; empty if it matches a
         node."""
-        words = (*self.nodes, *self.parents)
+        words = (*self.nodes, *self.parents, *self.ambiguous)
         return () if matches(mock.pattern, words) else close_names(mock.pattern, words)
 
 

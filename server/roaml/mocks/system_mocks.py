@@ -9,7 +9,7 @@ from xml.sax.saxutils import quoteattr
 
 from roaml.libraries.node import EVENT_ATTRIBUTE
 from roaml.libraries.programs.assembly import reads_world
-from roaml.mocks.mock import ALL, Mock, MockError, likeness_for, mock_for
+from roaml.mocks.mock import ALL, Mock, MockableWords, MockError, likeness_for, mock_for, node_words
 from roaml.mocks.plugin import mock_plugin
 from roaml.mocks.system_leaves import SystemLeaf
 from roaml.model.expand import node_at
@@ -72,6 +72,23 @@ def plan(
 def _mock_in(tree: str, names: tuple[str, ...], leaf: SystemLeaf, mocks: Sequence[Mock]) -> Mock | None:
     """The mock for the leaves of one type in a tree, in which they have `names`."""
     return mock_for(mocks, names[0] if len(names) == 1 else leaf.type, leaf.type, leaf.succeeds, tree)
+
+
+def mockable_words(system: System, leaves: Iterable[SystemLeaf]) -> MockableWords:
+    """What mocks can call the nodes of a system.
+
+    Args:
+        leaves: the leaves without a plugin.
+    """
+    shared = {(leaf.type, tree) for leaf in leaves for tree, names in leaf.names if len(names) > 1}
+    nodes: dict[str, None] = {}
+    ambiguous: dict[str, None] = {}
+    for instance in system.instances:
+        of_name = ambiguous if (instance.plugin, instance.tree) in shared else nodes
+        of_name.update(dict.fromkeys(node_words(instance.name, instance.tree)))
+        nodes.update(dict.fromkeys(node_words(instance.plugin, instance.tree)))
+    trees = "the tree" if len(system.trees) < 2 else "the trees"
+    return MockableWords(trees, tuple(nodes), ambiguous=tuple(ambiguous))
 
 
 def check_likenesses(system: System, mocks: Sequence[Mock]) -> None:

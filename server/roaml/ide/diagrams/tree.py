@@ -92,6 +92,9 @@ class _Tree:
         of_system = None if system is None else system.path
         self.forests = {path: analysis.forest(path, of_system) for path in self.files}
         self.written = {instance.number: self.node(instance) for instance in instances}
+        self.names: dict[tuple[str, str], set[str]] = {}
+        for instance in instances:
+            self.names.setdefault((instance.tree, instance.plugin), set()).add(instance.name)
 
     def node(self, instance: Instance) -> TreeNode | None:
         file = self.files.get(instance.source.path)
@@ -254,7 +257,10 @@ class _Tree:
         if instance.plugin in library(BEHAVIORTREE_CPP).nodes:
             return
         succeeds = known is not None and known.succeeds
-        mock = mock_for(self.mocks, instance.name, instance.plugin, succeeds, instance.tree)
+        # In a system, all nodes of a type in a tree have one plugin.
+        is_shared = self.system is not None and len(self.names[instance.tree, instance.plugin]) > 1
+        name = instance.plugin if is_shared else instance.name
+        mock = mock_for(self.mocks, name, instance.plugin, succeeds, instance.tree)
         if mock is not None:
             is_instant = kind is DiagramNodeKind.CONDITION or (known is not None and known.is_synchronous)
             yield Detail(DetailKind.MOCK, f"mock: {mock.behaviour(is_instant=is_instant)}")
