@@ -247,3 +247,16 @@ def test_nodes_have_the_numbers_of_the_picture(tmp_path: Path, main: str) -> Non
     outcome = measure(tree.mocked, tree.target, Options(max_traces=1000))
     assert outcome.unfinished.value == 0
     assert outcome.success.value == pytest.approx(0.25 / (1 + main.count("Leaf")), abs=0.06)
+
+
+def test_a_node_that_is_executed_like_another_has_its_own_type(client: Client, tmp_path: Path) -> None:
+    path = tmp_path / "own.xml"
+    nodes = "<Lock name='door'>\n<Again>\n<Pull name='handle'/>\n</Again></Lock>"
+    path.write_text(f'<root BTCPP_format="4"><BehaviorTree ID="M">{nodes}</BehaviorTree></root>', encoding="utf-8")
+    mocks = ["Pull: 1 in 1 s", "Lock: as Sequence", "Again: as RetryUntilSuccessful(num_attempts=3)"]
+    client.launch(path, mocks=mocks)
+    (breakpoint_,) = client.ask("setFunctionBreakpoints", breakpoints=[{"name": "Lock"}])["breakpoints"]
+    assert breakpoint_["verified"]
+    client.ask("configurationDone")
+    stop = client.event("stopped")
+    assert [frame["name"] for frame in client.stack(stop["threadId"])] == ["door : Lock: IDLE"]

@@ -101,6 +101,9 @@ def test_nodes_with_children_and_what_they_behave_like_are_offered() -> None:
     assert "Sleep" not in inserted
     assert "Inverter" in labels("/models/tree.mocks", "Own: as In|", tree=OWN)
     assert labels("/models/tree.mocks", "Own: as Repeat(|)", tree=OWN) == ["num_cycles"]
+    named = OWN.replace("<Own>", "<Own name='mine'>")
+    assert labels("/models/tree.mocks", "|", tree=named) == ["Grasp", "Own", "mine"]
+    assert "Inverter" in labels("/models/tree.mocks", "mine: |", tree=named)
     assert labels("/models/tree.mocks", "Grasp: |", tree=OWN) == []
 
 

@@ -95,4 +95,5 @@ def nodes_of_tree(tree: ExecutedTree) -> Iterator[SourceNode]:
 def _of_executed(node: ExecutedNode, parent: int | None, picture: str) -> SourceNode:
     ports = tuple(NodePort(name, text, entry or "") for name, entry, text, _ in node.ports())
     origin = Location(node.origin.path, node.node.element.span)
-    return SourceNode(node.number, node.type, node.name, node.automaton, parent, ports, origin, picture)
+    type_ = node.own_type or node.type
+    return SourceNode(node.number, type_, node.name, node.automaton, parent, ports, origin, picture)

@@ -128,11 +128,12 @@ def _nodes(analysis: Analysis, path: str) -> Iterator[CompletionItem]:
 
 
 def _own_parents(analysis: Analysis, path: str) -> Iterator[str]:
-    """The types of the nodes with children that no library describes, of the tree that a file of mocks belongs to."""
+    """The types and names of the nodes with children that no library describes. A file of mocks belongs to their
+    tree."""
     forest = analysis.forest(f"{path.removesuffix(MOCKS_EXTENSION)}.xml")
     for _, _, node in forest.all_nodes if forest is not None else ():
         if forest is not None and node.plugin is not None and needs_likeness(forest, node):
-            yield node.plugin.value
+            yield from (word.value for word in (node.plugin, node.name) if word is not None)
 
 
 def _likes(analysis: Analysis, path: str, line: str) -> Iterator[CompletionItem]:
