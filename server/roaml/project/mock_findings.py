@@ -12,17 +12,21 @@ from roaml.durations import NANOSECONDS
 from roaml.expansion.uses import VARIABLE
 from roaml.forest.forest import Forest
 from roaml.mocks.likeness import needs_likeness
-from roaml.mocks.mock import MockableWords, MockError, mock_for, mock_spans, read_mock, read_mocks
+from roaml.mocks.mock import TREE_MARK, MockableWords, MockError, mock_for, mock_spans, read_mock, read_mocks
 from roaml.model.tree import TreeFile, TreeNode, nodes
+from roaml.record import replace
 from roaml.rules.parser_rules import MOCK_SYNTAX, UNMATCHED_MOCK
 from roaml.rules.rule import replacements
 from roaml.text import SourceFile, Span
+
+_FOLDER = "the trees in this folder"
 
 
 def mock_findings(
     source: SourceFile, beside: Callable[[str, str], Iterable[str]], forest: Callable[[str], Forest | None]
 ) -> Iterator[Finding]:
-    """The findings in a file of mocks. Mocks that contain parameters are not checked, because a system sets them.
+    """The findings in a file of mocks. Mocks that contain parameters are not checked, because a system sets them. The
+    names of the trees of a system are not checked.
 
     Args:
         beside: returns the files beside a file with an extension.
@@ -38,9 +42,13 @@ def mock_findings(
         except MockError as error:
             yield MOCK_SYNTAX.at(span, str(error))
             continue
+        start = span.start
+        if words.trees == _FOLDER and TREE_MARK in mock.pattern:
+            tree, _, node = mock.pattern.partition(TREE_MARK)
+            start, mock = start + len(tree) + len(TREE_MARK), replace(mock, pattern=node)
         reason = words.why_unused(mock) if words.nodes or words.parents else ""
         if reason:
-            at = Span(span.start, span.start + len(mock.pattern))
+            at = Span(start, start + len(mock.pattern))
             fixes = replacements(at, words.close(mock))
             yield UNMATCHED_MOCK.at(at, f"the mock `{mock.pattern}` {reason}", *fixes)
 
@@ -77,5 +85,5 @@ def _words(
         for _, _, node in trees.all_nodes if trees is not None else ():
             own = [name.value for name in (node.name, node.plugin) if name is not None]
             (parents if trees is not None and needs_likeness(trees, node) else words).update(dict.fromkeys(own))
-    phrase = f"`{os.path.basename(tree)}`" if is_beside else "the trees in this folder"
+    phrase = f"`{os.path.basename(tree)}`" if is_beside else _FOLDER
     return MockableWords(phrase, tuple(words), tuple(parents))
