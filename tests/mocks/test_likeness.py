@@ -150,6 +150,11 @@ def test_a_wrong_number_of_children_is_refused(tmp_path: Path, capsys: pytest.Ca
     path = write(tmp_path, "<Own><A/><A/></Own>")
     assert run(["verify", str(path), "--mock", "A: 1", "--mock", "Own: as Inverter"]) == 1
     assert "`Own`, which is executed like `Inverter`, has 2 children, but needs 1" in capsys.readouterr().err
+    path = write(tmp_path, "<Own><A/></Own>")
+    assert run(["verify", str(path), "--mock", "A: 1", "--mock", "Own: as IfThenElse"]) == 1
+    assert "`Own`, which is executed like `IfThenElse`, has 1 child, but needs 2 to 3" in capsys.readouterr().err
+    assert run(["verify", str(path), "--mock", "A: 1", "--mock", "Own: as Repeat"]) == 1
+    assert "`Own`, which is executed like `Repeat`, needs the port `num_cycles`" in capsys.readouterr().err
 
 
 def test_mocks_of_leaves_and_of_nodes_with_children_are_independent(

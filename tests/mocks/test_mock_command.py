@@ -109,6 +109,7 @@ def test_leaves_without_mocks_are_named(tmp_path: Path, capsys: pytest.CaptureFi
         ("Drive: as Inverter(x=3)", "`Inverter` has no port `x`; it has no ports"),
         ("Drive: as Repeat(num_cycles)", "`num_cycles` does not set a port of `Repeat`"),
         ("Drive: as Repeat(num_cycles={n})", "must be a constant here"),
+        ("Drive: as Repeat(num_cycles=3, num_cycles=4)", "the port `num_cycles` of `Repeat` is set twice"),
         ("Drive: as", "names no node of a library; write a mock as `NODE: 0.9 in 2 s`, or for a node with children as"),
         ("Drive: as Sequenc", "`Drive: as Sequenc` is not a mock: a node cannot be executed like"),
         ("Drive: as two words", "is not a node of a library; write it as `Repeat(num_cycles=3)`"),

@@ -99,6 +99,8 @@ def read_likeness(text: str) -> Likeness:
             raise LikenessError(f"`{type_}` has no port `{name}`{did_you_mean(close_names(name, names)) or has}")
         if "{" in value:
             raise LikenessError(f"the port `{name}` of `{type_}` must be a constant here; set it in the tree instead")
+        if any(name == other for other, _ in ports):
+            raise LikenessError(f"the port `{name}` of `{type_}` is set twice; remove one of the values")
         ports.append((name, value))
         at = port.end()
     return Likeness(type_, tuple(ports))

@@ -79,9 +79,13 @@ def _check_children(node: ExecutedNode) -> None:
     assert node.known is not None
     least, most = node.known.children
     if not least <= len(node.children) <= most:
-        who = f"`{node.own_type}`, which is executed like `{node.type}`," if node.own_type else f"`{node.type}`"
-        reason = f"{who} has {len(node.children)} children, but needs {_range(least, most)}"
+        children = "1 child" if len(node.children) == 1 else f"{len(node.children)} children"
+        reason = f"{_who(node)} has {children}, but needs {_range(least, most)}"
         raise TreeRefusal(node.origin, reason, is_reported=True)
+
+
+def _who(node: ExecutedNode) -> str:
+    return f"`{node.own_type}`, which is executed like `{node.type}`," if node.own_type else f"`{node.type}`"
 
 
 def _range(least: int, most: int) -> str:
@@ -118,7 +122,7 @@ def compiled_scripts(node: ExecutedNode, board: Board) -> dict[str, CompiledScri
 
 
 def _missing(node: ExecutedNode, port: str) -> TreeRefusal:
-    return TreeRefusal(node.origin, f"`{node.type}` needs the port `{port}`", is_reported=True)
+    return TreeRefusal(node.origin, f"{_who(node)} needs the port `{port}`", is_reported=True)
 
 
 def event_probability(node: ExecutedNode) -> float | None:
