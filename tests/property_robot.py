@@ -119,7 +119,7 @@ ROBOT = f"""\
   <ros_topic_publisher name="level" topic="/battery/level" type="std_msgs/Int32"/>
   <ros_service_client name="charge" service_name="/charge" type="std_srvs/SetBool"/>
   <state id="drain">
-    <ros_rate_callback name="step" cond="level &gt; 30" target="drain">
+    <ros_rate_callback name="step" cond="level &gt; 25" target="drain">
       <assign location="level" expr="level - 5"/>
       <ros_topic_publish name="level"><field name="data" expr="level"/></ros_topic_publish>
     </ros_rate_callback>
