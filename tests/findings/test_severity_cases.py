@@ -85,6 +85,55 @@ def test_an_optional_input_is_marked_by_a_comment(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("start", "end", "flag", "count", "severity"),
+    [
+        ("closed", "open", "busy", "seconds", Severity.WARNING),
+        ("closed", "emergency_stop", "has_failed", "floor", Severity.INFORMATION),
+        ("waiting_for_light", "open", "ever_lit", "robot_x", Severity.INFORMATION),
+    ],
+)
+def test_names_say_that_a_state_is_an_end_and_that_a_variable_keeps_its_value(
+    start: str, end: str, flag: str, count: str, severity: Severity, tmp_path: Path
+) -> None:
+    text = SYSTEM[: SYSTEM.index("-- robot.ascxml")] + ROBOT
+    for name, value in {"START": start, "END": end, "FLAG": flag, "COUNT": count}.items():
+        text = text.replace(name, value)
+    diagnostics, _ = check_text(tmp_path, text)
+    rows = [(d.code, d.severity) for d in diagnostics if d.code in ("never-reset", "trapping-state")]
+    assert sorted(rows) == [("never-reset", severity)] * 2 + [("trapping-state", severity)]
+
+
+ROBOT = """
+-- robot.ascxml --
+<ascxml name="Robot" version="1.0" initial="START">
+    <datamodel>
+        <data id="FLAG" type="bool" expr="false" />
+        <data id="COUNT" type="int32" expr="0" />
+    </datamodel>
+    <ros_topic_subscriber name="light" topic="/light" type="std_msgs/Bool" />
+    <ros_time_rate name="second" rate_hz="1" />
+    <state id="START">
+        <ros_topic_callback name="light" cond="_msg.data" target="moving">
+            <assign location="FLAG" expr="true" />
+        </ros_topic_callback>
+        <ros_topic_callback name="light" target="END" />
+    </state>
+    <state id="moving">
+        <ros_rate_callback name="second" cond="COUNT == 5" target="START">
+            <assign location="FLAG" expr="true" />
+        </ros_rate_callback>
+        <ros_rate_callback name="second" target="moving">
+            <assign location="COUNT" expr="COUNT + 1" />
+        </ros_rate_callback>
+    </state>
+    <state id="END">
+        <ros_rate_callback name="second" target="END" />
+    </state>
+</ascxml>
+"""
+
+
+@pytest.mark.parametrize(
     ("declaration", "severity"),
     [
         ('<ros_time_rate name="t" rate_hz="1" />', Severity.ERROR),

@@ -49,7 +49,7 @@ def _tested(statement: If) -> Iterator[Finding]:
     """Report a step in the other direction than the step that the condition compares with a limit."""
     parts = (*statement.branches, *((statement.otherwise,) if statement.otherwise else ()))
     steps = [
-        (place, assign.value.tree)
+        (part, place, assign.value.tree)
         for part in parts
         for assign in part.body
         if isinstance(assign, Assign) and isinstance(assign.value, Expression) and assign.location is not None
@@ -62,10 +62,22 @@ def _tested(statement: If) -> Iterator[Finding]:
             for step in (test.left, test.right):
                 if not isinstance(step, Binary) or step.operator not in _OPPOSITE:
                     continue
-                made = [tree for place, tree in steps if _is_step(tree, place) and place_of(step.left) == place]
+                # A step back where the tested step would pass the limit is a turn: a ball bounces.
+                passes = _passes(test, step)
+                made = [
+                    tree
+                    for part, place, tree in steps
+                    if (part is branch) is not passes and _is_step(tree, place) and place_of(step.left) == place
+                ]
                 same = [tree for tree in made if format_expr(tree.right) == format_expr(step.right)]
                 if same and all(tree.operator is _OPPOSITE[step.operator] for tree in same):
                     yield from (_reversed(tree, step) for tree in same)
+
+
+def _passes(test: Binary, step: Binary) -> bool:
+    """Whether a comparison holds if `step`, one of its sides, passes the limit, which is the other side."""
+    is_greater = test.operator in (Operator.GREATER, Operator.GREATER_EQUAL)
+    return (is_greater == (step is test.left)) == (step.operator is Operator.ADD)
 
 
 def _is_step(tree: Expr, place: str) -> TypeGuard[Binary]:

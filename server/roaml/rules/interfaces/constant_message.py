@@ -19,8 +19,8 @@ from roaml.rules.support.interfaces import channels_of
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    """Report all places where a machine publishes the same Boolean or number on a topic, if there are several and a
-    subscriber reads the value."""
+    """Report all places where a machine publishes the same Boolean or number on a topic, if there are several, a
+    subscriber reads the value, and nothing else publishes on the topic."""
     if not context.automata:
         return
     for declaration, statements in _published(context).items():
@@ -28,8 +28,11 @@ def check(context: MachineContext) -> Iterator[Finding]:
         values = [constant for constant in constants if constant is not None]
         if len(statements) < 2 or len(values) < len(statements) or len({value.value for value in values}) > 1:
             continue
-        if not any(end.use.reads for _, channel in channels_of(context, declaration) for end in channel.users):
+        channels = list(channels_of(context, declaration))
+        if not any(end.use.reads for _, channel in channels for end in channel.users):
             continue  # a signal, such as a heartbeat
+        if any(end.automaton is not own for own, channel in channels for end in channel.sources):
+            continue  # the value differs from that of another publisher, as in the order of a monitor to stop
         for value in values:
             text = format_expr(value)
             message = f"all messages that this machine publishes on the topic are `{text}`, so receivers learn nothing"

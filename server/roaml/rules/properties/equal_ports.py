@@ -18,7 +18,7 @@ def check(file: LinkedFile) -> Iterator[Finding]:
     for port in file.file.ports:
         texts = (_text(port.name), _text(port.event), _text(port.origin), _text(port.target))
         for variable in port.variables:
-            key = (port.kind.value, *texts, variable.kind.value, _text(variable.field))
+            key = (port.kind.value, *texts, variable.kind.value, _text(variable.field), _flag(variable))
             earlier = first.setdefault(key, variable)
             if earlier is variable or earlier.id is None or variable.id is None or port.name is None:
                 continue
@@ -29,6 +29,13 @@ def check(file: LinkedFile) -> Iterator[Finding]:
                 )
                 related = [Related(earlier.id.span, "the other variable")]
                 yield RULE.at(port.name.span, message, related=related)
+
+
+def _flag(variable: PortVariable) -> str:
+    """The initial value of a Boolean; "" for other variables. With another one, the variable also tells what is true as
+    long as nothing is known."""
+    text = variable.initial.text.strip() if variable.initial is not None else ""
+    return text if text in ("true", "false") else ""
 
 
 def _text(name: Name | None) -> str:

@@ -4,17 +4,19 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 
 from roaml.diagnostics import Finding, Related, Severity
+from roaml.expr.types import ScalarKind, is_kind
 from roaml.model.behavior.knowledge import variables_in
-from roaml.model.machine import Assign, Branch, Handler, If, ReturnHalted, State, Statement, Target
+from roaml.model.machine import Assign, Branch, Chart, Handler, If, ReturnHalted, State, Statement, Target
 from roaml.model.syntax import Expression
 from roaml.model.triggers import trigger
 from roaml.model.value_types import GOAL_STATUSES
 from roaml.model.values.evaluate import place_of
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.words import words_of
 from roaml.text import Span
 from roaml.xml_syntax import Element, Text
 
@@ -28,7 +30,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         for statement in chart.statements:
             if isinstance(statement, If):
-                yield from _branches(statement)
+                yield from _branches(context, chart, statement)
         for state in chart.states:
             yield from _handlers(context, state)
             for handler in state.handlers:
@@ -36,21 +38,22 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     yield from _targets(handler)
 
 
-def _branches(statement: If) -> Iterator[Finding]:
+def _branches(context: MachineContext, chart: Chart, statement: If) -> Iterator[Finding]:
     parts = (*statement.branches, *((statement.otherwise,) if statement.otherwise else ()))
     contents = {_content(part.body) for part in parts}
     if statement.otherwise is not None and len(contents) == 1 and all(part.body for part in parts):
         message = "all branches of this `<if>` do the same, so its conditions have no effect"
         yield from _alike(message, [part.body[0].element.name_span for part in parts])
     elif len(parts) >= _MIN_CASES:
-        yield from _repeated(parts)
+        types = context.typed.variables.get(chart.scope, {})
+        yield from _repeated(parts, {name for name, type_ in types.items() if is_kind(type_, ScalarKind.REAL)})
     elif len(parts) == 2 and statement.otherwise is not None:
-        yield from _half_equal(parts)
+        yield from _half_equal(chart, parts)
 
 
-def _half_equal(parts: Sequence[Branch]) -> Iterator[Finding]:
+def _half_equal(chart: Chart, parts: Sequence[Branch]) -> Iterator[Finding]:
     """Report a constant that both branches assign to a variable, if they only assign constants to the same variables,
-    and different ones to all others."""
+    and different ones to all others. If it gets another constant elsewhere, both branches may change it back."""
     first, second = (_assigned(part.body) for part in parts)
     if first.keys() != second.keys() or any(len(part.body) != len(first) for part in parts):
         return
@@ -59,20 +62,28 @@ def _half_equal(parts: Sequence[Branch]) -> Iterator[Finding]:
     equal = [
         place for place, value in first.items() if "".join(value.text.split()) == "".join(second[place].text.split())
     ]
-    if len(equal) == 1 and len(first) > 1:
+    if len(equal) == 1 and len(first) > 1 and not _changes(chart, equal[0], first[equal[0]]):
         message = (
             f"both branches of this `<if>` assign the same value to `{equal[0]}`, and different ones to the others"
         )
         yield from _alike(message, [first[equal[0]].span, second[equal[0]].span])
 
 
+def _changes(chart: Chart, place: str, value: Expression) -> bool:
+    """Whether a variable gets another constant than `value` somewhere."""
+    known = [_assigned((s,)).get(place) for s in chart.statements if isinstance(s, Assign)]
+    constants = {"".join(v.text.split()) for v in known if v is not None and not variables_in((v.tree,))}
+    return bool(constants - {"".join(value.text.split())})
+
+
 _MIN_CASES = 4
 """How many branches must assign different values before two equal ones are suspicious."""
 
 
-def _repeated(parts: Sequence[Branch]) -> Iterator[Finding]:
+def _repeated(parts: Sequence[Branch], real: Set[str]) -> Iterator[Finding]:
     """Report a value that two branches assign to a variable, while all others assign different ones. A repeated
-    constant is only suspicious beside another variable that gets a different constant in each branch."""
+    constant is only suspicious beside another variable that gets a different constant in each branch, and not if it is
+    a coordinate or another real number (`real`): two of several places often have the same one."""
     assigned = [_assigned(part.body) for part in parts]
     places = [place for place in assigned[0] if all(place in values for values in assigned[:-1])]
     unique = set()
@@ -87,11 +98,15 @@ def _repeated(parts: Sequence[Branch]) -> Iterator[Finding]:
             repeated.append((place, equal))
     for place, equal in repeated:
         is_computed = all(variables_in((value.tree,)) for values in assigned for value in _at(values, place))
-        if is_computed or unique - {place}:
+        is_measure = place in real or words_of(place)[-1] in _COORDINATES
+        if is_computed or (unique - {place} and not is_measure):
             message = (
                 f"another branch of this `<if>` assigns the same value to `{place}`, and each of the others another"
             )
             yield from _alike(message, [value.span for value in equal])
+
+
+_COORDINATES = ("x", "y", "z", "row", "column", "col")
 
 
 def _at(values: Mapping[str, Expression], place: str) -> tuple[Expression, ...]:
@@ -124,10 +139,20 @@ def _handlers(context: MachineContext, state: State) -> Iterator[Finding]:
         if part is ProtocolPart.RESULT:
             codes = {handler.type.code for handler in handlers}
             ends = any(isinstance(s, ReturnHalted) for handler in handlers for s in handler.targets[0].body)
-            if len(does) == 1 and codes == {_SUCCEEDED, _ABORTED} and not ends:
+            is_progress = all(_is_progress(statement) for statement in handlers[0].targets[0].body)
+            if len(does) == 1 and codes == {_SUCCEEDED, _ABORTED} and not ends and not is_progress:
                 yield from _alike("the handlers for the success and the failure of this goal do the same", spans)
         elif len(does) == 1 and handlers[-1].cond is None and all(handler.cond for handler in handlers[:-1]):
             yield from _alike("all handlers of this event do the same, so their conditions have no effect", spans)
+
+
+def _is_progress(statement: Statement) -> bool:
+    """Whether a statement only computes a value, as in `index + 1`. A machine may go on after a failure, too."""
+    return (
+        isinstance(statement, Assign)
+        and isinstance(statement.value, Expression)
+        and bool(variables_in((statement.value.tree,)))
+    )
 
 
 def _state(handler: Handler) -> str | None:

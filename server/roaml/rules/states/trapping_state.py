@@ -13,6 +13,7 @@ from roaml.model.triggers import Trigger, trigger
 from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.words import words_of
 
 _IGNORED = (ProtocolPart.MESSAGE, ProtocolPart.EVENT)
 """What is discarded in a state without a handler. Other rules report requests, goals, ticks and halts."""
@@ -31,10 +32,45 @@ def check(context: MachineContext) -> Iterator[Finding]:
             if len(reached) > 1 and _is_trap(state):
                 lost = next(_lost(context, number, state, reached), None)
                 if lost is not None:
-                    yield _finding(state, *lost)
+                    intended = _is_named(state, _ENDS) or _is_named(lost[0], _STARTS)
+                    yield _finding(state, *lost, Severity.INFORMATION if intended else None)
 
 
-def _finding(state: State, other: State, handler: Handler) -> Finding:
+_ENDS = frozenset(
+    [
+        "aborted",
+        "broken",
+        "crashed",
+        "dead",
+        "done",
+        "emergency",
+        "empty",
+        "end",
+        "ended",
+        "error",
+        "failed",
+        "failure",
+        "fault",
+        "finished",
+        "halted",
+        "lost",
+        "off",
+        "shutdown",
+        "stopped",
+        "terminated",
+    ]
+)
+_STARTS = frozenset(
+    ["boot", "booting", "init", "initial", "initializing", "start", "starting", "startup", "unknown", "wait", "waiting"]
+)
+"""Words in the names of states that are probably never left, or never entered again, intentionally."""
+
+
+def _is_named(state: State, words: frozenset[str]) -> bool:
+    return state.id is not None and not words.isdisjoint(words_of(state.id.value))
+
+
+def _finding(state: State, other: State, handler: Handler, severity: Severity | None) -> Finding:
     assert state.id is not None
     received = handler.handle or handler.event
     name = received.value if received is not None else ""
@@ -45,7 +81,7 @@ def _finding(state: State, other: State, handler: Handler) -> Finding:
     targets = [target.state for own in state.handlers for target in own.targets if target.state is not None]
     span = targets[0].span if len(targets) == 1 else state.id.span
     place = f"`{other.id.value}` handles it here" if other.id is not None else "it is handled here"
-    return RULE.at(span, message, related=[Related(handler.element.name_span, place)])
+    return RULE.at(span, message, related=[Related(handler.element.name_span, place)], severity=severity)
 
 
 def _is_trap(state: State) -> bool:

@@ -100,8 +100,8 @@ def _read_twice(
             continue
         (field,) = longest
         unread = _unread(context, chart, handler, field)
-        if format_expr(earlier.location.tree) != format_expr(statement.location.tree) and unread is not None:
-            target, other = format_expr(statement.location.tree), format_expr(earlier.location.tree)
+        target, other = format_expr(statement.location.tree), format_expr(earlier.location.tree)
+        if target != other and unread is not None and not _continues(chart, (statement, earlier)):
             message = f"`{target}` gets the same value as `{other}`, and nothing reads `{unread}`; did you mean that?"
             spans = [n.span for n in walk(statement.value.tree) if place_of(n) == field]
             yield RULE.at(
@@ -110,6 +110,21 @@ def _read_twice(
                 Fix(f"Change to `{unread}`", tuple(TextEdit(span, unread) for span in spans)),
                 related=[Related(earlier.element.name_span, "the same value")],
             )
+
+
+def _continues(chart: Chart, starts: Sequence[Assign]) -> bool:
+    """Whether the variables that two assignments set are computed from their own values elsewhere: the least and the
+    greatest value, for example, begin with the same one."""
+    places = [place_of(start.location.tree) for start in starts if start.location is not None]
+    return all(
+        any(
+            place_of(statement.location.tree) == place and place in map(place_of, walk(statement.value.tree))
+            for statement in chart.statements
+            if isinstance(statement, Assign) and statement.location is not None
+            if isinstance(statement.value, Expression) and not statement.value.broken
+        )
+        for place in places
+    )
 
 
 _DATA = "_msg."

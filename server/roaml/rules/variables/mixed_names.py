@@ -3,15 +3,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from typing import NamedTuple
 
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.expr.format import format_expr
 from roaml.expr.infer import constant
-from roaml.expr.operators import Operator, OperatorKind
-from roaml.expr.tree import Binary, Name, access_path, walk
+from roaml.expr.operators import Operator, OperatorKind, UnaryOperator
+from roaml.expr.tree import Binary, Boolean, Name, Unary, access_path, walk
 from roaml.expr.types import Type
+from roaml.model.behavior.knowledge import variables_in
 from roaml.model.machine import Assign, Chart, If, Param, RosSend, Send, SetOutput, Statement, statements
 from roaml.model.syntax import Expression, Value
 from roaml.model.values.evaluate import place_of
@@ -27,13 +28,15 @@ _INITIATED = (ProtocolPart.MESSAGE, ProtocolPart.REQUEST, ProtocolPart.GOAL)
 class _Part(NamedTuple):
     """A part of a machine that may have similar parts, with the name that distinguishes it.
 
-    `uses` contains the names in it: role, name -> the first place. `kind` is equal for parts that are compared.
+    `uses` contains the names in it: role, name -> the first place. `kind` is equal for parts that are compared. `forms`
+    contains how names are tested and which Booleans are assigned to them.
     """
 
     kind: str
     name: str
     span: Span
     uses: dict[tuple[str, str], Span]
+    forms: Mapping[tuple[str, str], Set[str]] = {}
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -71,9 +74,12 @@ def _copied(parts: Sequence[_Part], known: Iterable[str]) -> Iterator[Finding]:
 
 def _copies(part: _Part, other: _Part, word: str, own: str, known: frozenset[str]) -> Iterator[Finding]:
     used, others = {name for _, name in part.uses}, {name for _, name in other.uses}
+    opposite = {
+        name for (role, name), forms in part.forms.items() if forms.isdisjoint(other.forms.get((role, name), forms))
+    }
     for (role, name), span in part.uses.items():
         meant = with_word(name, word, own) if (role, name) in other.uses else None
-        if meant is None or (role, meant) in part.uses or (role, meant) in other.uses:
+        if name in opposite or meant is None or (role, meant) in part.uses or (role, meant) in other.uses:
             continue
         if role != "location" and (meant in used or meant in others):
             continue
@@ -96,9 +102,11 @@ def _parts(chart: Chart) -> Iterator[_Part]:
             inside += own
             name = handler.handle or handler.event
             if name is not None and handler.trigger is not None:
-                yield _Part(handler.trigger.value, name.value, name.span, _uses(own, handler.cond))
+                yield _Part(
+                    handler.trigger.value, name.value, name.span, _uses(own, handler.cond), _forms(own, handler.cond)
+                )
         if state.id is not None:
-            yield _Part("state", state.id.value, state.id.span, _uses(inside))
+            yield _Part("state", state.id.value, state.id.span, _uses(inside), _forms(inside))
     for statement in chart.statements:
         match statement:
             case If(branches=branches):
@@ -107,7 +115,7 @@ def _parts(chart: Chart) -> Iterator[_Part]:
                     if branch.cond is not None and not branch.cond.broken:
                         uses = {**_uses(branch.body), **numbers[branch.element.span]}
                         kind = f"if {statement.element.span.start}"
-                        yield _Part(kind, branch.cond.text.strip(), branch.cond.span, uses)
+                        yield _Part(kind, branch.cond.text.strip(), branch.cond.span, uses, _forms(branch.body))
             case Send(event=event, params=params) if event is not None:
                 yield _Part("send", event.value, event.span, _fields(params))
             case RosSend(handle=handle, fields=fields) if handle is not None:
@@ -165,6 +173,34 @@ def _uses(body: Iterable[Statement], cond: Expression | None = None) -> dict[tup
     return uses
 
 
+def _forms(body: Iterable[Statement], cond: Expression | None = None) -> dict[tuple[str, str], set[str]]:
+    """Role, name -> the Booleans that are assigned to it, or how conditions test it. A part that tests or sets the
+    opposite of what a similar part does uses the name intentionally."""
+    forms: dict[tuple[str, str], set[str]] = {}
+    conditions = [cond]
+    for statement in statements(tuple(body)):
+        match statement:
+            case Assign(location=Expression(tree=Name(name=name)), value=Expression(tree=Boolean(value=value))):
+                forms.setdefault(("location", name), set()).add(str(value))
+            case If(branches=branches):
+                conditions += [branch.cond for branch in branches]
+    for condition in conditions:
+        if condition is not None and not condition.broken:
+            inside: dict[int, str] = {}
+            for node in walk(condition.tree):
+                match node:
+                    case Unary(operator=UnaryOperator.NOT, operand=Name() as operand):
+                        inside[id(operand)] = "not"
+                    case Binary(operator=operator, left=left, right=right) if operator.kind in _COMPARING:
+                        inside |= dict.fromkeys(map(id, (left, right)), operator.symbol)
+                    case Name(name=name):
+                        forms.setdefault(("cond", name), set()).add(inside.get(id(node), ""))
+    return forms
+
+
+_COMPARING = (OperatorKind.ORDER, OperatorKind.EQUALITY)
+
+
 def _add(uses: dict[tuple[str, str], Span], role: str, value: Value | None) -> None:
     if isinstance(value, Expression) and not value.broken:
         for node in walk(value.tree):
@@ -193,12 +229,16 @@ def _steps(chart: Chart) -> Iterator[Finding]:
         other = own.get((step.read, step.amount))
         if step.place in counted or other is None or difference(step.place, step.read) is None:
             continue
-        if len(words_of(step.place)) < 2:
+        if len(words_of(step.place)) < 2 or any(_RELATIONS & {*words_of(name)} for name in (step.place, step.read)):
             continue
         message = f"`{step.place}` is computed from `{step.read}`, which is counted, too; did you mean `{step.place}`?"
         yield RULE.at(
             step.span, message, *replacements(step.span, (step.place,)), related=[Related(other.span, "counted here")]
         )
+
+
+_RELATIONS = frozenset(("next", "following", "new", "last", "previous", "prev", "old", "current", "first", "end"))
+"""Words that relate a value to another one: the next waypoint is the current one + 1."""
 
 
 def _step(assign: Assign) -> _Step | None:
@@ -221,22 +261,25 @@ def _pairs(context: MachineContext, chart: Chart) -> Iterator[Finding]:
     """Comparisons of names that differ in the last word, such as `goal_y > curr_x`, in machines that compare names with
     the same last word, such as `goal_x < curr_x`."""
     comparisons = [
-        (node.left, node.right)
+        (node.left, node.right, node.operator)
         for value in context.typed.values
         if value.place.chart is chart and isinstance(value.value, Expression) and not value.value.broken
         for node in walk(value.value.tree)
         if isinstance(node, Binary) and node.operator.kind in (OperatorKind.ORDER, OperatorKind.EQUALITY)
         if isinstance(node.left, Name) and isinstance(node.right, Name)
     ]
-    split = [(left, right, *_split(left.name), *_split(right.name)) for left, right in comparisons]
-    matching = {(first, second): (left, right) for left, right, first, a, second, b in split if a == b}
+    written = {(left.name, right.name, operator) for left, right, operator in comparisons}
+    split = [(left, right, op, *_split(left.name), *_split(right.name)) for left, right, op in comparisons]
+    matching = {(first, second): (left, right) for left, right, _, first, a, second, b in split if a == b}
     types = context.typed.variables.get(chart.scope, {})
-    for left, right, first, last, second, other in split:
+    for left, right, operator, first, last, second, other in split:
         pattern = matching.get((first, second))
         if last == other or pattern is None or not first or not second:
             continue
         meant = with_word(right.name, other, last)
         if meant is None or meant not in types or with_word(left.name, last, other) not in types:
+            continue
+        if (left.name, meant, operator) in written:  # each with each
             continue
         message = f"`{left.name}` is compared with `{right.name}`, although there is `{meant}`; did you mean that?"
         related = [Related(Span(pattern[0].span.start, pattern[1].span.end), "names that belong together")]
@@ -253,9 +296,17 @@ def _split(name: str) -> tuple[tuple[str, ...], str]:
 _PREVIOUS = ("previous", "prev", "old")
 """The first word of a variable that keeps the last value of another one."""
 
+_CURRENT = ("current", "curr", "cur", "new", "latest", "actual")
+
 
 def _previous(chart: Chart, types: Mapping[str, Type]) -> Iterator[Finding]:
     """Variables that keep the last value of another one, as their names say, and get the value of a third one."""
+    varying = {
+        statement.location.tree.name
+        for statement in chart.statements
+        if isinstance(statement, Assign) and statement.location is not None
+        if isinstance(statement.location.tree, Name) and not _accumulates(statement, statement.location.tree.name)
+    }
     for statement in chart.statements:
         if not isinstance(statement, Assign) or not isinstance(statement.value, Expression) or not statement.location:
             continue
@@ -269,10 +320,16 @@ def _previous(chart: Chart, types: Mapping[str, Type]) -> Iterator[Finding]:
             name
             for name, type_ in types.items()
             if name != location.name and words_of(name)[-len(kept) :] == kept and type_ == types.get(location.name)
+            # `max_error` and `sum_error` are no values of which the previous one is kept.
+            if name in varying or words_of(name)[0] in _CURRENT
         ]
         if len(sources) == 1:
             message = f"`{location.name}` gets `{value.name}`, although there is `{sources[0]}`; did you mean that?"
             yield RULE.at(value.span, message, *replacements(value.span, sources))
+
+
+def _accumulates(statement: Assign, name: str) -> bool:
+    return isinstance(statement.value, Expression) and name in variables_in((statement.value.tree,))
 
 
 # ------------------------------------------------------------ guards of steps

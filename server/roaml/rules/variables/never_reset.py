@@ -9,10 +9,12 @@ from typing import NamedTuple
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.expr.operators import Operator
 from roaml.expr.tree import Binary, Boolean, Expr, Name
-from roaml.model.machine import Assign, Chart, Data, Handler, If, State, Statement, bodies, statements
+from roaml.model.machine import Assign, Chart, Data, Handler, If, Machine, State, Statement, bodies, statements
 from roaml.model.syntax import Expression
+from roaml.model.triggers import trigger
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.steps import step_of
+from roaml.rules.support.words import words_of
 
 _REACHED = {
     1: (Operator.EQUAL, Operator.GREATER_EQUAL, Operator.GREATER),
@@ -27,7 +29,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         assigned = _assigned(chart)
         yield from _counters(chart, assigned)
-        yield from _flags(chart, assigned)
+        yield from _flags(context.machine, chart, assigned)
 
 
 class _Assigned(NamedTuple):
@@ -71,7 +73,7 @@ def _counters(chart: Chart, assigned: Mapping[str, Sequence[_Assigned]]) -> Iter
                     "enters the state again; assign the initial value"
                 )
                 related = [Related(step.statement.element.name_span, "counted here") for step in steps]
-                yield RULE.at(cond.span, message, related=related)
+                yield RULE.at(cond.span, message, related=related, severity=_severity(name, _POSITIONS))
 
 
 def _is_limit(tree: Expr, name: str, sign: int) -> bool:
@@ -134,16 +136,44 @@ def _next(state: State) -> list[str]:
 # ------------------------------------------------------------------- flags
 
 
-def _flags(chart: Chart, assigned: Mapping[str, Sequence[_Assigned]]) -> Iterator[Finding]:
-    """Report a flag that several handlers set and none clears. One that is set in one place may record that something
-    has happened."""
+_RECORDS = frozenset(
+    [
+        "any",
+        "ever",
+        "failed",
+        "had",
+        "happened",
+        "has",
+        "initialized",
+        "known",
+        "received",
+        "seen",
+        "violated",
+        "visited",
+        "was",
+    ]
+)
+_POSITIONS = frozenset(["altitude", "angle", "floor", "height", "pos", "position", "x", "y", "z"])
+"""Words in the names of flags that record what has happened, and of what stays where it is."""
+
+
+def _severity(name: str, words: frozenset[str]) -> Severity | None:
+    return None if words.isdisjoint(words_of(name)) else Severity.INFORMATION
+
+
+def _flags(machine: Machine, chart: Chart, assigned: Mapping[str, Sequence[_Assigned]]) -> Iterator[Finding]:
+    """Report a flag that several handlers set and none clears. One that is set in one place, or by one event in several
+    states, may record that something has happened."""
     for data in chart.data:
         if data.id is None or not isinstance(data.value, Expression) or not isinstance(data.value.tree, Boolean):
             continue
         values = assigned.get(data.id.value, [])
         constants = {value.value.value if isinstance(value.value, Boolean) else None for value in values}
         places = {id(value.handler or value.state) for value in values}
-        if len(places) > 1 and constants == {not data.value.tree.value}:
+        events = {trigger(machine, v.handler) if v.handler is not None else None for v in values}
+        states = {id(v.state) for v in values}
+        is_known = len(events) == 1 and None not in events and len(states) == len(places)
+        if len(places) > 1 and not is_known and constants == {not data.value.tree.value}:
             yield _flag(data, data.id.value, not data.value.tree.value, values)
 
 
@@ -152,7 +182,7 @@ def _flag(data: Data, name: str, value: bool, values: Sequence[_Assigned]) -> Fi
     word = "true" if value else "false"
     message = f"all assignments to `{name}` assign {word}, so it never changes back; change one of them, or reset it"
     related = [Related(other.statement.element.name_span, f"becomes {word}") for other in values]
-    return RULE.at(data.id.span, message, related=related)
+    return RULE.at(data.id.span, message, related=related, severity=_severity(name, _RECORDS))
 
 
 RULE = Rule(
