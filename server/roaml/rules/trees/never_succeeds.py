@@ -16,6 +16,7 @@ from roaml.rules.support.forest import trees_of
 from roaml.rules.support.settings import integer_of
 
 _FAILING = ("AlwaysFailure", "ForceFailure")
+_SEQUENCES = ("Sequence", "AsyncSequence", "SequenceWithMemory")
 _ENDLESS = "KeepRunningUntilFailure"
 _THRESHOLDS = ("success_count", "success_threshold")
 
@@ -33,8 +34,16 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 yield _of_parallel(node, failing, needed)
     for tree in context.file.trees:
         name = tree.id.value if tree.id else ""
-        if name in forest.executed and len(tree.roots) == 1:
+        if name in forest.executed and len(tree.roots) == 1 and not _is_intended(forest, name, tree.roots[0]):
             yield from _of_tree(forest, tree.roots[0])
+
+
+def _is_intended(forest: Forest, name: str, root: TreeNode) -> bool:
+    """Whether another tree uses a tree that ends with a node that always fails: it reports a failure, for example."""
+    is_used = any(name in used for user, used in forest.subtrees.items() if user != name)
+    is_sequence = any(_is_library_node(forest, root, sequence) for sequence in _SEQUENCES)
+    last = root.children[-1] if root.children else root
+    return is_used and is_sequence and any(_is_library_node(forest, last, failing) for failing in _FAILING)
 
 
 def _threshold(node: TreeNode) -> PortSetting | None:
