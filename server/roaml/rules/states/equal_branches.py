@@ -98,7 +98,7 @@ def _repeated(parts: Sequence[Branch], real: Set[str]) -> Iterator[Finding]:
             repeated.append((place, equal))
     for place, equal in repeated:
         is_computed = all(variables_in((value.tree,)) for values in assigned for value in _at(values, place))
-        is_measure = place in real or words_of(place)[-1] in _COORDINATES
+        is_measure = place in real or not _COORDINATES.isdisjoint(words_of(place)[-1:])
         if is_computed or (unique - {place} and not is_measure):
             message = (
                 f"another branch of this `<if>` assigns the same value to `{place}`, and each of the others another"
@@ -106,7 +106,7 @@ def _repeated(parts: Sequence[Branch], real: Set[str]) -> Iterator[Finding]:
             yield from _alike(message, [value.span for value in equal])
 
 
-_COORDINATES = ("x", "y", "z", "row", "column", "col")
+_COORDINATES = frozenset(("x", "y", "z", "row", "column", "col"))
 
 
 def _at(values: Mapping[str, Expression], place: str) -> tuple[Expression, ...]:
