@@ -163,7 +163,9 @@ def test_the_skeleton_of_a_port_is_complete(folder: Path) -> None:
             changed = f"{text[: completions.span.start]}{inserted}{text[completions.span.end :]}"
             result = api.check([str(folder / "main.xml")], settings=Settings(), texts={path: changed})
             codes = {d.code for d in result.diagnostics if d.path == path}
-            assert codes <= {"port-of-several-clients", "unused-port-variable", "unsent-port", "equal-ports"}, item.label
+            assert codes <= {"port-of-several-clients", "unused-port-variable", "unsent-port", "equal-ports"}, (
+                item.label
+            )
 
 
 def test_documentation(folder: Path) -> None:

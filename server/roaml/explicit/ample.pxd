@@ -23,7 +23,7 @@ cdef class AmpleSets:
     cdef i64[::1] marked, is_read, is_written, possible, counted, gate_counted, taken, offered, is_stirred, is_open, reached
     cdef i64[::1] has_reached, forbidden
     cdef int possible_count, reached_count
-    cdef int writes_seen, is_fleeting, count, handled, alone, chosen, chosen_rank
+    cdef int writes_seen, is_fleeting, looks_ahead, count, handled, alone, chosen, chosen_rank
     cdef int is_early, takes_several, member_count
     cdef i64 runs, searches
     cdef i64[::1] frozen, waits, listed, busy

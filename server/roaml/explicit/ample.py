@@ -42,9 +42,10 @@ class AmpleSets:
     Args:
         kernel: the kernel of a search.
         tables: the tables for its program and goal.
+        looks_ahead: whether `find_unreached` is used.
     """
 
-    def __init__(self, kernel: Any, tables: Independence) -> None:
+    def __init__(self, kernel: Any, tables: Independence, looks_ahead: bool) -> None:
         self.kernel: Kernel = kernel
         self.slot_start = tables.slot_start
         self.slot_vector = tables.slot_vector
@@ -55,6 +56,7 @@ class AmpleSets:
         self.guard_vector = tables.guard_vector
         self.open_guards = tables.open_guards
         self.is_fleeting = 1 if tables.is_fleeting else 0
+        self.looks_ahead = 1 if looks_ahead else 0
         self.runs = 0
         self.frozen = array("q", [0] * self.kernel.instances)
         self.frozen_at = array("i", [0] * self.kernel.instances)
@@ -172,7 +174,9 @@ class AmpleSets:
         """After `find` has found none, or one that writes variables that the goal reads: another vector that may be
         taken alone, because no vector that depends on it can be reached without it; -1 if there is none."""
         count = self.kernel.enabled_count
-        if count == 0 or (count == 1 and self.is_fleeting != 0) or self.kernel.enabled[0] >= self.kernel.first_held:
+        if self.looks_ahead == 0 or count == 0 or (count == 1 and self.is_fleeting != 0):
+            return -1
+        if self.kernel.enabled[0] >= self.kernel.first_held:
             return -1
         for i in range(count):
             vector = self.candidates[i]

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeAlias
 
+from roaml.durations import AT_ONCE
 from roaml.explicit import ample, codes
 from roaml.explicit import search as engine
 from roaml.explicit.preparation import preparation_of
@@ -196,8 +197,17 @@ def _search(
     )
     if leaves_out:
         independence = preparation_of(checker).independence.tables(compiled.goal)
-        search.leave_out(_ample_module(search_module).AmpleSets(simulator, independence), int(avoids_cycles))
+        ample_sets = _ample_module(search_module).AmpleSets(simulator, independence, _looks_ahead(checker))
+        search.leave_out(ample_sets, int(avoids_cycles))
     return search
+
+
+def _looks_ahead(checker: ModelChecker) -> bool:
+    """Whether steps are also left out if a dependent step cannot be reached before them. If machines may delay their
+    steps, the clock often may advance alone in this way. The traces that are left are then those in which machines
+    react late, and a counterexample would show delays that are not its cause."""
+    metadata = checker.model.metadata
+    return metadata is None or metadata.clock is None or metadata.reaction_time == AT_ONCE
 
 
 def _searched(

@@ -55,7 +55,7 @@ def _constant(
         statement, kept = computed[0]
         if not is_unchanged(statement):  # self-assignment
             yield RULE.at(kept.span, f"this never changes `{name}`, which is always {shown}; change the expression")
-    elif not statements and words_of(name)[0] in _PREVIOUS and len(words_of(name)) > 1 and not _is_named(name, value):
+    elif not statements and len(words_of(name)) > 1 and words_of(name)[0] in _PREVIOUS and not _is_named(name, value):
         message = f"`{name}` is always {shown}, because nothing assigns it; assign the value that it should keep"
         yield RULE.at(data.id.span, message)
     elif value.value and (not statements or not isinstance(value.value, bool)):
@@ -75,7 +75,7 @@ def _constant(
 def _is_named(name: str, value: ValueSet) -> bool:
     """Whether a variable is a named constant, such as `last_floor`, which is 5. A value that is kept begins with one
     that stands for none."""
-    return words_of(name)[0] == "last" and isinstance(value.value, int | float) and value.value > 0
+    return words_of(name)[:1] == ["last"] and isinstance(value.value, int | float) and value.value > 0
 
 
 def _only_value(context: MachineContext, chart: Chart, data: Data, statements: list[Assign]) -> ValueSet | None:

@@ -293,10 +293,10 @@ def _split(name: str) -> tuple[tuple[str, ...], str]:
 
 # --------------------------------------------------------- previous values
 
-_PREVIOUS = ("previous", "prev", "old")
+_PREVIOUS = frozenset(("previous", "prev", "old"))
 """The first word of a variable that keeps the last value of another one."""
 
-_CURRENT = ("current", "curr", "cur", "new", "latest", "actual")
+_CURRENT = frozenset(("current", "curr", "cur", "new", "latest", "actual"))
 
 
 def _previous(chart: Chart, types: Mapping[str, Type]) -> Iterator[Finding]:
@@ -313,15 +313,15 @@ def _previous(chart: Chart, types: Mapping[str, Type]) -> Iterator[Finding]:
         location, value = statement.location.tree, statement.value.tree
         if not isinstance(location, Name) or not isinstance(value, Name):
             continue
-        first, *kept = words_of(location.name)
-        if first not in _PREVIOUS or not kept or set(words_of(value.name)) & set(kept):
+        first, kept = words_of(location.name)[:1], words_of(location.name)[1:]
+        if _PREVIOUS.isdisjoint(first) or not kept or set(words_of(value.name)) & set(kept):
             continue
         sources = [
             name
             for name, type_ in types.items()
             if name != location.name and words_of(name)[-len(kept) :] == kept and type_ == types.get(location.name)
             # `max_error` and `sum_error` are no values of which the previous one is kept.
-            if name in varying or words_of(name)[0] in _CURRENT
+            if name in varying or not _CURRENT.isdisjoint(words_of(name)[:1])
         ]
         if len(sources) == 1:
             message = f"`{location.name}` gets `{value.name}`, although there is `{sources[0]}`; did you mean that?"
