@@ -38,8 +38,11 @@ def check(context: MachineContext) -> Iterator[Finding]:
             if isinstance(statement, Assign) and statement.location is not None:
                 place = place_of(statement.location.tree)
                 tree = statement.value.tree if isinstance(statement.value, Expression) else None
-                if place is not None and isinstance(tree, Call) and not _is_bounded(chart, statement, place):
-                    yield from _check(tree, place, positive, fixed)
+                if place is not None and isinstance(tree, Call):
+                    found = list(_check(tree, place, positive, fixed))
+                    # What bounds a variable is searched for in the whole machine, so only where it matters.
+                    if found and not _is_bounded(chart, statement, place):
+                        yield from found
 
 
 _OPPOSITE = {Operator.ADD: Operator.SUBTRACT, Operator.SUBTRACT: Operator.ADD}

@@ -56,6 +56,11 @@ def check(context: MachineContext) -> Iterator[Finding]:
 # --------------------------------------------------------- parts with similar names
 
 
+_NEAR = 8
+"""The number of similar parts before and after a part with which it is compared. A part is usually copied from one
+beside it, and the states of a long machine, such as `step_1` to `step_500`, are all similar."""
+
+
 def _copied(parts: Sequence[_Part], known: Iterable[str]) -> Iterator[Finding]:
     """Parts that use a name with the word of a similar part, although the name with their own word exists."""
     names = frozenset(known)
@@ -66,8 +71,8 @@ def _copied(parts: Sequence[_Part], known: Iterable[str]) -> Iterator[Finding]:
             key = (part.kind, number, *words[:number], *words[number + 1 :])
             similar.setdefault(key, []).append((word, part))
     for group in similar.values():
-        for own, part in group:
-            for word, other in group:
+        for number, (own, part) in enumerate(group):
+            for word, other in group[max(0, number - _NEAR) : number + _NEAR + 1]:
                 if word != own:
                     yield from _copies(part, other, word, own, names)
 
