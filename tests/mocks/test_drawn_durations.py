@@ -109,6 +109,9 @@ def test_a_halt_starts_a_new_duration(tmp_path: Path) -> None:
     content = "<RetryUntilSuccessful num_attempts='2'><Timeout msec='250'><Drive/></Timeout></RetryUntilSuccessful>"
     outcome = exact(loaded(tree(tmp_path, content), "Drive: 1 in categorical(100 ms, 0.3, 1 s, 0.7)"))
     assert outcome.success.value == pytest.approx(1 - 0.7**2)
+    # The second attempt starts at 0.4 s, at the tick of the timeout. A duration of 100 ms ends at the next tick.
+    assert outcome.time is not None
+    assert outcome.time.value == pytest.approx((0.3 * 0.2 + 0.7 * 0.3 * 0.5) / 0.51)
 
 
 def test_mocks_of_a_system_take_the_same_times(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
