@@ -49,6 +49,16 @@ def test_an_action_that_its_condition_has_ended() -> None:
             compare(Drawn("KeepRunningUntilFailure", (), (again,)), seed)
 
 
+def test_a_condition_ends_an_action_that_was_halted_before() -> None:
+    """The plugin is ticked and halted in the first round. In the second one, the condition ends the action at once, and
+    the plugin is not ticked when its parent ticks the action again."""
+    ended, running = Drawn("Act3", (("_successIf", "x == 1"),)), Drawn("Act3")
+    timed = Drawn("Timeout", (("msec", "200"),), (Drawn("NonblockingSequence", (), (ended, running)),))
+    rounds = (Drawn("ForceSuccess", (), (timed,)), Drawn("Script", (("code", "x := 1"),)))
+    for seed in range(3):
+        compare(Drawn("KeepRunningUntilFailure", (), (Drawn("Sequence", (), rounds),)), seed)
+
+
 @settings(max_examples=examples(12), deadline=None, suppress_health_check=list(HealthCheck), derandomize=not TIMES)
 @given(trees(ANY))
 def test_a_parent_knows_the_statuses_of_its_children(drawn: Drawn) -> None:
