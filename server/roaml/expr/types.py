@@ -246,6 +246,14 @@ def same_kind(left: Type, right: Type) -> bool:
     return False
 
 
+def type_of_empty(declared: Type) -> Type:
+    """The type of the values that are sent if only `[]` is sent for a field of the type `declared` and a receiver reads
+    the data: that of an array of numbers does not depend on the field (docs/spec/jani.md#global-variables)."""
+    element, bounds = unwrap(declared)
+    is_number = is_kind(element, ScalarKind.INT) or is_kind(element, ScalarKind.REAL)
+    return EMPTY_ARRAY if is_number and len(bounds) == 1 else declared
+
+
 def type_of_text(text: str) -> str:
     """The name of the probable type of a value that is written without quotes, such as `float64` for `0.5`."""
     stripped = text.strip()

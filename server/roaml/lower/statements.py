@@ -22,8 +22,8 @@ from roaml.model import machine as hl
 from roaml.model.expand import Reference
 from roaml.model.machine import CallChild, NoEffect, ReturnHalted, ReturnStatus, RosSend, SetOutput
 from roaml.model.syntax import Expression, Name, PortRead, Value
-from roaml.model.value_types import unset_fields
-from roaml.record import Record, field
+from roaml.model.value_types import leaf_fields, unset_fields
+from roaml.record import Record, field, replace
 from roaml.roles import ProtocolPart
 from roaml.scxml.events import ScxmlEvent
 from roaml.scxml.model import Assign, Body, Branch, Data, If, Param, Send, Statement
@@ -183,7 +183,7 @@ class StatementLowering(Record, eq=False):
                 drawn = self.fresh(type_, param.origin)
                 yield from self.store(name(drawn.id), value, param.origin)
                 value = name(drawn.id)
-            ready.append(Param(param.name, value, param.origin))
+            ready.append(replace(param, value=value))
         yield Send(event, tuple(ready), origin)
 
     def fresh(self, type_: Type, origin: Location) -> Data:
@@ -197,9 +197,13 @@ class StatementLowering(Record, eq=False):
         return self.drawn[-1]
 
     def communicate(self, statement: RosSend, scope: LoweringScope, origin: Location) -> Iterator[Statement]:
+        machine, environment = self.context.machine, self.context.program.environment
         fields = [p for sent in statement.fields for p in self.params(sent, FIELD_PREFIX, scope)]
-        for path, type_ in unset_fields(statement, self.context.machine, self.context.program.environment):
+        for path, type_ in unset_fields(statement, machine, environment):
             fields.append((Param(parameter(path.split(".")), zero(type_), origin), type_))
+        known = leaf_fields(statement, machine, environment)
+        declared = {parameter(path.split(".")): type_ for path, type_ in known.items()}
+        fields = [(replace(param, declared=declared.get(param.name)), type_) for param, type_ in fields]
         goal_id = lower_expr(statement.goal_id.tree, scope) if statement.goal_id else None
         yield from self.goals.sent(self.context.channel(statement), statement.part, goal_id, origin)
         extra = ((param, INT) for param in self.arguments(statement, scope, origin))

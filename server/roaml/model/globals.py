@@ -10,13 +10,26 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from roaml.diagnostics import Symbol
-from roaml.expr.types import BASE_TYPES, BOOL, INT, EmptyArray, ScalarKind, Struct, Type, is_kind, leaves, unwrap, wrap
+from roaml.expr.types import (
+    BASE_TYPES,
+    BOOL,
+    INT,
+    EmptyArray,
+    ScalarKind,
+    Struct,
+    Type,
+    is_kind,
+    leaves,
+    type_of_empty,
+    unwrap,
+    wrap,
+)
 from roaml.interruption import checkpoint
 from roaml.model.expand import is_on_board
 from roaml.model.outline import InterfaceUse, SentField
 from roaml.model.ros import InterfaceType
 from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton
-from roaml.model.value_types import INTERFACE_KINDS
+from roaml.model.value_types import INTERFACE_KINDS, section_of
 from roaml.record import Record
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.scxml.names import (
@@ -118,7 +131,9 @@ def _events(system: System, interface: FindInterface) -> Iterator[_Event]:
     for topic in system.topics.values():
         for endpoint in topic.sources:
             if ProtocolPart.MESSAGE in endpoint.use.sends:
-                yield topic_message(topic.name), endpoint.symbol, _sent(endpoint.use, ProtocolPart.MESSAGE)
+                is_read = any(subscriber.use.reads for subscriber in topic.users)
+                fields = _sent(endpoint.use, ProtocolPart.MESSAGE, interface if is_read else None)
+                yield topic_message(topic.name), endpoint.symbol, fields
     if system.has_timer:
         clock = ((f"{FIELD_PREFIX}sec", INT), (f"{FIELD_PREFIX}nanosec", INT))
         yield topic_message(CLOCK_TOPIC), None, clock
@@ -130,37 +145,57 @@ def _events(system: System, interface: FindInterface) -> Iterator[_Event]:
     yield from _blackboard(system)
 
 
-def _sent(use: InterfaceUse, part: ProtocolPart) -> list[tuple[str, Type]]:
-    """The fields of a part of an interface as parameters of its event, with the types of the values that are sent."""
-    return [_field(field) for field in dict(use.fields).get(part, ())]
+def _sent(use: InterfaceUse, part: ProtocolPart, interface: FindInterface | None) -> list[tuple[str, Type]]:
+    """The fields of a part of an interface as parameters of its event, with the types of the values that are sent. If
+    `interface` is given, because the data are read, the type of `[]` follows from the ROS definition."""
+    fields = dict(use.fields).get(part, ())
+    found = interface and interface(INTERFACE_KINDS[use.kind], use.type)
+    declared = {} if not found else {".".join(path): type_ for path, type_ in leaves(found.part(section_of(part)))}
+    return [(_field_name(field), _type(field, declared)) for field in fields]
 
 
-def _field(field: SentField) -> tuple[str, Type]:
-    return FIELD_PREFIX + field.name.replace(".", "__"), field.type
+def _field_name(field: SentField) -> str:
+    return FIELD_PREFIX + field.name.replace(".", "__")
 
 
-def _declared(use: InterfaceUse, part: str, interface: FindInterface) -> list[tuple[str, Type]]:
-    """The fields of a part of an interface as parameters of its event, with the types of the ROS definition."""
+def _type(field: SentField, declared: Mapping[str, Type]) -> Type:
+    if isinstance(field.type, EmptyArray) and field.name in declared:
+        return type_of_empty(declared[field.name])
+    return field.type
+
+
+def _forwarded(
+    channel: Channel, use: InterfaceUse, part: ProtocolPart, interface: FindInterface
+) -> list[tuple[str, Type]]:
+    """The fields of a part of a service or action as parameters of the events that its automaton sends, with the types
+    of the ROS definition: the required fields, and those that some automaton sends."""
     interface_type = interface(INTERFACE_KINDS[use.kind], use.type)
     if interface_type is None:
         return []
-    required = set(interface_type.required(part))
-    struct: Struct = interface_type.part(part)
-    return [(FIELD_PREFIX + "__".join(path), type_) for path, type_ in leaves(struct) if ".".join(path) in required]
+    section = section_of(part)
+    known = {FIELD_PREFIX + path.replace(".", "__") for path in interface_type.required(section)}
+    for endpoint in channel.endpoints:
+        for field in dict(endpoint.use.fields).get(part, ()):
+            name = _field_name(field)
+            known.update("__".join((name, *path)) for path, _ in leaves(field.type))
+    struct: Struct = interface_type.part(section)
+    fields = ((FIELD_PREFIX + "__".join(path), type_) for path, type_ in leaves(struct))
+    return [(name, type_) for name, type_ in fields if name in known]
 
 
 def _service(service: Channel, interface: FindInterface) -> Iterator[_Event]:
     name = service_stem(service.name)
     for client in service.users:
         who = safe_name(client.automaton.name)
-        request, response = (_declared(client.use, part, interface) for part in ("request", "response"))
+        parts = (ProtocolPart.REQUEST, ProtocolPart.RESPONSE)
+        request, response = (_forwarded(service, client.use, part, interface) for part in parts)
         if ProtocolPart.REQUEST in client.use.sends:
-            yield f"{name}_req_client_{who}", client.symbol, _sent(client.use, ProtocolPart.REQUEST)
+            yield f"{name}_req_client_{who}", client.symbol, _sent(client.use, ProtocolPart.REQUEST, interface)
         yield f"{name}_request", client.symbol, request
         yield f"{name}_response_client_{who}", client.symbol, response
     for server in service.sources:
         if ProtocolPart.RESPONSE in server.use.sends:
-            yield f"{name}_response", server.symbol, _sent(server.use, ProtocolPart.RESPONSE)
+            yield f"{name}_response", server.symbol, _sent(server.use, ProtocolPart.RESPONSE, interface)
 
 
 _GOAL_ID = ("goal_id", BASE_TYPES["int32"])
@@ -173,14 +208,14 @@ def _action(action: Channel, interface: FindInterface) -> Iterator[_Event]:
     for client in action.users:
         if ProtocolPart.CANCEL in client.use.sends:
             yield cancel_request(action.name), client.symbol, [_GOAL_ID]
-        yield from _action_client(name, client, interface)
+        yield from _action_client(action, client, interface)
     for server in action.sources:
         sent: dict[ProtocolPart, list[tuple[str, Type]]] = {
             ProtocolPart.GOAL_ACCEPTED: [_GOAL_ID],
             ProtocolPart.GOAL_REJECTED: [_GOAL_ID],
-            ProtocolPart.FEEDBACK: [*_sent(server.use, ProtocolPart.FEEDBACK), _GOAL_ID],
-            ProtocolPart.RESULT: [*_sent(server.use, ProtocolPart.RESULT), _GOAL_ID, _CODE],
-            ProtocolPart.THREAD_START: [*_sent(server.use, ProtocolPart.THREAD_START), _GOAL_ID, _THREAD_ID],
+            ProtocolPart.FEEDBACK: [*_sent(server.use, ProtocolPart.FEEDBACK, interface), _GOAL_ID],
+            ProtocolPart.RESULT: [*_sent(server.use, ProtocolPart.RESULT, interface), _GOAL_ID, _CODE],
+            ProtocolPart.THREAD_START: [*_sent(server.use, ProtocolPart.THREAD_START, interface), _GOAL_ID, _THREAD_ID],
             ProtocolPart.THREAD_FREE: [_THREAD_ID],
         }
         for part in server.use.sends:
@@ -188,11 +223,12 @@ def _action(action: Channel, interface: FindInterface) -> Iterator[_Event]:
                 yield f"{name}_{part.value.replace('-', '_')}", server.symbol, sent[part]
 
 
-def _action_client(name: str, client: ChannelEndpoint, interface: FindInterface) -> Iterator[_Event]:
-    who, symbol = safe_name(client.automaton.name), client.symbol
-    goal, feedback, result = (_declared(client.use, part, interface) for part in ("goal", "feedback", "result"))
+def _action_client(action: Channel, client: ChannelEndpoint, interface: FindInterface) -> Iterator[_Event]:
+    name, who, symbol = action_stem(action.name), safe_name(client.automaton.name), client.symbol
+    parts = (ProtocolPart.GOAL, ProtocolPart.FEEDBACK, ProtocolPart.RESULT)
+    goal, feedback, result = (_forwarded(action, client.use, part, interface) for part in parts)
     if ProtocolPart.GOAL in client.use.sends:
-        yield f"{name}_goal_req_client_{who}", symbol, _sent(client.use, ProtocolPart.GOAL)
+        yield f"{name}_goal_req_client_{who}", symbol, _sent(client.use, ProtocolPart.GOAL, interface)
     yield f"{name}_goal_handle", symbol, [_GOAL_ID, *goal]
     yield f"{name}_goal_accept_client_{who}", symbol, []
     yield f"{name}_goal_reject_client_{who}", symbol, []

@@ -308,18 +308,30 @@ def unset_fields(statement: RosSend, machine: Machine, environment: Environment)
     The translation sends these fields with the default values of ROS: 0, false or empty (docs/spec/files.md#dialects).
     In the current dialect, a rule reports them as errors.
     """
-    declaration = find_handle(machine, statement)
-    if declaration is None or declaration.type is None or "field" not in statement.type.children:
-        return ()
-    if declaration.kind not in statement.type.attributes["name"].refers:
-        return ()
-    interface = environment.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
+    interface = _interface_of(statement, machine, environment)
     if interface is None:
         return ()
-    part = section_of(statement.part)
+    types, part = leaf_fields(statement, machine, environment), section_of(statement.part)
     given = {field.name.value for field in statement.fields if field.name}
-    types = {".".join(path): type_ for path, type_ in leaves(interface.part(part))}
     return tuple((path, types[path]) for path in interface.required(part) if path not in given)
+
+
+def leaf_fields(statement: RosSend, machine: Machine, environment: Environment) -> dict[str, Type]:
+    """The dotted paths of the leaf fields that a sending element can set, with their types in the ROS definition; empty
+    if the definition is not known."""
+    interface = _interface_of(statement, machine, environment)
+    part = section_of(statement.part)
+    return {".".join(path): type_ for path, type_ in leaves(interface.part(part))} if interface is not None else {}
+
+
+def _interface_of(statement: RosSend, machine: Machine, environment: Environment) -> InterfaceType | None:
+    """The interface whose fields a sending element sets; `None` if it is not known."""
+    declaration = find_handle(machine, statement)
+    if declaration is None or declaration.type is None or "field" not in statement.type.children:
+        return None
+    if declaration.kind not in statement.type.attributes["name"].refers:
+        return None
+    return environment.interface(INTERFACE_KINDS[declaration.kind], declaration.type.value)
 
 
 # -------------------------------------------------------------------- the pass

@@ -43,9 +43,13 @@ class Assign(Record, frozen=True):
 
 
 class Param(Record, frozen=True):
+    """A parameter of an event. `declared` is the type of the ROS field that it contains; it matters if the value is
+    `[]`, which does not show the type of the elements."""
+
     name: str
     value: Expr
     origin: Location
+    declared: Type | None = None
 
 
 class Send(Record, frozen=True):

@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from roaml.expr.transform import map_children
 from roaml.expr.tree import Expr, Number, is_draw, walk
+from roaml.expr.types import EmptyArray
 from roaml.jani import expressions as jani
 from roaml.jani.expressions import Expression
 from roaml.jani.model import Assignment, Clause, Destination, Edge, Location
@@ -24,7 +25,7 @@ from roaml.text import Location as Origin
 from roaml.to_jani.assignments import Write, assigned, stored_in
 from roaml.to_jani.events import EventUsage
 from roaml.to_jani.moves import AutomatonMoves, Move
-from roaml.to_jani.shapes import ArrayShape, shape_of
+from roaml.to_jani.shapes import shape_of
 from roaml.to_jani.values import JaniScope, all_of, negated
 
 FIRST = "-first-exec"
@@ -117,11 +118,10 @@ class _FlowBuilder:
 
     def scope(self, event: str) -> JaniScope:
         if event not in self.scopes:
-            params: dict[str, ArrayShape] = {}
-            if event:
-                types = self.table[event].params
-                params = {name: shape_of(type_, self.max_array_size, sent=True) for name, type_ in types.items()}
-            self.scopes[event] = JaniScope(self.variables, event, params)
+            types = self.table[event].params if event else {}
+            params = {name: shape_of(type_, self.max_array_size, sent=True) for name, type_ in types.items()}
+            empty = frozenset(name for name, type_ in types.items() if isinstance(type_, EmptyArray))
+            self.scopes[event] = JaniScope(self.variables, event, params, empty)
         return self.scopes[event]
 
     def location(self, stem: str, origin: Origin) -> str:

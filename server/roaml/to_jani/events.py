@@ -4,18 +4,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TypeAlias
 
+from roaml.exhaustive import assert_never
 from roaml.expr.infer import infer
 from roaml.expr.tree import Expr, Name, walk
-from roaml.expr.types import UNKNOWN, Struct, Type
+from roaml.expr.types import UNKNOWN, EmptyArray, Struct, Type, type_of_empty
 from roaml.record import Record, field
 from roaml.scxml.event_data import Round, infer_in_rounds, parameter_types
 from roaml.scxml.events import EventRole, ScxmlEvent
-from roaml.scxml.model import Body, Send, statements
+from roaml.scxml.model import Assign, Body, If, Param, Send, statements
 from roaml.text import Location
-from roaml.to_jani.moves import AutomatonMoves
+from roaml.to_jani.moves import AutomatonMoves, Move
 
 
 class EventUsage(Record):
@@ -87,6 +88,7 @@ def _infer_params(behaviors: Sequence[AutomatonMoves], known: EventParams) -> Ro
     have the parameters `known`."""
     sent: dict[str, list[tuple[str, Type]]] = {}
     forwarded: set[str] = set()
+    read = _read_events(behaviors)
     for behavior in behaviors:
         variables: dict[str, Type] = {data.id: data.type for data in behavior.automaton.data}
         for trigger, body in behavior.bodies():
@@ -97,11 +99,47 @@ def _infer_params(behaviors: Sequence[AutomatonMoves], known: EventParams) -> Ro
             for statement in statements(body):
                 if isinstance(statement, Send):
                     values = sent.setdefault(statement.event.name, [])
-                    values += ((param.name, infer(param.value, scope.get)[0]) for param in statement.params)
+                    is_read = statement.event.name in read
+                    values += ((param.name, _sent_type(param, scope, is_read)) for param in statement.params)
                     if any(_reads_event(param.value) for param in statement.params):
                         forwarded.add(trigger)
     types = {event: parameter_types(values) for event, values in sent.items()}
     return Round(types, types, frozenset(forwarded))
+
+
+def _sent_type(param: Param, scope: Mapping[str, Type], is_read: bool) -> Type:
+    """The type of a value that is sent; that of `[]` is the type of the ROS field if a receiver reads the event."""
+    type_, _ = infer(param.value, scope.get)
+    if isinstance(type_, EmptyArray) and is_read and param.declared is not None:
+        return type_of_empty(param.declared)
+    return type_
+
+
+def _read_events(behaviors: Sequence[AutomatonMoves]) -> frozenset[str]:
+    """The names of the events whose data a receiver reads."""
+    return frozenset(
+        move.event
+        for behavior in behaviors
+        for _, moves in behavior.moves
+        for move in moves
+        if move.event and any(map(_reads_event, _expressions(move)))
+    )
+
+
+def _expressions(move: Move) -> Iterator[Expr]:
+    if move.transition.cond is not None:
+        yield move.transition.cond
+    for outcome in move.outcomes:
+        for statement in statements(outcome.body):
+            match statement:
+                case Assign():
+                    yield from (statement.location, statement.value)
+                case Send():
+                    yield from (param.value for param in statement.params)
+                case If():
+                    yield from (branch.cond for branch in statement.branches)
+                case _:
+                    assert_never(statement)
 
 
 def _reads_event(value: Expr) -> bool:

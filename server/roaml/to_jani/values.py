@@ -218,11 +218,13 @@ class JaniScope(Record, frozen=True):
         variables: name of a variable -> its shape.
         event: the name of the event to which `_event.data` refers; "" if there is none.
         params: parameter of this event -> its shape.
+        empty: the parameters of which only `[]` is sent, so that their shape may differ from that of other arrays.
     """
 
     variables: Mapping[str, ArrayShape]
     event: str
     params: Mapping[str, ArrayShape]
+    empty: frozenset[str] = frozenset()
 
     def stored(self, expr: Expr) -> Stored | None:
         """The variable or parameter to which `expr` refers, with the indexes; `None` for other expressions.
@@ -253,6 +255,8 @@ class JaniScope(Record, frozen=True):
                 if then is None or otherwise is None:
                     return None
                 return Chosen(self.scalar(expr.test), then, otherwise)
+            case Member(object=Member(object=Name(name="_event"), name="data"), name=param) if param in self.empty:
+                return Listed(())
             case Name() | Member() | Index():
                 stored = self.stored(expr)
                 if stored is not None and stored.dimensions > 0:

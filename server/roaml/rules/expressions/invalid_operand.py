@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import BadComparison, BadIndex, BadOperand, MixedTypes
-from roaml.expr.types import BOOL, Array, ScalarKind, Struct, is_kind, is_number, unwrap
+from roaml.expr.types import BOOL, Array, EmptyArray, ScalarKind, Struct, is_kind, is_number, unwrap
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.types import phrase
 from roaml.text import Span, TextEdit
@@ -34,6 +34,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     message = f"an index must be an integer, not {phrase(problem.index)}"
                     fixes = [_floor(problem.span)] if is_kind(problem.index, ScalarKind.REAL) else []
                     yield RULE.at(problem.span, message, *fixes)
+                case BadIndex() if isinstance(problem.indexed, EmptyArray):
+                    yield RULE.at(problem.span, "this array has no elements, because its value is always `[]`")
                 case BadIndex():
                     yield RULE.at(
                         problem.span, f"only arrays and strings can be indexed, not {phrase(problem.indexed)}"
