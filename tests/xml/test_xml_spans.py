@@ -170,17 +170,25 @@ def test_finding_children_and_attributes() -> None:
     assert [e.name for e in root.walk()] == ["a", "c", "d", "c"]
 
 
+SCXML = "http://www.w3.org/2005/07/scxml"
 NAMESPACES = [
-    ("<a/>", {}),
-    ('<a xmlns="u"/>', {"": "u"}),
-    ('<x:a xmlns="u" xmlns:x="v" y="w"/>', {"": "u", "x": "v"}),
-    ("", {}),
+    ("<a><b/></a>", []),
+    ('<a xmlns="u"><b/></a>', []),
+    ('<x:a xmlns="u" xmlns:x="v"><x:b/><c/></x:a>', []),
+    ('<x:a xmlns:y="u" xmlns:x="u"><y:b/></x:a>', []),
+    ('<a xmlns="u" xmlns:x="u" xmlns:y="v"><x:b/><y:c><x:d/></y:c></a>', ["c"]),
+    (f'<a><x:b xmlns:x="{SCXML}"/></a>', []),
+    ('<a xmlns:x="u"><x:b/><x:c xmlns:x=""/></a>', ["b", "c"]),
+    (f'<a xmlns:x="u"><e xmlns:x="{SCXML}"><x:b/></e><x:b2/></a>', ["b2"]),
+    ("<a><undeclared:b/></a>", []),
 ]
 
 
 @pytest.mark.parametrize(("text", "expected"), NAMESPACES)
-def test_namespaces(text: str, expected: dict[str, str]) -> None:
-    assert parse(text).namespaces == expected
+def test_elements_are_foreign_in_another_namespace_than_the_root(text: str, expected: list[str]) -> None:
+    root = parse(text).root
+    assert root is not None
+    assert [element.name for element in root.walk() if element.is_foreign] == expected
 
 
 def test_text_nodes_are_the_gaps() -> None:

@@ -338,7 +338,7 @@ class _Machine:
 def _children(element: Element, type_: ElementType | None) -> Iterator[tuple[Element, ElementType | None]]:
     for child in element.elements:
         local = type_.local.get(child.name) if type_ else None
-        yield child, None if child.prefix else local or HL_SCXML.elements.get(child.name)
+        yield child, None if child.is_foreign else local or HL_SCXML.elements.get(child.name)
 
 
 def _calls(decoded: Decoded) -> Iterator[Call]:

@@ -93,7 +93,7 @@ class ParameterUses:
             if child.name in (PARAMETER, PARAM, SECTIONS[0]) and grammar is not BEHAVIOR_TREE:
                 continue  # their values are read elsewhere
             child_type = None
-            if grammar is not None and not child.prefix:
+            if grammar is not None and not child.is_foreign:
                 child_type = (type_.local.get(child.name) if type_ else None) or grammar.elements.get(child.name)
             self._element(child, grammar, child_type, inner)
 

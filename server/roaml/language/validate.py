@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from typing import Any, TypeAlias
 
 from roaml.interruption import checkpoint
@@ -28,8 +28,6 @@ from roaml.xml_syntax.names import SPACE, is_local_name
 
 _UNREAD = ("xml-syntax", "nesting-too-deep")
 """The codes of findings after which parts of the document may be missing in the tree."""
-
-SCXML_NAMESPACE = "http://www.w3.org/2005/07/scxml"
 
 
 class UnknownElement(Record, frozen=True):
@@ -138,28 +136,22 @@ class Misfit(Record, frozen=True):
     parent_type: ElementType
 
 
-def misfits(root: Element | None, namespaces: Mapping[str, str], grammar: Grammar) -> Iterator[Misfit]:
+def misfits(root: Element | None, grammar: Grammar) -> Iterator[Misfit]:
     """The topmost elements below `root` that the grammar does not know or does not allow where they are. This is much
     faster than `validate`."""
     if root is None or root.name not in grammar.roots:
         return
-    known = dict(namespaces)
     stack = [(root, grammar.elements[root.name])]
     while stack:
         element, type_ = stack.pop()
         for child in element.elements:
-            if is_foreign(known, child):
+            if child.is_foreign:
                 continue
             child_type = grammar.child(type_, child.name)
             if child_type is not None:
                 stack.append((child, child_type))
             elif type_.any_child is None:
                 yield Misfit(child, element, type_)
-
-
-def is_foreign(document_namespaces: dict[str, str], element: Element) -> bool:
-    """Whether a prefixed element is in a namespace other than that of SCXML."""
-    return bool(element.prefix) and document_namespaces.get(element.prefix, SCXML_NAMESPACE) != SCXML_NAMESPACE
 
 
 # ---------------------------------------------------------------- by the tables
@@ -171,7 +163,6 @@ _ANYTHING = ElementType("", "", {}, {}, {}, Multiplicity(0, UNBOUNDED), any_attr
 
 def _walk(document: Document, root: Element, grammar: Grammar, disordered: list[Element]) -> Iterator[Violation]:
     """The violations, except that elements whose children are in a wrong order are appended to `disordered`."""
-    namespaces = dict(document.namespaces)
     stack: list[tuple[Element, ElementType]] = [(root, grammar.elements[root.name])]
     while stack:
         checkpoint()
@@ -183,7 +174,7 @@ def _walk(document: Document, root: Element, grammar: Grammar, disordered: list[
         names = []
         below: list[tuple[Element, ElementType]] = []
         for child in element.elements:
-            if is_foreign(namespaces, child):
+            if child.is_foreign:
                 continue
             child_type = grammar.child(type_, child.name)
             if child_type is not None:
@@ -310,7 +301,6 @@ def _one_of(choices: list[str]) -> str:
 def to_lxml(document: Document, root: Element) -> tuple[Any, dict[Any, Element]]:
     """The tree for libxml2, and the mapping back to the elements of the document. The tree contains no namespaces,
     elements in foreign namespaces, comments, or white space around texts."""
-    namespaces = dict(document.namespaces)
     top = _new(None, root)
     back = {top: root}
     stack = [(root, top)]
@@ -319,7 +309,7 @@ def to_lxml(document: Document, root: Element) -> tuple[Any, dict[Any, Element]]
         last = None
         for node in element.nodes:
             if isinstance(node, Element):
-                if is_foreign(namespaces, node):
+                if node.is_foreign:
                     continue
                 last = _new(copy, node)
                 back[last] = node

@@ -7,7 +7,6 @@ from __future__ import annotations
 from roaml.expr.types import BASE_TYPES, parse_type
 from roaml.interruption import checkpoint
 from roaml.language import HL_SCXML, ElementType
-from roaml.language.validate import is_foreign
 from roaml.model.machine import (
     Assign,
     Body,
@@ -64,7 +63,6 @@ def build_machine(document: Document) -> Machine | None:
 class _Builder:
     def __init__(self, document: Document) -> None:
         self.document = document
-        self.namespaces = dict(document.namespaces)
         groups = HL_SCXML.groups
         self.transitions, self.executables, self.declarations = (
             groups[name] for name in ("Transition", "Executable", "Declaration")
@@ -72,7 +70,7 @@ class _Builder:
 
     def children(self, element: Element) -> list[Element]:
         """The child elements that are not in a foreign namespace."""
-        return [child for child in element.elements if not is_foreign(self.namespaces, child)]
+        return [child for child in element.elements if not child.is_foreign]
 
     def machine(self, root: Element) -> Machine:
         declarations: list[Declaration] = []

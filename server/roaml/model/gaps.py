@@ -101,16 +101,14 @@ class PlacedGap(Record, frozen=True):
 def machine_gaps(
     machine: Machine,
     typed: TypedMachine,
-    namespaces: Mapping[str, str],
     has_type: Callable[[str, str], bool],
 ) -> tuple[PlacedGap, ...]:
     """The gaps of a machine with the positions of their causes, in no particular order.
 
     Args:
-        namespaces: prefix in the document -> namespace.
         has_type: whether there is a ROS type, given its kind (msg, srv or action) and its name as written.
     """
-    return tuple(_Search(machine, typed, namespaces, has_type).all())
+    return tuple(_Search(machine, typed, has_type).all())
 
 
 class _Search:
@@ -118,13 +116,12 @@ class _Search:
         self,
         machine: Machine,
         typed: TypedMachine,
-        namespaces: Mapping[str, str],
         has_type: Callable[[str, str], bool],
     ) -> None:
         self.machine = machine
         self.typed = typed
         self.has_type = has_type
-        self.misfits = list(misfits(machine.element, namespaces, HL_SCXML))
+        self.misfits = list(misfits(machine.element, HL_SCXML))
         self.hidden = {
             (kind, attribute.value.strip())
             for misfit in self.misfits

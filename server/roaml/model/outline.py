@@ -260,7 +260,7 @@ def _executed(machine: Machine) -> Iterator[Statement]:
 
 def _declares_all_ports(machine: Machine) -> bool:
     """Whether every port declaration has a key and none is misspelled."""
-    strange = [e for e in machine.element.elements if e.name not in HL_SCXML.elements and not e.prefix]
+    strange = [e for e in machine.element.elements if e.name not in HL_SCXML.elements and not e.is_foreign]
     return all(port.key for port in machine.ports) and not any(e.get("key") for e in strange)
 
 

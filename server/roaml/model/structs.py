@@ -52,7 +52,7 @@ def structs_in_xml(document: Document) -> tuple[StructDeclaration, ...]:
     if document.root is None:
         return ()
     return tuple(
-        _struct(element) for element in document.root.elements if element.name == "struct" or not element.prefix
+        _struct(element) for element in document.root.elements if element.name == "struct" or not element.is_foreign
     )
 
 
@@ -62,7 +62,7 @@ def _struct(element: Element) -> StructDeclaration:
         for member in element.elements
         if member.name == "member"
     )
-    strange = any(child.name != "member" and not child.prefix for child in element.elements)
+    strange = any(child.name != "member" and not child.is_foreign for child in element.elements)
     complete = element.name == "struct" and not strange
     return StructDeclaration(name_of(element.get("id")), members, element.span, complete)
 

@@ -192,7 +192,7 @@ def section_named(name: str) -> SystemSection | None:
 
 def _section(element: Element) -> SystemSection | None:
     """The section that an element represents; `None` if it is not a section. A misspelled name is corrected."""
-    if element.name in SECTION_NAMES or element.prefix:
+    if element.name in SECTION_NAMES or element.is_foreign:
         return section_named(element.name)
     if SYSTEM.find(element.name) is not None or not any(_is_input(child) for child in element.elements):
         return None
@@ -203,7 +203,7 @@ def _is_input(element: Element) -> bool:
     """Whether an element of a section is an `<input>`, or an unknown element with the attribute `src`."""
     if element.name == "input":
         return True
-    return not element.prefix and SYSTEM.find(element.name) is None and meant(element, "src", _INPUT) is not None
+    return not element.is_foreign and SYSTEM.find(element.name) is None and meant(element, "src", _INPUT) is not None
 
 
 def _unread(root: Element) -> frozenset[SystemSection]:

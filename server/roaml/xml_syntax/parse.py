@@ -21,7 +21,7 @@ from roaml.regex import regex
 from roaml.suggest import are_similar
 from roaml.text import Span, TextEdit, span_of
 from roaml.xml_syntax.escapes import FORBIDDEN, PREDEFINED, REFERENCE, is_character, unescape
-from roaml.xml_syntax.names import ASCII_NAME, SPACE, is_name, leading_local_name
+from roaml.xml_syntax.names import ASCII_NAME, SCXML_NAMESPACE, SPACE, is_name, leading_local_name
 from roaml.xml_syntax.tree import Attribute, CData, Comment, Document, Element, Instruction, Node, Text, children_text
 
 MAX_DEPTH = 100
@@ -80,7 +80,8 @@ class _Parser:
         self.names: list[str] = []  # of the elements in `stack`, including prefixes
         self.open_names: dict[str, int] = {}
         self.declared: list[tuple[int, str]] = []  # prefixes, with the depth of the element that declares them
-        self.prefixes = {"xml": 1, "xmlns": 1}  # the number of declarations of each by elements in `stack`
+        self.prefixes = {"xml": ["xml"], "xmlns": ["xmlns"]}  # the namespaces that elements in `stack` declare for each
+        self.namespaces = {SCXML_NAMESPACE}  # those of the language: the namespaces of SCXML and of the root
         self.skipped_depth = 0
         self.instructions_end = True  # true until a search for `?>` has failed
         self.hopeless = False  # too many errors, or nested too deeply
@@ -303,6 +304,8 @@ class _Parser:
         element = Element(local, prefix, span_of(match.span(1)), attributes, span_of((match.start(), end)))
         element.self_closing = self_closing
         element.complete = complete
+        if not self.stack and not colon:
+            self.namespaces |= {attribute.value for attribute in attributes if attribute.name == "xmlns"}
         if colon or ":" in self.text[match.end(1) : end]:
             self.check_prefixes(element)
         if len(self.stack) < MAX_DEPTH:
@@ -440,7 +443,7 @@ class _Parser:
     def forget_prefixes(self) -> None:
         """Remove the prefixes that no element in `stack` declares."""
         while self.declared and self.declared[-1][0] >= len(self.stack):
-            self.prefixes[self.declared.pop()[1]] -= 1
+            self.prefixes[self.declared.pop()[1]].pop()
 
     # ------------------------------------------------------ everything else
 
@@ -550,12 +553,17 @@ class _Parser:
             if attribute.name.startswith("xmlns:"):
                 prefix = attribute.name[6:]
                 self.declared.append((len(self.stack), prefix))
-                self.prefixes[prefix] = self.prefixes.get(prefix, 0) + 1
+                self.prefixes.setdefault(prefix, []).append(attribute.value)
         for span in (element.name_span, *(attribute.name_span for attribute in element.attributes)):
             prefix, colon, _ = self.text[span.start : span.end].partition(":")
             if colon and not self.prefixes.get(prefix) and is_name(prefix):
                 place = Span(span.start, span.start + len(prefix))
                 self.report(place, f"the prefix `{shown(prefix)}` is not declared with `xmlns:{shown(prefix)}`")
+        declared = self.prefixes.get(element.prefix)
+        if element.prefix and declared:
+            if not self.stack:
+                self.namespaces.add(declared[-1])
+            element.is_foreign = declared[-1] not in self.namespaces
         if element.self_closing:
             self.forget_prefixes()
 

@@ -10,7 +10,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import NamedTuple, TypeAlias
 
 from roaml.diagnostics import Finding
@@ -68,6 +68,7 @@ class Element:
     Attributes:
         name: local name, without prefix.
         prefix: namespace prefix, often empty.
+        is_foreign: whether the prefix denotes another namespace than that of the root and that of SCXML.
         name_span: the whole name in the start tag.
         attributes: in document order; attributes with equal names are all kept.
         nodes: all children, in document order.
@@ -86,6 +87,7 @@ class Element:
         "close_span",
         "complete",
         "elements",
+        "is_foreign",
         "name",
         "name_span",
         "nodes",
@@ -98,6 +100,7 @@ class Element:
     def __init__(self, name: str, prefix: str, name_span: Span, attributes: list[Attribute], open_span: Span) -> None:
         self.name = name
         self.prefix = prefix
+        self.is_foreign = False
         self.name_span = name_span
         self.attributes = attributes
         self.open_span = open_span
@@ -156,17 +159,6 @@ class Document(Record, frozen=True, eq=False):
     root: Element | None
     nodes: tuple[Node, ...]
     findings: tuple[Finding, ...]
-
-    @property
-    def namespaces(self) -> Mapping[str, str]:
-        """The namespaces that the root declares: prefix -> namespace. The prefix of the default namespace is empty."""
-        if self.root is None:
-            return {}
-        return {
-            a.name.partition(":")[2]: a.value
-            for a in self.root.attributes
-            if a.name == "xmlns" or a.name.startswith("xmlns:")
-        }
 
     def decoded(self, span: Span) -> Decoded:
         """The text in `span` with its references resolved, and the mapping back to the source."""

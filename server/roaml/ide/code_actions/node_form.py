@@ -50,7 +50,7 @@ def _change(analysis: Analysis, path: str, edits: list[TextEdit]) -> WorkspaceEd
 def _other_form(analysis: Analysis, path: str, node: TreeNode) -> list[TextEdit]:
     """The edits that convert a node to the other form; empty if the result would have another meaning."""
     source, element = analysis.source(path), node.element
-    if source is None or node.plugin is None or node.is_subtree or element.prefix or not element.complete:
+    if source is None or node.plugin is None or node.is_subtree or element.is_foreign or not element.complete:
         return []
     name, id_ = node.plugin.value, element.get("ID")
     if node.compact:

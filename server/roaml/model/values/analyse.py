@@ -208,7 +208,7 @@ def _is_misread(chart: Chart, typed: TypedMachine) -> bool:
             path = () if statement.location is None else access_path(statement.location.tree) or ()
             if not path or path[0] not in known:
                 return True
-    inside = (element for state in chart.states for element in state.element.walk() if not element.prefix)
+    inside = (element for state in chart.states for element in state.element.walk() if not element.is_foreign)
     return any(close_names(name, HL_SCXML.elements) for name in {e.name for e in inside} - HL_SCXML.elements.keys())
 
 

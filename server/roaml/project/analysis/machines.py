@@ -131,9 +131,7 @@ class Machines:
 
     def machine_gaps(self, path: str, machine: Machine, typed: TypedMachine) -> tuple[PlacedGap, ...]:
         """The facts that the unreadable parts of a machine may contain, with their positions."""
-        document = self._sources.document(path)
-        assert document is not None
-        gaps = machine_gaps(machine, typed, document.namespaces, self._interfaces.has_type)
+        gaps = machine_gaps(machine, typed, self._interfaces.has_type)
         broken = self._sources.broken_at(path)
         return gaps if broken is None else (*gaps, PlacedGap(Gap(GapAct.ANYTHING), broken))
 

@@ -89,7 +89,7 @@ class SourceFiles:
         """The elements of a file that the grammar does not define, or does not allow in their place."""
 
         def find(document: Document) -> tuple[Misfit, ...]:
-            return tuple(misfits(document.root, document.namespaces, grammar))
+            return tuple(misfits(document.root, grammar))
 
         return self._of_document(f"misfits {grammar.schema}", path, find) or ()
 

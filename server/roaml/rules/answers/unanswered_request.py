@@ -83,7 +83,7 @@ def _ended(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
 
 
 def _is_unknown(element: Element) -> bool:
-    return not element.prefix and HL_SCXML.find(element.name) is None
+    return not element.is_foreign and HL_SCXML.find(element.name) is None
 
 
 def _requests(context: MachineContext, state: State) -> frozenset[str]:

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal
-from roaml.language.validate import is_foreign
 from roaml.model.machine import If
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.elements import stands_alone
@@ -24,8 +23,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _check(context: MachineContext, choice: If) -> Iterator[Finding]:
-    namespaces = dict(context.document.namespaces)
-    parts = [child for child in choice.element.elements if not is_foreign(namespaces, child)]
+    parts = [child for child in choice.element.elements if not child.is_foreign]
     remove = Fix("Remove the `<if>`", (removal(context.source.text, choice.element.span),), preferred=False)
     useless = all(part.name in MARKERS for part in parts) and not stands_alone(context.document, choice.element)
     fixes = [remove] if useless else []

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.edit.elements import remove
 from roaml.language import BEHAVIOR_TREE
-from roaml.language.validate import TooManyElements, is_foreign
+from roaml.language.validate import TooManyElements
 from roaml.rules.rule import FileContext, MachineContext, Rule
 from roaml.rules.support.children import has_counted_children
 from roaml.rules.support.elements import own_elements
@@ -53,9 +53,8 @@ def check_machine(context: MachineContext) -> Iterator[Finding]:
 
 def _families(document: Document) -> Iterator[tuple[Element, list[Element]]]:
     """Every element of a document with its children. Elements of other namespaces are left out."""
-    namespaces = dict(document.namespaces)
     for element in own_elements(document):
-        yield element, [child for child in element.elements if not is_foreign(namespaces, child)]
+        yield element, [child for child in element.elements if not child.is_foreign]
 
 
 RULE = Rule(

@@ -58,7 +58,7 @@ def _misspelled(machine: Machine) -> Iterator[tuple[Element, Span]]:
     """The elements of a machine that are unknown and similar to known ones, and those with an attribute of this kind,
     each with the place of the wrong name."""
     for element in machine.element.walk():
-        if element.prefix:
+        if element.is_foreign:
             continue
         type_ = HL_SCXML.elements.get(element.name)
         if type_ is None:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.language import HL_SCXML
-from roaml.language.validate import is_foreign, misspelled_attribute
+from roaml.language.validate import misspelled_attribute
 from roaml.model.machine import Handler
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
@@ -16,13 +16,12 @@ from roaml.xml_syntax import Element
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
-    namespaces = dict(context.document.namespaces)
     for chart in context.machine.charts:
         for state in chart.states:
             for handler in state.handlers:
                 if handler.trigger is not ProtocolPart.GOAL_RESPONSE and handler.effective:
                     here = state.id.value if state.id else ""
-                    children = [child for child in handler.element.elements if not is_foreign(namespaces, child)]
+                    children = [child for child in handler.element.elements if not child.is_foreign]
                     yield from _check(handler, children, here)
 
 

@@ -308,7 +308,7 @@ def _may_be_unread(context: MachineContext, behavior: Behavior, loss: Loss) -> b
 
 def _is_misspelled(element: Element) -> bool:
     """Whether an element is unknown, or one of its attributes is probably a misspelled known one."""
-    if element.prefix:
+    if element.is_foreign:
         return False
     type_ = HL_SCXML.find(element.name)
     if type_ is None:

@@ -7,24 +7,22 @@ from collections.abc import Iterator
 
 from roaml.language import Grammar
 from roaml.language.grammar import ElementType
-from roaml.language.validate import is_foreign
 from roaml.xml_syntax import Document, Element
 
 
 def own_elements(document: Document) -> Iterator[Element]:
     """The elements of a document, parents first, without elements of other namespaces and their content."""
-    namespaces = dict(document.namespaces)
     stack = [document.root] if document.root else []
     while stack:
         element = stack.pop()
         yield element
-        stack.extend(child for child in reversed(element.elements) if not is_foreign(namespaces, child))
+        stack.extend(child for child in reversed(element.elements) if not child.is_foreign)
 
 
 def known_elements(document: Document, grammar: Grammar) -> Iterator[tuple[Element, ElementType, Element | None]]:
     """The elements that are where the grammar allows them, each with its declaration and its parent; the parent of the
     root is `None`."""
-    root, namespaces = document.root, dict(document.namespaces)
+    root = document.root
     if root is None or root.name not in grammar.roots:
         return
     stack: list[tuple[Element, ElementType, Element | None]] = [(root, grammar.elements[root.name], None)]
@@ -33,7 +31,7 @@ def known_elements(document: Document, grammar: Grammar) -> Iterator[tuple[Eleme
         yield element, type_, parent
         for child in reversed(element.elements):
             child_type = grammar.child(type_, child.name)
-            if child_type is not None and not is_foreign(namespaces, child):
+            if child_type is not None and not child.is_foreign:
                 stack.append((child, child_type, element))
 
 

@@ -53,7 +53,7 @@ def _intended_names(machine: Machine, tag: str) -> frozenset[str]:
         name
         for parent in machine.element.walk()
         for element in parent.elements
-        if not element.prefix and element not in read
+        if not element.is_foreign and element not in read
         for name in _names(element, parent, tag, key)
     )
 
@@ -78,7 +78,7 @@ def _names(element: Element, parent: Element, tag: str, key: str) -> Collection[
 def among(elements: Iterable[Element], name: str, grammar: Grammar) -> bool:
     """Whether one of the unknown elements in `elements` is probably a misspelling of `<name>`."""
     return any(
-        not element.prefix and grammar.find(element.name) is None and are_similar(element.name, name)
+        not element.is_foreign and grammar.find(element.name) is None and are_similar(element.name, name)
         for element in elements
     )
 
@@ -86,5 +86,5 @@ def among(elements: Iterable[Element], name: str, grammar: Grammar) -> bool:
 def is_hidden(root: Element, name: str, grammar: Grammar) -> bool:
     """Whether there may be a `<name>` below `root` that is not read, because its own name or the name of an element
     around it is misspelled."""
-    unknown = [element for element in root.walk() if not element.prefix and grammar.find(element.name) is None]
+    unknown = [element for element in root.walk() if not element.is_foreign and grammar.find(element.name) is None]
     return among(unknown, name, grammar) or any(inner.name == name for element in unknown for inner in element.walk())

@@ -8,9 +8,9 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal
 from roaml.language import HL_SCXML, PLAIN_SCXML
-from roaml.language.validate import SCXML_NAMESPACE
 from roaml.rules.rule import FileContext, Rule
 from roaml.text import TextEdit
+from roaml.xml_syntax.names import SCXML_NAMESPACE
 
 
 def check(context: FileContext) -> Iterator[Finding]:
