@@ -96,6 +96,14 @@ def test_an_unknown_parameter_is_a_usage_error(command: str, folder: Path, capsy
     assert "no parameter `capactiy`; did you mean `capacity`?" in capsys.readouterr().err
 
 
+def test_a_parameter_of_a_property_file_has_no_name_outside_of_it(folder: Path) -> None:
+    file = folder / "properties.xml"
+    file.write_text(file.read_text().replace("<ports>", '<parameter name="bed" type="int32" value="1" /><ports>'))
+    with pytest.raises(api.ParameterError) as error:
+        api.load(str(folder / "main.xml"), parameters={"bed": 1})
+    assert str(error.value).endswith("it declares `capacity`, `left.period`, `loss` and `right.period`")
+
+
 def test_a_value_out_of_range_is_an_error_of_the_declaration(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["check", str(folder / "main.xml"), "--set", "capacity=250"]) == 1
     out = capsys.readouterr().out

@@ -43,6 +43,9 @@ ascxml|<state><transition><target id="s" prob="1 - p"/></transition></state>|pro
 ascxml|<ros_topic_publisher name="t" topic="/$(var who)/x"/>|topic="/a'&lt;b&gt;/x"
 ascxml|<state id="s_$(var n)"/>|id="s_5"
 ascxml|<state><transition cond="x == $(var who)"/></state>|cond="x == 'a\\'&lt;b&gt;'"
+ascxml|<state><transition cond="x == 'I am $(var who)'"/></state>|cond="x == 'I am a\\'&lt;b&gt;'"
+ascxml|<state><transition cond="x == 'it\\'s $(var n), $(var less)' + $(var who)"/></state>|'it\\'s 5, -2' + 'a\\'
+ascxml|<state><transition cond="'a' == $(var who) &amp;&amp; x == 'b'"/></state>|"'a' == 'a\\'&lt;b&gt;' &amp;&amp; x
 ascxml|<state><transition cond="x == n"/></state><datamodel><data id="n"/></datamodel>|cond="x == n"
 roaml|<parameters><max_time value="2 * n" unit="s"/></parameters>|value="10"
 roaml|<parameters><bt_tick_rate value="1 / p"/></parameters>|value="4"

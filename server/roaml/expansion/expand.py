@@ -660,12 +660,12 @@ class _Expander:
         machine = root.get("name") if root is not None else None
         name = instance.name.value if instance and instance.name else (machine.value.strip() if machine else "")
         for parameter in known:
-            names = (name, instance.tree.value) if instance and instance.tree else (name,)
+            names = tuple(filter(None, (name, instance.tree.value if instance and instance.tree else "")))
             self.settable |= {f"{name}.{parameter}" for name in names}
             for key in (f"*.{parameter}", *(f"{name}.{parameter}" for name in names)):
                 if key in self.given:
                     given[parameter] = Given(self.given[key], None, SETTING)
-                    self.of_instances[f"{names[-1]}.{parameter}"] = self.given[key]
+                    self.of_instances |= {f"{owner}.{parameter}": self.given[key] for owner in names[-1:]}
         return given
 
     def _expand_jani(self, source: str, scope: Scope) -> None:

@@ -134,7 +134,8 @@ class ParameterUses:
     def _substitute(
         self, decoded: Decoded, span: Span, role: ValueRole | None, scope: Scope, attribute: Attribute | None
     ) -> None:
-        """Replace `$(var NAME)`. In an expression, a string is inserted as a literal."""
+        """Replace `$(var NAME)`. In an expression, a string is inserted as a literal, and inside a literal as its
+        characters."""
         is_expression = role in _EXPRESSIONS
 
         def replaced(match: re.Match[str]) -> str:
@@ -145,7 +146,9 @@ class ParameterUses:
                 self._unknown(name, place)
                 return match[0]
             self.uses.append(ParameterUse(name, place))
-            return value.literal if is_expression else value.text
+            if not is_expression:
+                return value.text
+            return value.inside_literal if _is_in_literal(decoded.text, match.start()) else value.literal
 
         matches = list(VARIABLE.finditer(decoded.text))
         text = VARIABLE.sub(replaced, decoded.text)
@@ -212,6 +215,14 @@ class ParameterUses:
         close = close_names(name, self.scope)
         message = f"there is no parameter `{name}`{did_you_mean(close) if close else '; declare it with `<parameter>`'}"
         self._problems.add(ExpansionProblem.UNKNOWN, span, message, close=close)
+
+
+_STRING_LITERAL = regex(r"""'(?:[^'\\]|\\.)*'|"(?:[^"\\]|\\.)*\"""", re.DOTALL)
+
+
+def _is_in_literal(text: str, position: int) -> bool:
+    """Whether a position in an expression is inside a string literal."""
+    return any(literal.start() < position < literal.end() for literal in _STRING_LITERAL.finditer(text))
 
 
 _UNIT = regex(r"\s+(?:s|ms|us|ns)\s*\Z")

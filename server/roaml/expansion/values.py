@@ -53,6 +53,11 @@ class ParameterValue(Record, frozen=True):
                 return f"({self.text})"
         return self.text
 
+    @property
+    def inside_literal(self) -> str:
+        """The value as a part of a string literal, in single or double quotes."""
+        return self.text.replace("\\", "\\\\").replace("'", "\\'").replace('"', '\\"').replace("\n", "\\n")
+
 
 Scope: TypeAlias = Mapping[str, ParameterValue]
 """Name of a parameter -> its value."""
