@@ -157,7 +157,7 @@ def below(values: ValueSet, limit: ValueSet, is_whole: bool, strict: bool) -> Va
     high = top.high
     if strict and is_whole and math.isfinite(high):
         high = math.ceil(high) - 1
-    if high > values.high or (high == values.high and values.high_from <= top.high_from):
+    if high > values.high or (high == values.high and not _is_vaguer(values.high_from, top.high_from)):
         return values
     if values.low > high or (values.low == high and strict and not is_whole):
         return NONE
@@ -174,11 +174,17 @@ def above(values: ValueSet, limit: ValueSet, is_whole: bool, strict: bool) -> Va
     low = bottom.low
     if strict and is_whole and math.isfinite(low):
         low = math.floor(low) + 1
-    if low < values.low or (low == values.low and values.low_from <= bottom.low_from):
+    if low < values.low or (low == values.low and not _is_vaguer(values.low_from, bottom.low_from)):
         return values
     if low > values.high or (low == values.high and strict and not is_whole):
         return NONE
     return between(low, values.high, bottom.low_from, values.high_from)
+
+
+def _is_vaguer(bound: Origin, limit: Origin) -> bool:
+    """Whether a condition with an equal limit says more about a bound: that it is reached, or, if a loop has no bound,
+    that the condition ends the loop at a number of which nothing is known."""
+    return limit < bound or (bound is Origin.WIDENED and limit is Origin.ASSUMED)
 
 
 def meet(first: ValueSet, second: ValueSet) -> ValueSet:
