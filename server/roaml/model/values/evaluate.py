@@ -76,6 +76,12 @@ def place_of(expr: Expr) -> str | None:
     return None
 
 
+def _are_same(left: Expr, right: Expr) -> bool:
+    """Whether two expressions read the same value. All elements of an array have one place, but not one value."""
+    place = place_of(left)
+    return place is not None and "[" not in place and place == place_of(right)
+
+
 def is_within(place: str, outer: str) -> bool:
     """Whether `place` is a part of `outer`, or `outer` itself."""
     return place.startswith(outer) and (len(place) == len(outer) or place[len(outer)] in ".[")
@@ -184,8 +190,7 @@ class Evaluator(Record, eq=False):
             return NONE
         if operator.kind is OperatorKind.ARITHMETIC:
             return arithmetic(operator, left, right)
-        same = place_of(expr.left)
-        if same is not None and same == place_of(expr.right):
+        if _are_same(expr.left, expr.right):
             return TRUE if operator in (Operator.EQUAL, Operator.LESS_EQUAL, Operator.GREATER_EQUAL) else FALSE
         return compared(operator, left, right)
 
@@ -249,8 +254,7 @@ class Evaluator(Record, eq=False):
 
     def _compare(self, known: Valuation, operator: Operator, left: Expr, right: Expr) -> Valuation | None:
         first, second = self._quietly(known, left), self._quietly(known, right)
-        place = place_of(left)
-        same = place is not None and place == place_of(right)
+        same = _are_same(left, right)
         if same or compared(operator, first, second) == FALSE:
             holds = same and operator in (Operator.EQUAL, Operator.LESS_EQUAL, Operator.GREATER_EQUAL)
             return known if holds else None
