@@ -12,6 +12,7 @@ import pytest
 from roaml.expr.operators import Operator
 from roaml.expr.parse import parse
 from roaml.expr.tree import Expr
+from roaml.model.values.describe import described
 from roaml.model.values.domain import ANYTHING, Origin, ValueSet, between, exactly, join, listed, meet, widen
 from roaml.model.values.evaluate import Evaluator, compared
 from roaml.text import Decoded
@@ -112,3 +113,7 @@ def test_unknown_values_stay_unknown() -> None:
     evaluator = Evaluator(lambda _: True)
     assert evaluator.values({}, tree("x")) == ANYTHING
     assert evaluator.values({"x": exactly("a")}, tree("x == y")).only == {True, False}
+
+
+def test_strings_are_described_as_literals() -> None:
+    assert described(listed(["a'b\n", ""])) == "`''` or `'a\\'b\\n'`"

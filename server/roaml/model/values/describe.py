@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 
+from roaml.expr.format import format_string
 from roaml.model.values.domain import Constant, Origin, ValueSet
 
 MAX_NAMED = 4
@@ -39,5 +40,5 @@ def _text(value: Constant) -> str:
     if isinstance(value, bool):
         return "`true`" if value else "`false`"
     if isinstance(value, str):
-        return f"`'{value}'`"
+        return f"`{format_string(value)}`"
     return f"{value:,.6g}".replace(",", "") if isinstance(value, float) and not value.is_integer() else str(int(value))
