@@ -202,6 +202,19 @@ def test_a_trace_whose_last_step_changes_no_location_ends_where_no_step_is_possi
     assert exact.uniform == Bounds(0, 0)
 
 
+@pytest.mark.parametrize(("lower", "fails"), [(1, False), (2, False), (3, True)])
+def test_an_example_of_failure_never_reaches_the_condition_within_its_bounds(lower: int, fails: bool) -> None:
+    """`x` is 1 after the first and the second step. The states do not count steps, so the path of the search to the end
+    is the same for all bounds."""
+    edges = [edge("a", way("b", x=1)), edge("b", way("c")), edge("c", way("d", x=0))]
+    path = {**op("F", op("=", "x", 1)), "step-bounds": {"lower": lower}}
+    goal = {"p": probability(path)}
+    checker = checker_of(document(automaton("a", "a b c d", edges), variables=[variable("x")], properties=goal))
+    exact = exact_values(checker, checker.compiled_properties[0], StateLimits())
+    assert exact.least == exact.greatest == (0 if fails else 1)
+    assert (exact.shortest(FALSE) is not None) is fails
+
+
 def test_ways_that_change_something_only_together_go_on() -> None:
     """Alone, each of the two ways changes nothing: `x` returns to 0, and `y` becomes `x`, which is 0."""
     first = edge("l", ways("l", [("x", 1, 0), ("x", 0, 1)]), action="go")

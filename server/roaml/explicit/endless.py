@@ -10,7 +10,7 @@ from roaml.explicit import codes
 from roaml.explicit.path import EndlessTrace, Path, PathStep, path_to
 from roaml.explicit.space import Space
 from roaml.smc.goal import NOT
-from roaml.smc.program import AT_END, FALSE, TRUE, UNKNOWN
+from roaml.smc.program import FALSE, TRUE, UNKNOWN
 
 MAX_STATES = 50_000
 """The maximum number of states among which an endless trace is looked for. These take about 0.3 s."""
@@ -49,7 +49,7 @@ def _verdict(space: Space) -> int | None:
     """The verdict on the goal for a trace that never decides it; `None` if that depends on more than the goal."""
     goal = space.compiled_property.goal
     question = space.compiled_property.question
-    if question.is_reward or question.is_stuck or len(goal.left) != 1 or goal.lower[0] == AT_END or goal.upper[0] >= 0:
+    if question.is_reward or question.is_stuck or len(goal.left) != 1 or goal.lower[0] != 0 or goal.upper[0] >= 0:
         return None
     return TRUE if goal.formula.count(NOT) % 2 == 1 else FALSE
 

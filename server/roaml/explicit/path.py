@@ -8,7 +8,8 @@ from typing import NamedTuple
 from roaml.explicit import codes
 from roaml.explicit.space import Space
 from roaml.record import Record
-from roaml.smc.program import FALSE, TRUE, UNKNOWN
+from roaml.smc.goal import NOT
+from roaml.smc.program import AT_END, FALSE, TRUE, UNKNOWN
 
 
 class PathStep(NamedTuple):
@@ -55,14 +56,39 @@ class EndlessTrace(Record, frozen=True):
 
 def shortest(space: Space, verdict: int) -> Path | None:
     """The shortest trace with the given verdict on the goal; `None` if no trace has this verdict after finitely many
-    steps. If the space is reduced, a shorter trace may exist that contains choices which were left out."""
+    steps. If the space is reduced, a shorter trace may exist that contains choices which were left out. If the goal has
+    bounds on the steps, `None` also means that the path of the search to the first such state is no example."""
     state = _first(space, verdict)
-    if state is None:
+    if state is None or not _is_example(space, state, verdict):
         return None
     first, steps = path_to(space, state)
     label = space.search.label_of(state)
     is_end = bool(label & codes.ENDED) and label & codes.STATUS == UNKNOWN
     return Path(state, tuple(steps), verdict, is_end, space.roots.index(first))
+
+
+def _is_example(space: Space, state: int, verdict: int) -> bool:
+    """Whether the bounds on the steps of the goal permit its verdict after the path of the search to a state. The
+    states do not count steps, so their labels are without these bounds."""
+    goal = space.compiled_property.goal
+    if len(goal.left) != 1 or goal.lower[0] == AT_END:
+        return True
+    lower, upper = goal.lower[0], goal.upper[0]
+    path = _states_to(space, state)
+    last = len(path) - 1
+    if (verdict == TRUE) is not (goal.formula.count(NOT) % 2 == 1):
+        return lower <= last and (upper < 0 or last <= upper)
+    # Without a lower bound, the search ends where the right side holds.
+    end = last if upper < 0 else upper
+    return lower == 0 or not any(space.search.label_of(place) & codes.HOLDS for place in path[lower : end + 1])
+
+
+def _states_to(space: Space, state: int) -> list[int]:
+    """The states of the path of the search to a state."""
+    states = [state]
+    while (state := space.search.parent_of(state)) >= 0:
+        states.append(state)
+    return states[::-1]
 
 
 def path_to(space: Space, state: int) -> tuple[int, list[PathStep]]:
