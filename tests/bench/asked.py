@@ -7,13 +7,17 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import conformance
+from bench import asked_models
 from bench.qvbs import FOLDER, STORM, expected, models
 from bench.report import Benchmark, Row, megabytes, seconds
+from fixture import write_files
+from roaml.verification.reactions import ASSUMPTION
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 REAL = conformance.ROOT.parent / "real"
@@ -50,6 +54,9 @@ def answer(result: Any) -> str:
     ]
     if "exact" in result:
         return "; ".join([_extremes(result["exact"]), *conditional])
+    if result.get("undecided"):
+        counts = f"{result['passed']} of {result['traces']} traces passed, {result['undecided']} undecided"
+        return f"between {result['lower']:.3g} and {result['upper']:.3g}, {counts}"
     known = [f"{side} {result[side]['value']:.6g}" for side in ("minimum", "maximum") if result.get(side)]
     value = result.get("probability", result.get("expected_value"))
     return "; ".join([f"NOT EXACT: {value} under uniform choices", *known, *conditional])
@@ -79,6 +86,80 @@ def rows(label: str, name: str, *arguments: str, known: dict[str, float] | None 
     for error in cost.document.get("errors", ()):
         found.append(Row(label, f"refused: {error['message']}", "", f"{name}; {how}"))
     return found
+
+
+class Asked(NamedTuple):
+    """A property whose answer was once that to another question.
+
+    Attributes:
+        expected: the right answer, for readers.
+        least, greatest: the right minimum and maximum, which `under` may assume; `None` if traces cannot decide them.
+        under: the assumption under which the values are computed; "" for none.
+        bound: the least value that the traces of an undecided property show.
+    """
+
+    label: str
+    property: str
+    arguments: tuple[str, ...]
+    expected: str
+    least: float | None = None
+    greatest: float | None = None
+    under: str = ""
+    bound: float | None = None
+
+
+def table(folder: Path) -> list[Asked]:
+    """The questions, with their models; those of our own are written to a folder."""
+    (folder / "cut.jani").write_text(asked_models.CUT, encoding="utf-8")
+    write_files(folder, asked_models.ACTION)
+    robot = str(EXAMPLES / "delivery_robot" / "main.xml")
+    undecided = ("--method", "fixed", "--max-traces", "100", "--max-steps", "50", "--seed", "7")
+    own = [
+        Asked("delivery robot, minimum", "all_delivered", (robot,), "1 if nobody sleeps, less than 1 by 2e-16", 1, 1),
+        Asked("a result of the action, minimum", "result", (str(folder / "main.xml"),), "1 at once", 1, 1, ASSUMPTION),
+        Asked(
+            "22 of 100 traces passed, 78 are undecided",
+            "done",
+            (str(folder / "cut.jani"), *undecided),
+            "at least 0.139, the numbers of traces, and the remedy",
+            bound=0.139,
+        ),
+    ]
+    if not FOLDER.is_dir():
+        return own
+    return [
+        Asked("resource-gathering, Pmax", "prgoldgem", (_qvbs("resource-gathering"),), "0.808", greatest=0.8080456),
+        Asked("exploding-blocksworld, Pmax", "goal", (_qvbs("exploding-blocksworld"),), "0.9", greatest=0.9),
+        Asked("wlan_dl, Pmin", "deadline", (_qvbs("wlan_dl"),), "0.8164", least=0.81640625),
+        Asked("haddad-monmege, N = 100", "target", (_qvbs("haddad-monmege"), "--constant", "N=100"), "0.7", 0.7, 0.7),
+        *own,
+    ]
+
+
+def _qvbs(name: str) -> str:
+    return str(FOLDER / f"{name}.jani")
+
+
+def questions() -> list[Row]:
+    """A row for each question: what is asked, the answer with its states, what was expected, and the cost."""
+    with tempfile.TemporaryDirectory() as folder:
+        return [_row(asked) for asked in table(Path(folder))]
+
+
+def _row(asked: Asked) -> Row:
+    cost = call(*asked.arguments, "--property", asked.property)
+    (result,) = cost.document["results"] or [{"error": cost.document["errors"][0]}]
+    target = asked.expected if _is_right(asked, result) else f"{asked.expected}: NOT AS EXPECTED"
+    return Row(asked.label, answer(result), target, f"{seconds(cost.processor)} CPU, {megabytes(cost.memory)}")
+
+
+def _is_right(asked: Asked, result: Any) -> bool:
+    if asked.bound is not None:
+        return bool(result.get("undecided")) and asked.bound <= result["lower"] < result["upper"] == 1
+    values = [result, *result.get("conditional", ())] if asked.under else [result]
+    exact = next((v["exact"] for v in values if "exact" in v and v.get("assumption", "") == asked.under), None)
+    known = (("least", asked.least), ("greatest", asked.greatest))
+    return exact is not None and all(value is None or abs(exact[side] - value) <= STORM for side, value in known)
 
 
 def qvbs() -> list[Row]:
@@ -112,4 +193,4 @@ def systems() -> list[Row]:
     return found
 
 
-BENCHMARKS: dict[str, Benchmark] = {"asked-qvbs": qvbs, "asked-systems": systems}
+BENCHMARKS: dict[str, Benchmark] = {"asked": questions, "asked-qvbs": qvbs, "asked-systems": systems}
