@@ -868,3 +868,15 @@ def test_a_property_in_xml_is_shown_as_a_sentence(command: Command, robot: Path,
     if "--max-traces" in options:
         (row,) = json.loads(command("verify", "main.xml", *name, *options, "--format", "json").out)["results"]
         assert row["comment"] == second.strip()
+
+
+def test_the_comment_of_a_property_in_jani_is_its_sentence(command: Command, robot: Path) -> None:
+    path = robot / "properties.jani"
+    written = json.loads(path.read_text(encoding="utf-8"))
+    (first, *_) = written["properties"]
+    first["comment"] = "All parcels arrive."
+    path.write_text(json.dumps(written), encoding="utf-8")
+    name = ("--property", first["name"], "--max-traces", "20")
+    assert command("verify", "main.xml", *name).out.splitlines()[1] == "  All parcels arrive."
+    (row,) = json.loads(command("verify", "main.xml", *name, "--format", "json").out)["results"]
+    assert row["comment"] == "All parcels arrive."

@@ -4,7 +4,7 @@
 - Comparisons with an array literal are replaced by comparisons of lengths and elements.
 - Bounds on time and rewards are kept, because a property has a different meaning without them. `roaml.smc.forms`
   reports properties with these bounds, as the model has only steps and no rewards.
-- Only path formulas and operators keep their comments.
+- Properties, path formulas and operators keep their comments; that of a property is its sentence in reports.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def expanded(property_: Property, variables: Mapping[str, ArrayShape]) -> Proper
                 if stored is not None and isinstance(right, ArrayValue):
                     same = equal_arrays(stored, _listed(right))
                     return same if operator is BinaryOperator.EQUAL else negated(same)
-            case Property() | Filter() | Probability():
+            case Filter() | Probability():
                 return replace(node, comment=None)
         return node
 
