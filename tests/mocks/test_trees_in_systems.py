@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import itertools
+from collections import Counter
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -11,12 +12,18 @@ from hypothesis import strategies as st
 from random_trees import ANY, ENTRIES, Drawn, as_xml, trees
 from translated_trees import observe, with_mocks
 from tree_comparison import difference_in_system, difference_with_mocks
-from trees_in_systems import FOLDER, files
+from trees_in_systems import FOLDER, files, translated
 
 from examples import TIMES, examples
 from roaml import api
 from roaml.lower.programs.automaton import NodeAutomaton, node_automaton
 from roaml.lower.programs.code import NodeCode
+from roaml.model.expand import ROOT_NUMBER
+from roaml.record import replace
+from roaml.scxml.names import sent_by
+from roaml.smc.model import ModelChecker
+from roaml.smc.record import Recorder, Recording
+from roaml.verification.tree_outcome import tree_properties
 
 TICKS = 12
 
@@ -57,6 +64,17 @@ def test_a_condition_ends_an_action_that_was_halted_before() -> None:
     rounds = (Drawn("ForceSuccess", (), (timed,)), Drawn("Script", (("code", "x := 1"),)))
     for seed in range(3):
         compare(Drawn("KeepRunningUntilFailure", (), (Drawn("Sequence", (), rounds),)), seed)
+
+
+def test_an_action_that_ended_by_itself_is_ticked_again() -> None:
+    """Its plugin is a machine, which decides what it answers. Only the end by a condition is kept."""
+    ended, running = Drawn("Act0", (("_skipIf", "x == 1"),)), Drawn("Act3")
+    model = translated(Drawn("NonblockingSequence", (), (ended, running)), TICKS)
+    checker = ModelChecker(replace(model, properties=tree_properties(ROOT_NUMBER)))
+    for seed in range(3):
+        walk = Recorder(checker, checker.compiled_properties[0], seed, 40_000).walk(Recording(0))
+        sent = Counter(sent_by(step.action or "") for step in walk)
+        assert sent["bt_1001_tick"] == sent["bt_1001_inner_tick"]
 
 
 @settings(max_examples=examples(12), deadline=None, suppress_health_check=list(HealthCheck), derandomize=not TIMES)
