@@ -73,7 +73,7 @@ def test_text_says_how_choices_were_made(command: Command, robot: Path) -> None:
     done = command("verify", "main.xml", "--property", "never_empty", "--reaction-time", "any", "--epsilon", "0.05")
     assert done.status == 0
     assert done.out.startswith("never_empty: minimum not known; under uniform choices: 1 in [0.9")
-    assert "choices were made uniformly at random" in done.out
+    assert "uniform choices: each step that is possible is equally probable; a scheduler: " in done.out
     assert "all_delivered" not in done.out
 
 
@@ -777,7 +777,8 @@ def test_several_initial_states(command: Command, tmp_path: Path) -> None:
     assert rows(done.out)["heads"]["exact"]["initial_states"] == {"number": 2, "combined": "max"}
     done = command("verify", name, "--method", "adaptive")
     assert "warning: this is the mean over 2 initial states under uniform choices" in done.out
-    assert "one of 2 initial states and all choices were drawn uniformly at random\n" in done.out
+    assert done.out.startswith("heads: maximum over the initial states ")
+    assert "; each of 2 initial states is equally probable; uniform choices: " in done.out
     done = command("verify", name, "--scheduler", "lss")
     assert "minimum or maximum over several initial states" in done.err
 

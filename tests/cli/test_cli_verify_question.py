@@ -16,7 +16,10 @@ import pytest
 from command import Command
 from smc_models import Json, automaton, document, edge, op, probability, variable, way
 
+from as2fm_lsp.verification.scheduler_report import note
 from roaml.rules import document as rule_document
+from roaml.smc.choices import Choices
+from roaml.smc.goal import Question
 
 
 def write(folder: Path, written: Json, name: str = "model.jani") -> str:
@@ -92,6 +95,8 @@ def test_a_small_model_is_answered_exactly(command: Command, tmp_path: Path) -> 
         "  `done` holds at some time.",
         "  it fails, for example, if `worker` is delayed for ever while `busy` repeats 50 steps",
         "  expected ≤ 0.1: met",
+        "uniform choices: each step that is possible is equally probable; a scheduler: a rule that chooses which of "
+        "the possible steps is next",
     ]
     lines = command("verify", name, "--expect", "p <= 0.1", "--verbose").out.splitlines()
     assert re.fullmatch(r"p: minimum 0, maximum 1, 1 under uniform choices, exact, 100 states, \d\.\d s", lines[0])
@@ -103,7 +108,7 @@ def test_a_small_model_is_answered_exactly(command: Command, tmp_path: Path) -> 
         "  expected ≤ 0.1: met",
     ]
     assert lines[6].startswith("exact values, computed from all reachable states: minimum and maximum over all ")
-    assert len(lines) == 7
+    assert lines[7:] == others[3:]
     row = rows(command("verify", name, "--format", "json").out)["p"]
     assert [row[key] for key in ("probability", "lower", "upper", "method", "interval")] == [0, 0, 0, "exact", "exact"]
     assert [row["exact"][key] for key in ("least", "greatest", "uniform", "states")] == [0, 1, 1, 100]
@@ -362,7 +367,10 @@ def test_schedulers_that_were_looked_for_have_all_that_results_have(command: Com
     out = command("verify", name, *options, "--verbose").out
     first, sentence = r"p: (least|greatest) probability found .* failed\n", r"  `done` holds at some time\.\n"
     rest = r"  by sampled scheduler \d+, which .*\n  ends: .*\n"
-    assert re.match(rf"{first}{sentence}{rest}{first}{rest}  [\d,]+ schedulers were tried, \d+\.\d s\n", out)
+    assert re.match(
+        rf"{first}{sentence}{rest}{first}{rest}  [\d,]+ schedulers were tried, \d+\.\d s; others may be more extreme\n",
+        out,
+    )
     assert "seed 7" in out
     row = rows(command("verify", name, *options, "--format", "json").out)["p"]
     for side in ("least", "greatest"):
@@ -429,7 +437,29 @@ def test_expectations_of_sampled_schedulers(command: Command, tmp_path: Path) ->
     name = write(tmp_path, starving(length=3))
     options = ("--scheduler", "lss", "--epsilon", "0.05")
     assert command("verify", name, *options, "--expect", "p >= 0.9").status == 1
-    assert command("verify", name, *options, "--expect", "p <= 0.1").status == 0
+    shown = command("verify", name, *options, "--expect", "p <= 0.1")
+    assert shown.status == 0
+    assert "  expected ≤ 0.1: met\n" in shown.out
+    options = (*options, "--expect", "p >= 0")
+    met = r"met by the [\d,]+ sampled schedulers; another one may miss it"
+    assert re.search(rf"  expected ≥ 0: {met}\n", command("verify", name, *options).out)
+    assert re.search(
+        rf"\| least probability found 0 in .*; greatest probability found 1 in .* \| ≥ 0 \| {met} \|",
+        command("verify", name, *options, "--format", "markdown").out,
+    )
+    table = command("verify", name, *options, "--format", "csv").out
+    assert re.search(
+        r"^p,sampled schedulers,,,,0\.0,1\.0,.*schedulers were tried; others may be more extreme$", table, re.M
+    )
+    assert 'name="expected ≥ 0" value="met by the ' in command("verify", name, *options, "--format", "junit").out
+    (row,) = json.loads(command("verify", name, *options, "--format", "json").out)["results"]
+    assert row["expectations"][0]["sampled_schedulers"] > 100
+
+
+def test_a_note_names_few_properties() -> None:
+    entries = [(Question(name, "Pmin", False, None, ()), Choices()) for name in "abcdef"]
+    assert note(entries)[0].startswith("note: the minimum of a, b, c and 3 more over all schedulers is not known")
+    assert note(entries[:4])[0].startswith("note: the minimum of a, b, c, d over all")
 
 
 # ------------------------------------------------------------------ JANI that says more

@@ -147,6 +147,9 @@ def test_open_extremes_are_shown_for_instant_reactions(tmp_path: Path, capsys: p
     (conditional,) = result["conditional"]
     assert conditional["assumption"] == "if machines react at once"
     assert conditional["exact"]["least"] == 1
+    for format_ in ("markdown", "csv"):
+        assert run(["verify", path, "--exhaustive", "--format", format_]) == 0
+        assert "if machines react at once: = 1 for all schedulers, exact" in capsys.readouterr().out
 
 
 def test_values_for_instant_reactions_bound_those_of_all_schedulers() -> None:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from as2fm_lsp.cli.formats import CheckReport, Format, render
@@ -33,6 +34,9 @@ if TYPE_CHECKING:
 
 MAX_NAMED = 3
 """The maximum number of properties that a note about the values names."""
+UNIFORM_CHOICES = "uniform choices: each step that is possible is equally probable"
+A_SCHEDULER = "a scheduler: a rule that chooses which of the possible steps is next"
+"""What the words of results mean for readers who do not know model checking."""
 REACTIONS = {
     INSTANT: "assumed: machines take possible steps at once, before time advances",
     ANY: "assumed: nodes may wait before they take a possible step",
@@ -225,24 +229,29 @@ def _exact_computation(answered: Answered) -> str:
 def _computation(answered: Answered) -> str:
     """How estimates were computed; "" if there are none."""
     if answered.options.exhaustive:
-        return ""
+        return _explained(answered.results)
     options = answered.verifier.options
     if answered.options.scheduler is Scheduler.LSS:
-        return (
-            f"{options.confidence:g} confidence with each scheduler found; others may be more extreme; "
-            f"seed {options.seed}"
-        )
+        return f"{options.confidence:g} confidence with each scheduler found; seed {options.seed}; {A_SCHEDULER}"
     has_estimate = answered.stuck_result is not None and answered.stuck_result.stuck is not None
     has_estimate = has_estimate or any(
         not isinstance(r.outcome, Computed) or r.outcome.has_uniform_estimate for r in answered.results
     )
     if not has_estimate:
-        return ""
-    drawn = "choices were made uniformly at random"
+        return _explained(answered.results)
+    drawn = UNIFORM_CHOICES if answered.verifier.only_uniform else f"{UNIFORM_CHOICES}; {A_SCHEDULER}"
     if (states := answered.verifier.checker.initial_states) > 1:
-        drawn = f"one of {states:,} initial states and all choices were drawn uniformly at random"
+        drawn = f"each of {states:,} initial states is equally probable; {drawn}"
     estimates = "" if all(result.exact is None for result in answered.results) else "estimates: "
     return f"{estimates}{options.confidence:g} confidence, seed {options.seed}; {drawn}"
+
+
+def _explained(results: Sequence[Result]) -> str:
+    """What the words of exact values mean if these depend on the scheduler; "" if none does."""
+    differing = [result.exact for result in results if result.exact is not None and not result.exact.agrees]
+    if not differing:
+        return ""
+    return f"{UNIFORM_CHOICES}; {A_SCHEDULER}" if any(exact.uniform for exact in differing) else A_SCHEDULER
 
 
 def _exploration(answered: Answered, verb: str, *, uniform_only: bool) -> str:

@@ -33,9 +33,10 @@ def remarks(answer: Answer) -> list[str]:
         if tally.idle:
             lines.append(f"it was not triggered in {_share(tally.idle, tally.traces)}, which satisfy it vacuously")
     if tally.late:
+        share = "all" if tally.late == answer.failures else f"{tally.late:,} of"
         lines.append(
-            f"{tally.late:,} of {answer.failures:,} failed traces fail when the time ends (max_time), because an event "
-            "that the property requires has not occurred; a longer time may satisfy them"
+            f"{share} {answer.failures:,} failed traces fail when the time ends (max_time), because an event that the "
+            "property requires has not occurred; a longer time may satisfy them"
         )
     opened = open_at_end(tally)
     if opened:

@@ -7,8 +7,11 @@ import math
 from collections.abc import Iterable
 from typing import Any
 
+from as2fm_lsp.verification.report import conditional_texts, warning
 from roaml.experiments.results import csv_text
-from roaml.verification.results import Refused, Result, Undecided
+from roaml.smc.lss import Side
+from roaml.verification.headline import headline
+from roaml.verification.results import Refused, Result, Sampled, Undecided
 
 COLUMNS = (
     "property", "kind", "value", "low", "high", "minimum", "maximum", "uniform", "traces", "passed", "failed",
@@ -18,7 +21,8 @@ COLUMNS = (
 
 def as_csv(results: Iterable[Result]) -> str:
     """A row for each property. `value` is the one for which the property asks, or the estimate under uniform choices;
-    `low` and `high` are the bounds of an exact value, or the interval of an estimate."""
+    `low` and `high` are the bounds of an exact value, or the interval of an estimate. `note` is why there is no
+    value, or what restricts it: what is known for all schedulers, values under assumptions, warnings."""
     return csv_text(COLUMNS, map(_row, results))
 
 
@@ -45,4 +49,14 @@ def _row(result: Result) -> dict[str, Any]:
             row["note"] = reason.message
         case Undecided(reason=reason):
             row["note"] = reason
+        case Sampled(extremes=extremes, tried=tried):
+            for extreme in extremes:
+                row["minimum" if extreme.side is Side.LEAST else "maximum"] = extreme.answer.value
+            row |= {
+                "kind": "sampled schedulers",
+                "note": f"{tried:,} schedulers were tried; others may be more extreme",
+            }
+        case _:
+            notes = (headline(result).claim, *conditional_texts(result), warning(result))
+            row["note"] = "; ".join(filter(None, notes))
     return row

@@ -42,7 +42,7 @@ def as_junit(results: Sequence[Result], title: str, place_of: PlaceOf, stuck_res
 
 def _case(result: Result, title: str, text: str) -> Case:
     properties = [("requirement", result.comment)] if result.comment else []
-    properties += [(f"expected {v.expectation.text}", v.text) for v in result.verdicts if v.is_uniform]
+    properties += [(f"expected {v.expectation.text}", v.text) for v in result.verdicts if v.is_uniform or v.sampled]
     if about := warning(result):
         properties.append(("warning", about))
     case = Case(title, result.name, CaseOutcome.PASSED, text, "", "", result.seconds, tuple(properties))

@@ -162,19 +162,25 @@ def _quantile_text(quantile: RewardQuantile) -> str:
 def _conditional_lines(result: Result) -> list[str]:
     """The results under assumptions, each in one line, and what the assumptions exclude."""
     lines = []
+    for under, text in zip(result.conditional, conditional_texts(result), strict=True):
+        lines += [f"  {line}" for line in (text, under.remark) if line]
+    return lines
+
+
+def conditional_texts(result: Result) -> list[str]:
+    """The results under assumptions, each as a phrase."""
+    texts = []
     for under in result.conditional:
         match under.outcome:
             case Computed(question=question, exact=exact):
-                lines.append(f"  {under.assumption}: {exact_report.short(exact, question)}")
+                texts.append(f"{under.assumption}: {exact_report.short(exact, question)}")
             case Estimated(answer=answer):
-                lines.append(f"  {under.assumption}: {_estimate(answer)}")
+                texts.append(f"{under.assumption}: {_estimate(answer)}")
             case Undecided(reason=reason):
-                lines.append(f"  {under.assumption}: undecided: {reason}")
+                texts.append(f"{under.assumption}: undecided: {reason}")
             case never:
                 assert_never(never)
-        if under.remark:
-            lines.append(f"  {under.remark}")
-    return lines
+    return texts
 
 
 def _heading(name: str, question: Question) -> str:
@@ -251,7 +257,7 @@ def _sampled_lines(
             lines += _stuck_lines(extreme.stuck, place_of, level, shown)
         lines += _remarks(extreme.answer, is_whole=is_whole)
     if sampled.tried:
-        lines.append(f"  {sampled.tried:,} schedulers were tried, {result.seconds:.1f} s")
+        lines.append(f"  {sampled.tried:,} schedulers were tried, {result.seconds:.1f} s; others may be more extreme")
     if sampled.is_interrupted:
         clause = "this is the result so far" if sampled.extremes else "there is no result so far"
         lines.append(f"  interrupted; {clause}" if lines else f"{result.name}: interrupted; {clause}")
@@ -432,6 +438,7 @@ def row(result: Result) -> dict[str, Any]:
             "under_uniform_choices_only": verdict.is_uniform,
             **({"uniform": str(verdict.policy)} if verdict.is_uniform else {}),
             **({"not_met": verdict.under} if verdict.under else {}),
+            **({"sampled_schedulers": verdict.sampled} if verdict.is_met and verdict.sampled else {}),
             **({"unanimous": verdict.unanimous[0]} if verdict.unanimous is not None and verdict.unanimous_text else {}),
         }
         for verdict in result.verdicts

@@ -13,6 +13,9 @@ from roaml.verification.headline import bound_text
 from roaml.verification.number_text import number
 from roaml.verification.schedulers import extreme_of, is_minimised
 
+MAX_NAMED = 4
+"""The maximum number of properties that a note names."""
+
 
 def remark(question: Question, choices: Choices | None) -> str:
     """A line for users about schedulers other than the uniform one: that all schedulers have the same value, or a
@@ -90,11 +93,17 @@ def note(entries: Sequence[tuple[Question, Choices]], *, knows_reactions: bool =
     for (operator, why), of in names.items():
         extreme = "minimum" if operator.endswith("min") else "maximum"
         looked = why or f"up to {tried[operator, why]:,} sampled schedulers show no difference, which proves nothing"
-        lines.append(f"note: the {extreme} of {', '.join(of)} over all schedulers is not known ({looked})")
+        lines.append(f"note: the {extreme} of {_listed(of)} over all schedulers is not known ({looked})")
     ways = ["--exhaustive to compute it from all states", "--scheduler uniform if uniform choices are meant"]
     if knows_reactions:
         ways.insert(0, 'a reaction time if machines always react within it (--reaction-time instant, or "20 ms")')
     return [*lines, f"  help: use {', '.join(ways[:-1])}, or {ways[-1]}"]
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Names of properties; of many, the first ones and the number of the others."""
+    shown = ", ".join(names) if len(names) <= MAX_NAMED else ", ".join(names[: MAX_NAMED - 1])
+    return shown if len(names) <= MAX_NAMED else f"{shown} and {len(names) - MAX_NAMED + 1:,} more"
 
 
 def _looked(question: Question, choices: Choices) -> str:

@@ -31,9 +31,13 @@ def as_text(result: StuckResult, place_of: PlaceOf, shown: str = "", *, is_whole
     if answer is not None and answer.tally.traces and (is_whole or answer.tally.ended(End.STUCK) or answer.is_unknown):
         lower, upper = answer.bounds
         cut = answer.tally.ended(End.CUT)
-        to = f"; {cut:,} of them were cut after {answer.options.max_steps:,} steps" if cut else " to their end"
-        value = "unknown" if answer.is_unknown else f"{answer.value:.6g}"
-        lines.append(f"{PROBABILITY}: {value} in [{lower:.6g}, {upper:.6g}] from {answer.tally.traces:,} traces{to}")
+        traces = f"{answer.tally.traces:,} traces"
+        if cut == answer.tally.traces:
+            lines.append(f"{PROBABILITY}: unknown: all {traces} were cut after {answer.options.max_steps:,} steps")
+        else:
+            to = f"; {cut:,} of them were cut after {answer.options.max_steps:,} steps" if cut else " to their end"
+            value = "unknown" if answer.is_unknown else f"{answer.value:.6g}"
+            lines.append(f"{PROBABILITY}: {value} in [{lower:.6g}, {upper:.6g}] from {traces}{to}")
     if result.fault:
         lines.append(f"{PROBABILITY}: unknown, because a longer trace failed: {result.fault}")
     if stuck is not None:

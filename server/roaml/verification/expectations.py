@@ -60,6 +60,8 @@ class Verdict(Record, frozen=True):
         uniform_only: what is known about the minimum or maximum if `is_uniform`, as a phrase for users; "" for nothing.
         under: a phrase that follows `NOT MET`, such as `under uniform choices` or `so far`; "" if there is none.
         policy: what an expectation is worth that is met under uniform choices only.
+        sampled: the number of sampled schedulers that meet the expectation, if it is about all schedulers and no more
+            is known; 0 otherwise.
         unanimous: the number of traces and the other bound of the interval, if no trace contradicts an expected 0 or 1.
     """
 
@@ -70,6 +72,7 @@ class Verdict(Record, frozen=True):
     under: str = ""
     unanimous: tuple[int, float] | None = None
     uniform_only: str = ""
+    sampled: int = 0
     policy: UniformPolicy = UniformPolicy.WARN
 
     @property
@@ -78,6 +81,8 @@ class Verdict(Record, frozen=True):
         if self.is_uniform:
             what = "met under uniform choices" if self.is_met else "NOT MET: known only under uniform choices"
             return "; ".join(filter(None, (what, self.uniform_only)))
+        if self.is_met and self.sampled:
+            return f"met by the {self.sampled:,} sampled schedulers; another one may miss it"
         if self.is_met:
             return "met"
         return f"NOT MET {self.under}".rstrip()

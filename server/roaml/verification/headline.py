@@ -12,21 +12,27 @@ of tests all use these words.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from roaml.exhaustive import assert_never
 from roaml.record import Record
 from roaml.smc.choices import Choices, Extreme, ExtremeMethod
 from roaml.smc.end import End
-from roaml.smc.goal import Question
+from roaml.smc.goal import InitialFold, Question
+from roaml.smc.lss import Side
 from roaml.smc.run import Answer
 from roaml.verification.number_text import number
-from roaml.verification.results import Computed, CutShort, Estimated, Refused, Result, Sampled, Undecided
+from roaml.verification.results import Computed, CutShort, Estimated, Refused, Result, Sampled, SampledResult, Undecided
 from roaml.verification.schedulers import extreme_of, is_minimised
 
 NOT_KNOWN = "not known"
 NO_TRACES = "no result yet"
 UNKNOWN = "unknown"
+_EXTREME_STATES = {
+    InitialFold.MINIMUM: "minimum over the initial states",
+    InitialFold.MAXIMUM: "maximum over the initial states",
+}
+"""The values for which a property asks that names an extreme over the initial states itself."""
 _SIGNS = (("at most", "≤"), ("at least", "≥"), ("less than", "<"), ("greater than", ">"))
 
 
@@ -58,10 +64,22 @@ def headline(result: Result) -> Headline:
             return of_answer(answer, choices)
         case Undecided():
             return Headline(short="undecided")
-        case Refused() | CutShort() | Sampled():
+        case Sampled(extremes=extremes):
+            return of_sampled(extremes)
+        case Refused() | CutShort():
             return Headline()
         case never:
             return assert_never(never)
+
+
+def of_sampled(extremes: Sequence[SampledResult]) -> Headline:
+    """The words for the extreme estimates among sampled schedulers, with the one for which the property asks first."""
+    ordered = sorted(
+        extremes, key=lambda extreme: (extreme.side is Side.LEAST) is not extreme.answer.question.is_minimised
+    )
+    long = [f"{extreme.side} probability found {estimate_text(extreme.answer)}" for extreme in ordered]
+    short = [f"{extreme.side} found {_short(extreme.answer)}" for extreme in ordered]
+    return Headline("", "; ".join(long), "; ".join(short))
 
 
 def exact_text(computed: Computed) -> str:
@@ -90,14 +108,15 @@ def of_answer(answer: Answer, choices: Choices | None = None) -> Headline:
 def claim_for_all(question: Question, choices: Choices | None) -> str:
     """What is known about the minimum or maximum that a property asks for, if it may differ from the value under
     uniform choices; otherwise ""."""
-    not_known = f"{extreme_of(question)} {NOT_KNOWN}"
     if question.asks_for_extreme_state:
         known = None if choices is None else choices.minimum if is_minimised(question) else choices.maximum
+        extreme = _EXTREME_STATES.get(question.fold, f"{extreme_of(question)} over the initial states")
         return (
-            f"{extreme_of(question)} {number(known.value)}, exact"
+            f"{extreme} {number(known.value)}, exact"
             if known is not None and known.is_exact
-            else not_known
+            else f"{extreme} {NOT_KNOWN}"
         )
+    not_known = f"{extreme_of(question)} {NOT_KNOWN}"
     if choices is None or choices.agreement:
         return ""
     known = choices.minimum if is_minimised(question) else choices.maximum

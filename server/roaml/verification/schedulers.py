@@ -58,6 +58,21 @@ def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | No
     return verdict
 
 
+def under_sampled_schedulers(verdict: Verdict, question: Question, scheduler: str, tried: int) -> Verdict:
+    """The verdict on an expectation of an answer under the most extreme one of sampled schedulers. That scheduler alone
+    shows that an expectation is missed, that a minimum is at most a number, or that a maximum is at least a number.
+
+    Args:
+        scheduler: its description.
+        tried: the number of sampled schedulers.
+    """
+    if not verdict.is_met:
+        return replace(verdict, under=f"under {scheduler}")
+    threshold = verdict.expectation.threshold
+    is_shown = threshold.relation is not BinaryOperator.EQUAL and threshold.is_lower is not is_minimised(question)
+    return verdict if is_shown else replace(verdict, sampled=tried)
+
+
 def judged(verdict: Verdict, policy: UniformPolicy) -> Verdict:
     """A verdict that `under_all_schedulers` has returned, with the worth of one that is met under uniform choices
     only."""

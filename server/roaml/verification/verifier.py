@@ -41,7 +41,12 @@ from roaml.verification.results import (
     Traces,
     Undecided,
 )
-from roaml.verification.schedulers import is_minimised, judged, under_all_schedulers
+from roaml.verification.schedulers import (
+    is_minimised,
+    judged,
+    under_all_schedulers,
+    under_sampled_schedulers,
+)
 from roaml.verification.small import (
     MAX_EXAMPLE_STEPS,
     SHARED_LIMITS,
@@ -576,7 +581,9 @@ class Verifier(Record, frozen=True):
             for expectation in self.expected(property_)
         ]
         if own is not None:
-            verdicts = [v if v.is_met else replace(v, under=f"under {own.words}") for v in verdicts]
+            verdicts = [
+                under_sampled_schedulers(verdict, property_.question, own.words, search.tried) for verdict in verdicts
+            ]
         outcome = Sampled(tuple(sampled), search.tried, is_interrupted)
         return Result(property_.question.name, outcome, tuple(verdicts), seconds, _comment(property_))
 
