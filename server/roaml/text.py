@@ -251,10 +251,10 @@ def decode(path: str, data: bytes) -> SourceFile:
         text = data.decode(encoding, "replace")
         start = min(len(data[: error.start].decode(encoding, "replace")), len(text))
         undecodable = Span(start, min(start + 1, len(text)))
-    return SourceFile(path, text, undecodable, encoding, mark, _ignored_encoding(text, encoding))
+    return SourceFile(path, text, undecodable, encoding, mark, ignored_encoding(text, encoding))
 
 
-def _ignored_encoding(text: str, encoding: str) -> Span | None:
+def ignored_encoding(text: str, encoding: str) -> Span | None:
     """The place where a text declares an encoding other than the one with which it was read; `None` if it does not.
 
     Names that Python does not know are reported by the XML parser.

@@ -427,3 +427,18 @@ def test_other_numbers_of_parameters_are_checked(folder: Path) -> None:
         battery.write_text(changed, encoding="utf-8")
         errors = {d.code for d in api.check([str(main)]).diagnostics if d.severity is Severity.ERROR}
         assert code in errors
+
+
+def test_written_files_are_utf_8_and_find_each_other(folder: Path, tmp_path: Path) -> None:
+    """The system is in Latin-1, and the path of one of its files leads through folders that contain no other file."""
+    inner = folder / "robots" / "höhle"
+    inner.mkdir(parents=True)
+    for file in ("battery.ascxml", "monitor.ascxml", "properties.xml"):
+        (folder / file).rename(inner / file)
+    (folder / "main.xml").rename(inner / "main.xml")
+    main = (inner / "main.xml").read_text().replace('src="monitor', 'src="../../robots/höhle/monitor')
+    (inner / "main.xml").write_text(f'<?xml version="1.0" encoding="iso-8859-1"?>\n{main}', encoding="latin-1")
+    assert run(["translate", str(inner / "main.xml"), "--expand", str(tmp_path / "plain"), "-o", "-"]) == 0
+    written = tmp_path / "plain" / "robots" / "höhle" / "main.xml"
+    assert written.read_text(encoding="utf-8").startswith('<?xml version="1.0" encoding="UTF-8"?>')
+    assert jani(written) == jani(inner / "main.xml")

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from roaml.api.checking import CheckResult, check
@@ -26,9 +26,11 @@ from roaml.record import Record, replace
 from roaml.scxml.model import Network
 from roaml.scxml.observed import ObservedProperty
 from roaml.suggest import close_names, did_you_mean, listing
+from roaml.text import ignored_encoding
 
 if TYPE_CHECKING:
     from roaml.expansion.draws import DrawnNumber
+    from roaml.xml_syntax import Document
 
 
 class ModelError(ValueError):
@@ -183,8 +185,8 @@ def to_plain(system: LoadedSystem) -> dict[str, str]:
     """The files of a system without parameters and instances (docs/spec/parameters.md#expansion), which AS2FM reads.
 
     Returns:
-        The path of each file, relative to the folder that contains all of them, with `/` -> its text. The system file
-        is the first one.
+        The path of each file, relative to the folder that contains all of them, with `/` -> its text, which declares no
+        other encoding than UTF-8. The system file is the first one.
     """
     from roaml.expansion.impossible_targets import without_impossible_targets  # noqa: PLC0415 - a check does not need it
 
@@ -195,8 +197,30 @@ def to_plain(system: LoadedSystem) -> dict[str, str]:
     if expanded is not None:
         machines = (path for path in texts if plain.kind(path) is FileKind.MACHINE and path in expanded.expansion.texts)
         texts |= {path: without_impossible_targets(texts[path]) for path in machines}
-    folder = os.path.commonpath([os.path.dirname(path) for path in texts])
-    return {slashed(os.path.relpath(path, folder)): text for path, text in texts.items()}
+    passed = (folder for path in texts for folder in _passed_folders(path, plain.document(path)))
+    folder = os.path.commonpath([*(os.path.dirname(path) for path in texts), *passed])
+    return {slashed(os.path.relpath(path, folder)): _in_utf8(text) for path, text in texts.items()}
+
+
+def _passed_folders(path: str, document: Document | None) -> Iterator[str]:
+    """The folders to which `..` leads in the paths of other files that a file lists."""
+    for element in document.root.walk() if document and document.root else ():
+        listed = element.get("src" if element.name == "input" else "path") if element.name in _LISTING else None
+        folder = os.path.dirname(path)
+        for part in listed.value.strip().split("/") if listed else ():
+            folder = os.path.normpath(os.path.join(folder, part))
+            if part == "..":
+                yield folder
+
+
+_LISTING = ("input", "include")
+"""The elements that list other files."""
+
+
+def _in_utf8(text: str) -> str:
+    """A text whose XML declaration states that it is UTF-8, if it states an encoding."""
+    place = ignored_encoding(text, "utf-8")
+    return text if place is None else f"{text[: place.start]}UTF-8{text[place.end :]}"
 
 
 def to_jani(system: LoadedSystem, properties: Iterable[str] | None = None, *, has_activity: bool = False) -> Model:
