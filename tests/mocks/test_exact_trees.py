@@ -73,6 +73,25 @@ def test_values_are_those_of_probability_theory(tmp_path: Path) -> None:
     assert influence == pytest.approx({"Drive": 1 + ask * (1 - 2 * drive), "Ask": (1 - drive) * drive}, abs=1e-7)
 
 
+@pytest.mark.parametrize(
+    ("kind", "constant", "values"),
+    [("String", "ok", 2), ("Int", "3", 3), ("Int", "1", 2), ("Double", "1.5", 3), ("Bool", "true", 2)],
+)
+def test_an_output_may_have_the_value_with_which_a_node_of_version_3_compares_it(
+    kind: str, constant: str, values: int, tmp_path: Path
+) -> None:
+    """The other values are 0 and 1, or the empty text."""
+    path = tmp_path / "tree.xml"
+    path.write_text(
+        f"""<root><BehaviorTree ID="Main"><Sequence><Action ID="Look" found="{{it}}" />
+        <BlackboardCheck{kind} value_A="{{it}}" value_B="{constant}" return_on_mismatch="FAILURE"><AlwaysSuccess />
+        </BlackboardCheck{kind}></Sequence></BehaviorTree>
+        <TreeNodesModel><Action ID="Look"><output_port name="found" /></Action></TreeNodesModel></root>""",
+        encoding="utf-8",
+    )
+    assert exact(loaded(str(path), "Look: 0.9")).success.value == pytest.approx(0.9 / values, abs=1e-12)
+
+
 def test_influences_are_differences() -> None:
     """Each influence is the quotient of a small difference of two exact probabilities."""
     outcome = exact(loaded(str(FETCH), *fetch_mocks()))

@@ -205,6 +205,19 @@ class _Reader(Record):
             self.add(entry, kind_of_cpp(port_type(declared)) if node.type[:6] != "Switch" else None)
         if node.type.startswith("Switch"):
             self.switch(node)
+        elif node.type.startswith("BlackboardCheck"):
+            self.checked(node)
+
+    def checked(self, node: ExecutedNode) -> None:
+        """Record the constants with which a node of version 3 compares an entry."""
+        values = {port: (entry, text) for port, entry, text, _ in node.ports() if port in ("value_A", "value_B")}
+        entries = [entry for entry, _ in values.values() if entry is not None]
+        texts = [text for entry, text in values.values() if entry is None]
+        for entry in entries:
+            for text in texts:
+                constant = text if node.type == "BlackboardCheckString" else read_literal(text)[1]
+                if constant not in self.mentioned.setdefault(entry, []):
+                    self.mentioned[entry].append(constant)
 
     def set_value(self, node: ExecutedNode, entry: str | None, text: str) -> None:
         target = set_entry(node, in_system=self.typed is not None)
