@@ -228,7 +228,9 @@ def test_a_number_becomes_a_parameter(file: str, before: str, name: str, line: s
         edited = Path(changed)
         edited.write_text(apply_edits(edited.read_text(), tuple(edits)))
     assert line in path.read_text()
-    assert f'<parameter name="{name}" type="' in main.read_text()
+    # The initial value of a variable has its type, so that an experiment proposes no value that is too large for it.
+    type_ = {"initial_level": "uint8", "rate": "float64"}.get(name, "int32")
+    assert f'<parameter name="{name}" type="{type_}"' in main.read_text()
     assert not [d for d in api.check([str(main)]).diagnostics if d.severity >= Severity.WARNING]
     assert jani(main) == before_jani
 

@@ -92,7 +92,10 @@ def test_a_number_becomes_a_parameter() -> None:
     analysis = api.check([system]).snapshot.analysis
     assert parameters_of(analysis, system) == ()
     numbers = list(numbers_of(analysis, system))
-    assert numbers[0].line.startswith("<data id=")
+    # The robot and its environment come before the plugins, each number with the comment about it.
+    assert numbers[0].line == '<data id="capacity" type="uint8" expr="100" />'
+    assert numbers[0].comment == "The charge of a full battery. Driving uses 10 of it in a second."
+    assert [number.line.startswith("<data") for number in numbers] == [True, True, True, False, False]
     for place in numbers:
         if len(analysis.systems_of(place.path)) == 1:
             (action,) = actions(analysis, place.path, Span(place.span.start, place.span.start))

@@ -28,7 +28,8 @@ export function experiments(stage: Stage): void {
                 await window.openFile("main.xml");
                 await window.running();
                 await lens(window, "Experiment").first().click();
-                await choose(window, "Which number is varied?", 'id="capacity"');
+                // The comment about a number is shown with it.
+                await choose(window, "Which number is varied?", "The charge of a full battery.");
                 // The number is declared in the system file, and its proposed values can be changed.
                 await window.answer("Values of initial_capacity (now 100)", "20:120:10");
                 await window.question("Which properties are computed?").waitFor();
@@ -54,6 +55,13 @@ export function experiments(stage: Stage): void {
                 assert.match(lines[1] ?? "", /^20,all_delivered,0\.0,/);
                 assert.equal(lines.length, 12);
                 await window.page.locator('.tab[data-resource-name="main.csv"] .codicon-close').first().click();
+                // Another number is varied together with it, without leaving the questions.
+                await lens(window, "Experiment").first().click();
+                await window.question("Which parameters get several values?").waitFor();
+                await pick(window, "Another number");
+                await choose(window, "Which number is varied?", 'id="open" prob="0.8"');
+                await window.question("Values of initial_capacity (now 100)").waitFor();
+                await window.press("Escape");
                 // A point leads to a run with its values.
                 await view.locator('[data-key="all_delivered initial_capacity=20"]').first().click();
                 await window.page.locator(".debug-toolbar").waitFor();

@@ -136,15 +136,16 @@ export interface AskedParameter {
     readonly limits: string;
 }
 
-/** A number in a machine that can become a parameter; `offset` is its place in code points. */
+/** A number in a machine that can become a parameter; `offset` is its place in code points, `comment` may be empty. */
 export interface AskedNumber {
     readonly text: string;
     readonly place: string;
+    readonly comment: string;
     readonly uri: string;
     readonly offset: number;
 }
 
-/** What is asked before an experiment. `numbers` is empty if there are parameters. */
+/** What is asked before an experiment. `numbers` are those that are no parameters yet. */
 export interface ExperimentForm {
     readonly parameters: readonly AskedParameter[];
     readonly properties: readonly { readonly name: string; readonly comment: string; readonly expected: string }[];

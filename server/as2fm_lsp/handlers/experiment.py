@@ -48,12 +48,13 @@ class ExperimentNumber(TypedDict):
 
     text: str
     place: str
+    comment: str
     uri: str
     offset: int
 
 
 class ExperimentForm(TypedDict):
-    """What a client asks. `numbers` is empty if there are parameters."""
+    """What a client asks. `numbers` are those that are no parameters yet."""
 
     parameters: list[AskedParameter]
     properties: list[ExperimentProperty]
@@ -67,10 +68,10 @@ def register(context: Context) -> None:
     def experiment(params: Any) -> ExperimentForm:
         path = session.convert.path(document_uri(params))
         analysis = session.moment().snapshot(path).analysis
-        parameters = parameters_of(analysis, path)
         return {
             "parameters": [
-                {"name": p.name, "value": p.value, "proposed": p.proposed, "limits": p.limits} for p in parameters
+                {"name": p.name, "value": p.value, "proposed": p.proposed, "limits": p.limits}
+                for p in parameters_of(analysis, path)
             ],
             "properties": [
                 {"name": p.name, "comment": p.comment, "expected": p.expected} for p in properties_of(analysis, path)
@@ -79,10 +80,11 @@ def register(context: Context) -> None:
                 {
                     "text": place.text,
                     "place": f"{os.path.basename(place.path)}: {place.line}",
+                    "comment": place.comment,
                     "uri": session.convert.uri(place.path),
                     "offset": place.span.start,
                 }
-                for place in (numbers_of(analysis, path) if not parameters else ())
+                for place in numbers_of(analysis, path)
             ],
         }
 

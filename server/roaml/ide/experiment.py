@@ -13,6 +13,7 @@ from roaml.expansion.declarations import Declared
 from roaml.expansion.values import ParameterValue, number_text
 from roaml.expr.types import INTEGER_RANGES, ScalarKind
 from roaml.ide.code_actions.new_parameter import literals
+from roaml.ide.describe.comment import remark
 from roaml.ide.verifiable import expected_beside, verifiable
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
@@ -50,12 +51,14 @@ class AskedProperty(Record, frozen=True):
 
 
 class NumberPlace(Record, frozen=True):
-    """A number in a file of a system that can become a parameter; `line` is the text of its line."""
+    """A number in a file of a system that can become a parameter; `line` is the text of its line, `comment` the comment
+    about its element, "" if there is none."""
 
     path: str
     span: Span
     text: str
     line: str
+    comment: str
 
 
 def parameters_of(analysis: Analysis, system: str) -> tuple[VariableParameter, ...]:
@@ -84,16 +87,20 @@ def properties_of(analysis: Analysis, system: str) -> tuple[AskedProperty, ...]:
 
 
 def numbers_of(analysis: Analysis, system: str) -> Iterator[NumberPlace]:
-    """The numbers in the machines of a system that can become parameters, those in `<data>` first."""
+    """The numbers in the machines of a system that can become parameters: those in `<data>` first, and of these, those
+    of ROS nodes, which describe the robot and its environment, before those of plugins."""
     machines = [path for path in analysis.files_of(system) if analysis.kind(path) is FileKind.MACHINE]
-    places = [(element == "data", path, span) for path in machines for element, span in literals(analysis, path)]
-    for _, path, span in sorted(places, key=lambda place: not place[0]):
-        source = analysis.source(path)
-        if source is not None:
+    linked = analysis.system(system)
+    nodes = {path for path, _ in linked.nodes} if linked is not None else set()
+    places = [(path, element, span) for path in machines for element, span in literals(analysis, path)]
+    for path, element, span in sorted(places, key=lambda place: (place[1].name != "data", place[0] not in nodes)):
+        source, document = analysis.source(path), analysis.document(path)
+        if source is not None and document is not None:
             begin = source.text.rfind("\n", 0, span.start) + 1
             end = source.text.find("\n", span.end)
             line = source.text[begin : end if end >= 0 else len(source.text)]
-            yield NumberPlace(path, span, source.text[span.start : span.end], " ".join(line.split()))
+            comment = " ".join(remark(document, element).split())
+            yield NumberPlace(path, span, source.text[span.start : span.end], " ".join(line.split()), comment)
 
 
 def _text(number: Fraction) -> str:

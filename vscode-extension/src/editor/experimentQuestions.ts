@@ -3,7 +3,7 @@
 
 import * as path from "node:path";
 import * as vscode from "vscode";
-import { experimentForm, newParameter, type AskedNumber, type AskedParameter, type ExperimentForm } from "../protocol";
+import { experimentForm, newParameter, type AskedParameter, type ExperimentForm } from "../protocol";
 import type { LanguageServer } from "./server";
 
 /** What is run: a file of arguments, or the arguments with which the command is called. */
@@ -27,12 +27,16 @@ export async function askForExperiment(
         void vscode.window.showInformationMessage(vscode.l10n.t("The system has no property. Create one first."));
         return undefined;
     }
-    if (form.parameters.length === 0) {
-        form = await withNewParameter(server, system, form.numbers);
+    const declared = await chooseParameters(form, parameter);
+    if (!declared) return undefined;
+    let { varied } = declared;
+    if (declared.another) {
+        const before = new Set(form.parameters.map(({ name }) => name));
+        form = await withNewParameter(server, system, form);
         if (!form) return undefined;
+        varied = [...varied, ...form.parameters.filter(({ name }) => !before.has(name))];
     }
-    const varied = await chooseParameters(form.parameters, parameter);
-    if (!varied || varied.length === 0) return undefined;
+    if (varied.length === 0) return undefined;
     const sets: string[] = [];
     for (const chosen of varied) {
         const values = await chooseValues(chosen);
@@ -46,20 +50,39 @@ export async function askForExperiment(
     return { title: path.basename(file), arguments: [file, ...sets, ...asked(first.name)] };
 }
 
+/** What is varied: parameters of the system, and `another` number that becomes one. */
+interface Varied {
+    readonly varied: readonly AskedParameter[];
+    readonly another: boolean;
+}
+
 async function chooseParameters(
-    parameters: readonly AskedParameter[],
+    { parameters, numbers }: ExperimentForm,
     picked: string | undefined,
-): Promise<readonly AskedParameter[] | undefined> {
-    if (parameters.length === 1) return parameters;
-    const items = parameters.map((parameter) => ({
+): Promise<Varied | undefined> {
+    if (parameters.length === 0) return { varied: [], another: true };
+    // From the lens of the only parameter, nothing is left to choose.
+    if (parameters.length === 1 && (numbers.length === 0 || picked !== undefined)) {
+        return { varied: parameters, another: false };
+    }
+    const listed = parameters.map((parameter) => ({
         label: parameter.name,
         description: `${parameter.value}${parameter.limits === "" ? "" : ` (${parameter.limits})`}`,
-        picked: parameter.name === picked,
+        picked: parameters.length === 1 || parameter.name === picked,
         parameter,
     }));
+    const another = {
+        label: vscode.l10n.t("Another number"),
+        description: vscode.l10n.t("It becomes a parameter"),
+        picked: false,
+        parameter: undefined,
+    };
+    const items = numbers.length > 0 ? [...listed, another] : listed;
     const title = vscode.l10n.t("Which parameters get several values?");
     const chosen = await vscode.window.showQuickPick(items, { title, canPickMany: true });
-    return chosen?.map((item) => item.parameter);
+    if (!chosen) return undefined;
+    const varied = chosen.flatMap(({ parameter }) => (parameter ? [parameter] : []));
+    return { varied, another: varied.length < chosen.length };
 }
 
 function chooseValues({ name, value, proposed, limits }: AskedParameter): Thenable<string | undefined> {
@@ -95,15 +118,24 @@ async function chooseProperties({
     return (parameter) => [`--find=${parameter}`, `--meets=${first.name} ${expected.trim()}`];
 }
 
-/** The system has no parameters: one of its numbers becomes one. */
+/** One of the numbers of the system becomes a parameter. */
 async function withNewParameter(
     server: LanguageServer,
     system: string,
-    numbers: readonly AskedNumber[],
+    { parameters, numbers }: ExperimentForm,
 ): Promise<ExperimentForm | undefined> {
-    const items = numbers.map((number) => ({ label: number.text, description: number.place, number }));
-    const title = vscode.l10n.t("The system has no parameter yet. Which number is varied?");
-    const chosen = await vscode.window.showQuickPick(items, { title, matchOnDescription: true });
+    const items = numbers.map((number) => ({
+        label: number.text,
+        description: number.place,
+        detail: number.comment,
+        number,
+    }));
+    const title =
+        parameters.length === 0
+            ? vscode.l10n.t("The system has no parameter yet. Which number is varied?")
+            : vscode.l10n.t("Which number is varied?");
+    const options = { title, matchOnDescription: true, matchOnDetail: true } as const;
+    const chosen = await vscode.window.showQuickPick(items, options);
     if (!chosen) return undefined;
     const { uri, offset } = chosen.number;
     const made = await server.ask(newParameter, { textDocument: { uri }, offset });

@@ -205,5 +205,6 @@ function words() {
         again: vscode.l10n.t("Run Again"),
         save: vscode.l10n.t("Save…"),
         run: vscode.l10n.t("Debug a run with these values"),
+        hint: vscode.l10n.t("A click on a point, or on its value below, debugs a run with its values."),
     };
 }

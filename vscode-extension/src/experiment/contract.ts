@@ -46,6 +46,8 @@ export interface ExperimentWords {
     readonly again: string;
     readonly save: string;
     readonly run: string;
+    /** What a click on a point does, as a sentence. */
+    readonly hint: string;
 }
 
 export type ToExperiment =

@@ -11,6 +11,7 @@ from roaml.expansion.declarations import SECTIONS, declarations
 from roaml.expansion.problems import Problems
 from roaml.expr.parse import parse
 from roaml.expr.tree import Number, walk
+from roaml.expr.types import INTEGER_RANGES
 from roaml.ide.code_actions.action import EXTRACT, CodeAction, WorkspaceEdit
 from roaml.ide.syntax import walk as elements_of
 from roaml.ide.syntax import xml_file
@@ -70,9 +71,9 @@ def actions(analysis: Analysis, path: str, place: Span) -> Iterator[CodeAction]:
     yield CodeAction(f"Make {found.text} the parameter `{name}` of the system", EXTRACT, make)
 
 
-def literals(analysis: Analysis, path: str) -> Iterator[tuple[str, Span]]:
-    """The numbers of a machine that can become parameters, except 0 and 1, which are rarely quantities: the name of the
-    element, and the place of the number."""
+def literals(analysis: Analysis, path: str) -> Iterator[tuple[Element, Span]]:
+    """The numbers of a machine that can become parameters, except 0 and 1, which are rarely quantities, each with its
+    element."""
     file = xml_file(analysis, path)
     for element, type_ in elements_of(file) if file is not None else ():
         for attribute in element.attributes:
@@ -82,7 +83,7 @@ def literals(analysis: Analysis, path: str) -> Iterator[tuple[str, Span]]:
             tree, findings = parse(file.document.decoded(attribute.value_span))
             for node in walk(tree) if not findings else ():
                 if isinstance(node, Number) and file.document.text[node.span.start : node.span.end] not in ("0", "1"):
-                    yield element.name, node.span
+                    yield element, node.span
 
 
 def _literal_at(analysis: Analysis, path: str, place: Span) -> _Literal | None:
@@ -120,10 +121,13 @@ def _number(
         if isinstance(node, Number) and node.span.start <= place.start and place.end <= node.span.end:
             declared = name_of(element.get("type"))
             is_real = node.is_real or part in ("rate_hz", "prob") or (declared and declared.value.startswith("float"))
+            # The type of a variable limits the values of its initial value.
+            is_whole = part == "expr" and node is tree and declared is not None and declared.value in INTEGER_RANGES
+            type_ = declared.value if declared is not None and is_whole else "float64" if is_real else "int32"
             text = document.text[node.span.start : node.span.end]  # a number contains no escapes
             owner = name_of(element.get("id")) or name_of(element.get("name"))
             stem = _NAMES.get(part) or (f"initial_{owner.value}" if owner and part == "expr" else part)
-            return _Literal(node.span, text, stem, "float64" if is_real else "int32", is_port)
+            return _Literal(node.span, text, stem, type_, is_port)
     return None
 
 

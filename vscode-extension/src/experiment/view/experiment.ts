@@ -11,10 +11,10 @@ const bar = element("div", "bar");
 const status = element("span", "status");
 status.setAttribute("role", "status");
 const content = element("div", "experiment");
-const [answers, plots, table, notes] = ["answers", "plots", "points", "notes-below"].map((name) =>
+const [answers, plots, hint, table, notes] = ["answers", "plots", "hint", "points", "notes-below"].map((name) =>
     element("div", name),
-) as [HTMLElement, HTMLElement, HTMLElement, HTMLElement];
-content.append(answers, plots, table, notes);
+) as [HTMLElement, HTMLElement, HTMLElement, HTMLElement, HTMLElement];
+content.append(answers, plots, hint, table, notes);
 document.body.append(bar, content);
 
 let words: ExperimentWords | undefined;
@@ -54,6 +54,7 @@ function showBar(): void {
 function show(live: Live): void {
     answers.replaceChildren(...live.answers.map((text) => paragraph(sentence(text))));
     plots.replaceChildren(...live.plots.map(figure));
+    hint.textContent = live.done > 0 && words ? words.hint : "";
     table.replaceChildren(tableOf(live));
     // The notes are below each plot already.
     notes.replaceChildren(...(live.plots.length > 0 ? [] : live.notes.map((text) => paragraph(sentence(text)))));
