@@ -33,9 +33,25 @@ def test_its_numbers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: py
 
 
 def test_the_scaling_experiment(tmp_path: Path) -> None:
-    command = [sys.executable, str(ROOT / "examples/scaling/run.py"), "3", "4", "--behaverify", "", "--nusmv", ""]
+    script, plot = str(ROOT / "examples/scaling/run.py"), tmp_path / "scaling.svg"
+    command = [sys.executable, script, "4", "300", "--behaverify", "", "--nusmv", "", "--plot", str(plot)]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     rows = done.stdout.splitlines()[2:]
-    assert [row.split(" | ")[0] for row in rows] == ["| 3 × 3", "| 4 × 4"]
+    assert [row.split(" | ")[0] for row in rows] == ["| 4 × 4", "| 300 × 300"]
     assert all("| 1 in [0.98" in row and "not installed" in row for row in rows)
+    drawn = plot.read_text(encoding="utf-8")
+    assert "as2fm-lsp verify" in drawn
+    assert "CPU time (s)" in drawn
+
+
+def test_the_figure_of_the_case_study(tmp_path: Path) -> None:
+    """One command, without arguments, draws the property by the probability of losing the block."""
+    folder = shutil.copytree(ROOT / "examples/case_study", tmp_path / "case_study")
+    assert run(["experiment", str(folder / "loss.experiment.toml"), "--jobs", "1"]) == 0
+    described = [
+        re.findall("<desc>(.*)</desc>", file.read_text(encoding="utf-8"))
+        for file in (folder / "loss.svg", ROOT / "docs/loss.svg")
+    ]
+    assert described[0] == described[1]
+    assert "0.9 at 0.1, 0.8 at 0.2, 0.7 at 0.3" in described[0][0]
