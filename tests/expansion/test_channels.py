@@ -89,6 +89,20 @@ def test_delay(main: Path, delay: str, in_time: float) -> None:
     assert value(main, "in_time") == pytest.approx(in_time, abs=1e-5)
 
 
+@pytest.mark.parametrize(("unit", "step"), [("ms", ""), ("s", ' step="100 ms"')])
+def test_a_delay_is_drawn_from_data(main: Path, unit: str, step: str) -> None:
+    """One of four messages takes 100 ms, three take 250 ms, which end after 300 ms."""
+    rows = {"ms": "delay,count\n100,1\n250,3\n", "s": "0.1\n0.25\n0.25\n0.25\n"}[unit]
+    (main.parent / "late.csv").write_text(rows, encoding="utf-8")
+    delay = f"histogram('late.csv', {unit})"
+    with_channel(main, f'<channel topic="level" delay="{delay}"{step} />')
+    assert messages(main) == []
+    assert value(main, "in_time") == pytest.approx(0.25, abs=1e-12)
+    # The data are read again when they change.
+    (main.parent / "late.csv").write_text(rows.replace("0.25", "0.1").replace("250", "150"), encoding="utf-8")
+    assert value(main, "in_time") == pytest.approx(1, abs=1e-12)
+
+
 def test_loss_and_delay_are_independent(main: Path) -> None:
     with_channel(main, '<channel topic="level" loss="loss" delay="categorical(100 ms, 0.25, 300 ms, 0.75)" />')
     assert value(main, "in_time", loss=0.2) == pytest.approx(0.8 * 0.25, abs=1e-12)
@@ -204,6 +218,11 @@ def test_a_service_is_delayed_both_ways(tmp_path: Path) -> None:
         ('<channel topic="level" delay="20" />', "`20` in `delay` is not a duration"),
         ('<channel topic="level" delay="poisson(2 ms)" />', "not a distribution of durations"),
         ('<channel topic="level" delay="normal(20 ms, 5 ms)" />', "add the step"),
+        (
+            '<channel topic="level" delay="histogram(\'late.csv\', ms)" />',
+            "there is no file `late.csv` that can be read",
+        ),
+        ('<channel topic="level" delay="histogram(\'late.csv\')" />', "the unit of its values"),
         ('<channel topic="level" delay="20 ms" step="0 ms" />', "is not a step"),
         ('<channel topic="level" step="5 ms" />', "`step` has an effect only on a `delay`"),
         ('<channel topic="level" delay="normal(1 min, 1 min)" step="1 ms" />', "use a greater `step`"),

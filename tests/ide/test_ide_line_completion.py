@@ -111,7 +111,8 @@ def test_distributions_are_offered_as_durations_of_mocks() -> None:
     found, _ = completions("/models/tree.mocks", "Grasp: 0.9 in no|", tree=TREE)
     assert found is not None
     inserted = {item.label: item.snippet for item in found.items}
-    assert sorted(inserted) == ["categorical", "exponential", "normal", "uniform"]
+    assert sorted(inserted) == ["categorical", "exponential", "histogram", "normal", "uniform"]
+    assert inserted["histogram"] == "histogram('${1:times.csv}', ${2:s})"
     assert inserted["normal"] == "normal(${1:mean}, ${2:deviation})"
 
 

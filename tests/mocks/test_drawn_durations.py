@@ -66,6 +66,45 @@ def test_the_time_of_a_leaf_is_that_of_its_distribution(
         assert quantile.value == pytest.approx(FIRST_TICK + ticks / 10)
 
 
+DATA = {
+    "s": "duration,runs\n0.25,1\n0.3,1\n# a comment\n1.05,2\n",
+    "ms": "250\n300\n1001\n1100\n",
+    "min": "0.005\n0.018\n",
+}
+"""Unit -> durations that take 3 ticks of 0.1 s with the probability 1/2, and 11 ticks with 1/2."""
+
+
+@pytest.mark.parametrize("unit", DATA)
+def test_durations_are_drawn_from_data(unit: str, tmp_path: Path) -> None:
+    """The path is relative to the file of the tree, whatever the current directory is."""
+    (tmp_path / "data").mkdir()
+    (tmp_path / "data/drive.csv").write_text(DATA[unit], encoding="utf-8")
+    model = loaded(tree(tmp_path, "<Drive/>"), f"Drive: 0.75 in histogram('data/drive.csv', {unit})")
+    outcome = exact(model)
+    assert outcome.success.value == pytest.approx(0.75, abs=1e-12)
+    assert outcome.time is not None
+    assert outcome.time.value == pytest.approx(FIRST_TICK + (3 + 11) / 2 / 10, abs=1e-9)
+    assert str(tmp_path / "data/drive.csv") in model.target.files
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        (None, "no file `drive.csv` that can be read"),
+        ("a\nb\n", "`drive.csv`: line 2 is `b`"),
+        ("", "contains no values"),
+    ],
+)
+def test_data_that_cannot_be_used(
+    text: str | None, reason: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tree(tmp_path, "<Drive/>")
+    if text is not None:
+        (tmp_path / "drive.csv").write_text(text, encoding="utf-8")
+    assert run(["verify", path, "--mock", "Drive: 0.5 in histogram('drive.csv', s)"]) != 0
+    assert reason in capsys.readouterr().err
+
+
 def test_the_time_of_two_leaves_is_a_sum(tmp_path: Path) -> None:
     """Two uniform numbers of ticks, 3 to 6 and 1 to 2, and a leaf that is repeated."""
     content = "<Sequence><Drive/><RetryUntilSuccessful num_attempts='2'><Grasp/></RetryUntilSuccessful></Sequence>"
@@ -125,13 +164,20 @@ def test_mocks_of_a_system_take_the_same_times(tmp_path: Path, capsys: pytest.Ca
         encoding="utf-8",
     )
     arguments = ["--exhaustive", "--reaction-time", "instant", "--format", "json"]
-    for duration, law in (("exponential(200 ms)", stats.expon(scale=0.2)), ("normal(1 s, 1 s)", stats.norm(1, 1))):
+    (tmp_path / "drive.csv").write_text("250\n1050\n", encoding="utf-8")
+    laws = (
+        ("exponential(200 ms)", stats.expon(scale=0.2)),
+        ("normal(1 s, 1 s)", stats.norm(1, 1)),
+        ("histogram('drive.csv', ms)", stats.rv_discrete(values=((250, 1050), (0.5, 0.5)))),
+    )
+    for duration, law in laws:
         mock = f"Drive: 0.9 in {duration}"
         asked = 'R{"ticks Drive"}=? [ C<=2000 ]'
         assert run(["verify", str(main), "--mock", mock, "--property", asked, *arguments]) == 0
         (result,) = json.loads(capsys.readouterr().out)["results"]
         # Tick k = 0, 1, … at 0.1 s, 0.2 s, … is the leaf's while it has not ended before, or if it ends.
-        ticks = 1 + math.fsum(law.sf(k / 10) for k in range(97))
+        unit = 1000 if duration.startswith("histogram") else 1
+        ticks = 1 + math.fsum(law.sf(k / 10 * unit) for k in range(97))
         assert result["exact"]["least"] == pytest.approx(ticks, abs=1e-4)
 
 
@@ -144,6 +190,9 @@ def test_mocks_of_a_system_take_the_same_times(tmp_path: Path, capsys: pytest.Ca
         ("normal(3 s, 0 s)", "standard deviation"),
         ("normal(3 s)", "`mean`, `deviation`"),
         ("categorical(1 s, 2 s)", "`2 s` in .* is not a probability"),
+        ("histogram('a.csv')", "the unit of its values, ms, s, min; write for example"),
+        ("histogram('a.csv', 2 s)", "the name of a file in quotes"),
+        ("histogram(a.csv, s)", "the name of a file in quotes"),
         ("categorical(1 s, 0.5)", "add up to 0.5"),
         ("categorical(1 s, 1e-9999999, 2 s, 1)", "`1e-9999999` in .* is not a probability"),
     ],

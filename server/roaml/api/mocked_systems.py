@@ -61,6 +61,7 @@ def mock_system(
         mockable_words,
         plan,
     )
+    from roaml.project.mock_files import with_data  # noqa: PLC0415
     from roaml.project.system_leaves import missing_leaves, plugin_paths, tick_rates  # noqa: PLC0415
     from roaml.text import apply_edits  # noqa: PLC0415
 
@@ -70,6 +71,7 @@ def mock_system(
     if analysis.kind(main) is not FileKind.SYSTEM or system is None or document is None or document.root is None:
         raise PathError(f"{path}: not a system file")
     check_likenesses(system, mocks)
+    mocks = with_data(analysis, main, mocks)
     leaves = missing_leaves(analysis, system)
     planned, missing = plan(leaves, mocks, tick_rates(system), plugin_paths(analysis, main))
     changed = {mock.path: mock.text for mock in planned}

@@ -12,6 +12,7 @@ from roaml.api.jani_files import PathError
 from roaml.api.systems import ModelError
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.model.kinds import FileKind
+from roaml.project.paths import resolve
 from roaml.project.settings import Settings
 from roaml.record import Record, replace
 
@@ -67,21 +68,25 @@ def loaded_tree(snapshot: Snapshot, path: str, options: MockOptions) -> LoadedTr
     Raises:
         PathError: the path is not a file of trees.
         ModelError, MissingMocksError: as for `load_tree`.
+        MockError: the data of a duration cannot be read.
     """
     from roaml.lower.programs.refusal import TreeRefusal  # noqa: PLC0415
     from roaml.mocks.network import mocked  # noqa: PLC0415 - a check starts faster without these
+    from roaml.project.mock_files import with_data  # noqa: PLC0415
     from roaml.to_jani import translate  # noqa: PLC0415
     from roaml.verification.target import target_of  # noqa: PLC0415
     from roaml.verification.tree_outcome import tree_properties  # noqa: PLC0415
 
     forest = _forest(snapshot, path)
+    data = tuple(dict.fromkeys(resolve(path, mock.data_file) for mock in options.mocks if mock.data_file))
+    options = replace(options, mocks=with_data(snapshot.analysis, path, options.mocks))
     try:
         tree = mocked(forest, options)
     except TreeRefusal as refusal:
         raise _untranslatable(snapshot, path, refusal) from None
     model = translate(tree.network)
     model = replace(model, properties=tree_properties(tree.tree.root))
-    files = tuple(file for file, _ in forest.files)
+    files = (*(file for file, _ in forest.files), *data)
     return LoadedTree(tree, target_of(model, path, files, snapshot.analysis.source))
 
 

@@ -245,6 +245,8 @@ def _integers(first: int, count: int) -> tuple[Fraction, ...]:
     return tuple(Fraction(number) for number in range(first, first + count))
 
 
+CATEGORICAL = "categorical"
+"""The name of the distribution of listed values."""
 HISTOGRAM = "histogram"
 """The name of the distribution that is read from a file (`roaml.distributions.data`)."""
 MAX_VALUES = 2000
@@ -270,7 +272,7 @@ def _functions() -> Iterator[LawFunction]:
         _binomial,
     )
     yield LawFunction(
-        "categorical",
+        CATEGORICAL,
         ("value", "p"),
         True,
         False,

@@ -17,7 +17,7 @@ from roaml.expansion.values import Content, Scope, evaluate, number_text
 from roaml.expr.parse import parse
 from roaml.language import SYSTEM
 from roaml.language.validate import misspelled_attribute
-from roaml.model.drawn_durations import DrawnDuration, DurationError, read_duration
+from roaml.model.drawn_durations import DataReader, DrawnDuration, DurationError, read_duration
 from roaml.model.parameters import DEFAULT_TICK_RATE
 from roaml.model.syntax import Name, name_of
 from roaml.model.system_file import SystemSection
@@ -37,8 +37,8 @@ LOSS = "loss"
 """The attribute with a probability."""
 _RELIABLE, _BEST_EFFORT = "reliable", "best_effort"
 _NANOSECONDS_PER_MILLISECOND = 10**6
-_PART = regex(r"[^(),]+")
-"""A part of a delay: the name of a distribution, or an argument."""
+_PART = regex(r"""'[^']*'|"[^"]*"|[^(),'"]+""")
+"""A part of a delay: the name of a distribution, an argument, or the name of a file in quotes."""
 _UNIT = regex(r"\s*\b(?:ms|s|min)\s*\Z")
 
 
@@ -93,6 +93,7 @@ def read_channels(
     scope: Scope,
     periods: Sequence[Fraction],
     problems: Problems,
+    read: DataReader,
 ) -> tuple[DeclaredChannel, ...]:
     """The channels of a system file, one for each topic and service.
 
@@ -102,10 +103,11 @@ def read_channels(
         scope: the parameters of the system.
         periods: the times between the ticks of its timers and trees, in ms. Default steps divide them.
         problems: receives what is wrong with them.
+        read: reads the data of delays.
     """
     channels: dict[tuple[ChannelKind, str], DeclaredChannel] = {}
     for element in (child for section in sections for child in section.elements if child.name == CHANNEL):
-        channel = _Reader(path, document, element, scope, periods, problems).channel()
+        channel = _Reader(path, document, element, scope, periods, problems, read).channel()
         if channel is None:
             continue
         if channel.key in channels:
@@ -153,8 +155,10 @@ def delay_uses(document: Document, element: Element, scope: Scope) -> Iterator[P
 
 
 def _numbers(text: str) -> Iterator[tuple[int, int]]:
-    """The places of the parts of a delay, without their units."""
+    """The places of the parts of a delay that can be numbers, without their units."""
     for match in _PART.finditer(text):
+        if match[0][0] in "'\"":
+            continue
         unit = _UNIT.search(match[0])
         number = match[0][: unit.start()] if unit else match[0].rstrip()
         yield match.start() + len(number) - len(number.lstrip()), match.start() + len(number)
@@ -169,6 +173,7 @@ class _Reader:
         scope: Scope,
         periods: Sequence[Fraction],
         problems: Problems,
+        read: DataReader,
     ) -> None:
         self._path = path
         self._document = document
@@ -176,6 +181,7 @@ class _Reader:
         self._scope = scope
         self._periods = periods
         self._problems = problems
+        self._read = read
         self._values: list[tuple[Attribute, str]] = []
         self._is_valid = True
 
@@ -293,6 +299,8 @@ class _Reader:
                 text = text[:start] + number_text(value, is_real=False) + text[end:]
         try:
             duration = read_duration(text, f" in `{attribute.name}`")
+            if isinstance(duration, DrawnDuration):
+                duration = duration.with_data(self._read)
         except DurationError as error:
             self._wrong(attribute.value_span, str(error))
             return None

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Protocol
@@ -462,7 +463,8 @@ class _Expander:
         texts = {path: text for path in self.machines if (text := self._text(path)) is not None}
         machines = [ListedMachine(path, parse(text.text)) for path, text in texts.items()]
         periods = tick_periods(document, (machine.document for machine in machines), scope)
-        channels = read_channels(self.path, document, sections, scope, periods, problems)
+        read = functools.partial(self._read_data, self.path)
+        channels = read_channels(self.path, document, sections, scope, periods, problems, read)
         links = link(channels, machines, self.sources.interface, problems)
         written = [found for path in set(self.machines.values()) if (found := self.sources.document(path)) is not None]
         for channel in channels:
@@ -598,12 +600,7 @@ class _Expander:
     def _with_draws(self, text: ExpandedText, problems: Problems) -> ExpandedText:
         from roaml.expansion.draws import expand_draws  # noqa: PLC0415 - few machines draw numbers
 
-        def read(name: str) -> str | None:
-            path = self.resolve(text.source, name)
-            self.data[path] = self.sources.text(path)
-            return self.data[path]
-
-        text, numbers = expand_draws(text, problems, read)
+        text, numbers = expand_draws(text, problems, functools.partial(self._read_data, text.source))
         self.drawn.update(dict.fromkeys(numbers))
         if numbers:
             message = (
@@ -612,6 +609,12 @@ class _Expander:
             )
             problems.add(ExpansionProblem.REFERENCE, numbers[0].span, message, severity=Severity.INFORMATION)
         return text
+
+    def _read_data(self, base: str, name: str) -> str | None:
+        """The text of a file with data that the file `base` names; `None` if it cannot be read."""
+        path = self.resolve(base, name)
+        self.data[path] = self.sources.text(path)
+        return self.data[path]
 
     def _uses_in_declarations(self, own: tuple[Declared, ...], parameter: Declared) -> bool:
         name = parameter.name.value

@@ -8,7 +8,7 @@ from fnmatch import fnmatchcase
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from roaml.record import Record
+from roaml.record import Record, replace
 from roaml.regex import regex
 from roaml.suggest import close_names, did_you_mean
 from roaml.text import Span
@@ -16,7 +16,7 @@ from roaml.text import Span
 if TYPE_CHECKING:
     from roaml.distributions.outcomes import Outcomes
     from roaml.mocks.likeness import Likeness
-    from roaml.model.drawn_durations import DrawnDuration
+    from roaml.model.drawn_durations import DataReader, DrawnDuration
 
 _MOCK = regex(r"(?P<name>.+?)\s*:\s*(?P<probability>[^\s:]+)(?:\s+in\s+(?P<duration>.+))?\Z")
 KEYWORD = "as"
@@ -68,6 +68,31 @@ class Mock(Record, frozen=True):
     probability: float
     duration: Fraction | DrawnDuration = Fraction(0)
     like: Likeness | None = None
+
+    def with_data(self, read: DataReader) -> Mock:
+        """This mock, in which the duration has the values in its file.
+
+        Args:
+            read: the name of a file as the mock writes it -> its text; `None` if it cannot be read.
+
+        Raises:
+            MockError: the file cannot be read, or is not valid.
+        """
+        if isinstance(self.duration, Fraction):
+            return self
+        from roaml.model.drawn_durations import DurationError  # noqa: PLC0415 - few mocks need it
+
+        try:
+            return replace(self, duration=self.duration.with_data(read))
+        except DurationError as error:
+            raise MockError(f"the mock `{self.pattern}: {self.behaviour()}` has no data: {error}") from None
+
+    @property
+    def data_file(self) -> str:
+        """The name of the file from which the durations are drawn; "" if there is none."""
+        if isinstance(self.duration, Fraction) or self.duration.data is None:
+            return ""
+        return self.duration.data.file
 
     def behaviour(self, *, is_instant: bool = False) -> str:
         """The probability and the duration, as they are written in a mock: `0.9 in 2 s`.

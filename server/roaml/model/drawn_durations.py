@@ -4,11 +4,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from roaml.exact_number import exact_fraction
-from roaml.record import Record
+from roaml.record import Record, replace
 from roaml.regex import regex
 from roaml.suggest import close_names, did_you_mean
 
@@ -18,10 +19,22 @@ if TYPE_CHECKING:
 _DURATION = regex(r"(\d+(?:\.\d+)?)\s*(ms|s|min)\Z")
 _DRAWN = regex(r"([^\s(]*)\s*\((.*)\)\Z")
 _MILLISECONDS = {"ms": 1, "s": 1000, "min": 60_000}
+_DATA = regex(r"""\s*(?P<quote>['"])(?P<file>[^'"]+)(?P=quote)\s*,\s*(?P<unit>[^\s,]+)\s*\Z""")
+HISTOGRAM_FORM = "histogram('times.csv', s)"
+"""How a distribution from data is written."""
+DataReader: TypeAlias = Callable[[str], "str | None"]
+"""The name of a file with data, as it is written -> its text; `None` if it cannot be read."""
 
 
 class DurationError(ValueError):
     """A duration is not valid; the message states the reason."""
+
+
+class DurationData(Record, frozen=True):
+    """The file with the data of a distribution, and the unit of its values in ms."""
+
+    file: str
+    unit: Fraction
 
 
 class DrawnDuration(Record, frozen=True):
@@ -31,11 +44,35 @@ class DrawnDuration(Record, frozen=True):
         text: the distribution as it is written: `normal(8 s, 2 s)`.
         name: the name of the distribution.
         arguments: its arguments; durations in ms.
+        data: the data of a histogram that has not been read yet; `None` for all others.
     """
 
     text: str
     name: str
     arguments: tuple[Fraction, ...]
+    data: DurationData | None = None
+
+    def with_data(self, read: DataReader) -> DrawnDuration:
+        """This distribution with its data: the distribution `categorical` of the values in the file.
+
+        Raises:
+            DurationError: the file cannot be read, or is not valid.
+        """
+        if self.data is None:
+            return self
+        from roaml.distributions.data import read_histogram  # noqa: PLC0415 - few models need it
+        from roaml.distributions.laws import CATEGORICAL, LawError  # noqa: PLC0415
+
+        text = read(self.data.file)
+        if text is None:
+            raise DurationError(f"there is no file `{self.data.file}` that can be read for `{self.text}`")
+        try:
+            law = read_histogram(text)
+        except LawError as error:
+            raise DurationError(f"`{self.data.file}`: {error}") from None
+        shares = zip(law.values, law.probabilities, strict=True)
+        arguments = tuple(number for value, share in shares for number in (value * self.data.unit, Fraction(share)))
+        return replace(self, name=CATEGORICAL, arguments=arguments, data=None)
 
     @property
     def is_continuous(self) -> bool:
@@ -45,7 +82,8 @@ class DrawnDuration(Record, frozen=True):
         return LAWS[self.name].is_continuous
 
     def ticks(self, period: Fraction) -> Outcomes:
-        """The numbers of periods that the duration takes, rounded up; 0 for a negative duration.
+        """The numbers of periods that the duration takes, rounded up; 0 for a negative duration. The data of a
+        histogram have been read.
 
         Args:
             period: the length of a period, in ms.
@@ -84,15 +122,17 @@ def read_duration(written: str, place: str) -> Fraction | DrawnDuration:
 
 
 def _drawn_duration(written: str, place: str) -> DrawnDuration:
-    from roaml.distributions.laws import LAWS, LawError  # noqa: PLC0415 - few models need it
+    from roaml.distributions.laws import HISTOGRAM, LAWS, LawError  # noqa: PLC0415 - few models need it
 
     match = _DRAWN.match(written)
     if match is None:
         raise DurationError(f"`{written}`{place} is not a distribution such as `normal(8 s, 2 s)`")
     name, arguments = match.groups()
+    if name == HISTOGRAM:
+        return DrawnDuration(written, name, (), _data(written, arguments, place))
     function = LAWS.get(name)
     if function is None or not function.has_units:
-        known = [law.name for law in LAWS.values() if law.has_units]
+        known = [law.name for law in LAWS.values() if law.has_units or law.name == HISTOGRAM]
         close = close_names(name, known)
         hint = did_you_mean(close) if close else f"; the distributions of durations are {', '.join(known)}"
         raise DurationError(f"`{name}`{place} is not a distribution of durations{hint}")
@@ -109,6 +149,17 @@ def _drawn_duration(written: str, place: str) -> DrawnDuration:
     except LawError as error:
         raise DurationError(f"`{written}`{place} is not a distribution: {error}") from None
     return DrawnDuration(written, name, tuple(values))
+
+
+def _data(written: str, arguments: str, place: str) -> DurationData:
+    match = _DATA.match(arguments)
+    unit = _MILLISECONDS.get(match["unit"]) if match is not None else None
+    if match is None or unit is None:
+        raise DurationError(
+            f"`{written}`{place} is not a distribution: it needs the name of a file in quotes and the unit of its "
+            f"values, {', '.join(_MILLISECONDS)}; write for example `{HISTOGRAM_FORM}`"
+        )
+    return DurationData(match["file"], Fraction(unit))
 
 
 def milliseconds(text: str) -> Fraction | None:

@@ -3,12 +3,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from roaml.lower.programs.refusal import TreeRefusal
 from roaml.mocks.mock import Mock, MockError, read_mocks
 from roaml.mocks.unfolding import main_tree
 from roaml.model.kinds import FileKind, mocks_path
 from roaml.model.tree import Tree
 from roaml.project.analysis import Analysis
+from roaml.project.paths import resolve
+
+
+def with_data(analysis: Analysis, path: str, mocks: Sequence[Mock]) -> tuple[Mock, ...]:
+    """Mocks with the data that their durations are drawn from. Paths are relative to the file `path`, which contains
+    the tree or lists the system.
+
+    Raises:
+        MockError: a file cannot be read, or is not valid.
+    """
+
+    def read(name: str) -> str | None:
+        source = analysis.source(resolve(path, name))
+        return None if source is None else source.text
+
+    return tuple(mock.with_data(read) for mock in mocks)
 
 
 def executed_tree(analysis: Analysis, path: str) -> Tree | None:

@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterator
 
 from roaml.diagnostics import Symbol
-from roaml.distributions.laws import LAWS
+from roaml.distributions.laws import HISTOGRAM, LAWS
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank
 from roaml.interfaces import PRIMITIVES
 from roaml.mocks.likeness import library_parents, needs_likeness
@@ -153,6 +153,8 @@ def _durations() -> Iterator[CompletionItem]:
         if law.has_units:
             stops = (f"${{{number}:{name}}}" for number, name in enumerate(law.parameters, 1))
             yield CompletionItem(law.name, ItemKind.FUNCTION, f"{law.name}({', '.join(stops)})", law.documentation)
+    about = "The values in a CSV file, with their unit: a column of values, and optionally one with their numbers."
+    yield CompletionItem(HISTOGRAM, ItemKind.FUNCTION, f"{HISTOGRAM}('${{1:times.csv}}', ${{2:s}})", about)
 
 
 def _message_types(analysis: Analysis) -> Iterator[CompletionItem]:
