@@ -320,11 +320,12 @@ def mocked_system_texts(
         raise _missing_mocks(path, mocked.missing, messages)
     _report_unused(mocks, mocked.words, messages)
     leaves = len({mock.leaf.type for mock in mocked.planned})
-    parts = [f"{leaves} {'type' if leaves == 1 else 'types'} of leaves"]
+    parts = [f"{leaves} {'type' if leaves == 1 else 'types'} of leaves"] if leaves else []
     if mocked.events:
         nodes = "1 node that depends" if mocked.events == 1 else f"{mocked.events} nodes that depend"
         parts.append(f"{nodes} on random events")
-    messages.write(f"uses mocks for {' and '.join(parts)}")
+    if parts:
+        messages.write(f"uses mocks for {' and '.join(parts)}")
     return {**texts, **mocked.texts}
 
 

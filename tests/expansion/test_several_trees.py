@@ -444,6 +444,22 @@ def test_a_mock_of_a_name_that_is_not_used_is_named(fleet: Path) -> None:
     assert shown == {"mock: 0.9"}
 
 
+def test_a_mock_of_a_node_with_a_plugin_is_named(fleet: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """All trees list a plugin for `Drive`, one of them for `HandOver`."""
+    main = without_hand_over(fleet)
+    replaced(main, ("    </behavior_tree>", HAND_OVER.replace(" />", ' tree="anna" />') + "    </behavior_tree>"))
+    patterns = ("Drive", "Dr*", "carl/Drive", "anna/HandOver", "HandOver", "*")
+    mocks = tuple(read_mock(f"{pattern}: 0.5") for pattern in patterns)
+    words = mock_system(str(main), mocks).words
+    reasons = {mock.pattern for mock in mocks if "lists a plugin for the node" in words.why_unused(mock)}
+    assert reasons == {"Drive", "Dr*", "carl/Drive", "anna/HandOver"}
+    assert not any(words.why_unused(mock) for mock in mocks if mock.pattern not in reasons)
+    run(["verify", str(FLEET / "main.xml"), "--mock", "Drive: 0.5", "--property", "anna_delivers"])
+    notes = capsys.readouterr().err
+    assert "the mock `Drive` is not used, because the system lists a plugin" in notes
+    assert "uses mocks for" not in notes
+
+
 @pytest.mark.parametrize("pattern", ["Lock", "outer", "*", "carl/Lock", "carl/*"])
 def test_own_nodes_with_children_need_plugins(pattern: str, fleet: Path) -> None:
     main = without_hand_over(fleet)

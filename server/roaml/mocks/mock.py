@@ -218,12 +218,14 @@ class MockableWords(Record, frozen=True):
         parents: the words for nodes with children that a mock can declare to be executed like a node of a library.
         ambiguous: the names of nodes that share a mock with nodes of other names, because a system has one plugin for
             each type and tree.
+        plugged: what mocks can call the nodes that plugins of the system execute, so that they need no mock.
     """
 
     trees: str
     nodes: tuple[str, ...]
     parents: tuple[str, ...] = ()
     ambiguous: tuple[str, ...] = ()
+    plugged: tuple[str, ...] = ()
 
     def why_unused(self, mock: Mock) -> str:
         """Why a mock has no effect and what to do, as the end of a sentence that begins with the mock; "" if it may
@@ -233,6 +235,8 @@ class MockableWords(Record, frozen=True):
             return ""
         if mock.like is None and matches(mock.pattern, self.ambiguous):
             return "is for one name, but nodes of the same type have other names; write a mock for the type"
+        if mock.like is None and matches(mock.pattern, self.plugged):
+            return "is not used, because the system lists a plugin for the node; remove the mock, or this plugin"
         if not matches(mock.pattern, others):
             return f"matches no node of {self.trees}{did_you_mean(self.close(mock)) or '; remove it'}"
         if mock.like is None:
@@ -242,7 +246,7 @@ class MockableWords(Record, frozen=True):
     def close(self, mock: Mock) -> tuple[str, ...]:
         """The words for nodes that are similar to the pattern of a mock, the most similar first; empty if it matches a
         node."""
-        words = (*self.nodes, *self.parents, *self.ambiguous)
+        words = (*self.nodes, *self.parents, *self.ambiguous, *self.plugged)
         return () if matches(mock.pattern, words) else close_names(mock.pattern, words)
 
 

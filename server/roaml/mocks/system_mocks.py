@@ -83,12 +83,15 @@ def mockable_words(system: System, leaves: Iterable[SystemLeaf]) -> MockableWord
     shared = {(leaf.type, tree) for leaf in leaves for tree, names in leaf.names if len(names) > 1}
     nodes: dict[str, None] = {}
     ambiguous: dict[str, None] = {}
+    plugged: dict[str, None] = {}
     for instance in system.instances:
-        of_name = ambiguous if (instance.plugin, instance.tree) in shared else nodes
+        path, _ = system.plugin(instance.plugin, instance.tree)
+        of_type = plugged if path else nodes
+        of_name = ambiguous if (instance.plugin, instance.tree) in shared else of_type
         of_name.update(dict.fromkeys(node_words(instance.name, instance.tree)))
-        nodes.update(dict.fromkeys(node_words(instance.plugin, instance.tree)))
+        of_type.update(dict.fromkeys(node_words(instance.plugin, instance.tree)))
     trees = "the tree" if len(system.trees) < 2 else "the trees"
-    return MockableWords(trees, tuple(nodes), ambiguous=tuple(ambiguous))
+    return MockableWords(trees, tuple(nodes), ambiguous=tuple(ambiguous), plugged=tuple(plugged))
 
 
 def check_likenesses(system: System, mocks: Sequence[Mock]) -> None:
