@@ -467,3 +467,21 @@ ENDLESS = """{
     "system": {"elements": [{"automaton": "A"}]},
     "properties": []
 }"""
+
+
+def test_a_breakpoint_on_a_channel(client: Client, tmp_path: Path) -> None:
+    """It stops when a message is sent and when it is delivered, not while the message is on its way."""
+    page = (ROOT / "docs/spec/channels.md").read_text(encoding="utf-8")
+    for name, text in re.findall(r"^\*\*`([\w.]+)`\*\*\n\n```xml\n(.*?)^```", page, re.MULTILINE | re.DOTALL):
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    main = tmp_path / "main.xml"
+    client.launch(main, property="notices", parameters={"loss": "0"})
+    assert _break(client, main, _line(main, "<channel "))["verified"]
+    client.ask("configurationDone")
+    client.event("stopped")
+    messages = []
+    for _ in range(6):
+        assert client.move()["reason"] == "breakpoint"
+        messages.append(client.ask("evaluate", expression="channel_level_to_Monitor.waiting")["result"])
+    # Sent; decided to be delivered, and delivered 0.2 s later; then the next message is sent.
+    assert messages == ["0", "1", "1", "0", "1", "1"]

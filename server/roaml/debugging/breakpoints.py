@@ -18,9 +18,10 @@ from roaml.debugging.sources import Sources
 from roaml.debugging.values import SEPARATOR, shown
 from roaml.expr.tree import Expr
 from roaml.jani.node import Origin
+from roaml.model.system import CLOCK_TOPIC
 from roaml.record import Record, field
 from roaml.regex import regex
-from roaml.scxml.names import STATUSES, TreeEventKind, read_tree_event, received_by, sent_by
+from roaml.scxml.names import STATUSES, TreeEventKind, read_tree_event, received_by, sent_by, topic_message
 from roaml.simulation.session import Session
 from roaml.simulation.verdicts import Decided
 from roaml.simulation.words import returned_status
@@ -175,7 +176,7 @@ class BreakpointPlaces:
                 continue
             for name, origin in self._sources.states(automaton).items():
                 self._state_origins.add(origin)
-                if (line := self.line(origin)) is not None:
+                if (line := self.line(origin)) is not None and not self.is_channel(line):
                     self.states.setdefault(line, []).append((instance, name))
         for instance, automaton in enumerate(self._session.automata_of_model):
             if self._session.is_machine(instance) and not self._sources.is_library_node(automaton):
@@ -183,6 +184,12 @@ class BreakpointPlaces:
                     for destination in edge.destinations:
                         part = AutomatonStep(instance, automaton.name, edge.source, edge, destination)
                         self.statements |= self.of_part(part)
+
+    def is_channel(self, line: Line) -> bool:
+        """Whether the steps at a line are those of a `<channel>`: a system file contains no other ones. A channel has
+        no states of the user, and with the clock, it only counts the time of a delay."""
+        path = self._sources.target.path
+        return line.path == path and not path.endswith(".jani")
 
     def line(self, origin: Origin | None) -> Line | None:
         place = self._sources.place(origin)
@@ -251,12 +258,14 @@ class Matcher:
         hits: list[tuple[Breakpoint, int]] = []
         actors = self._session.actors(step)
         first = actors[0].instance if actors else -1
+        event = received_by(step.action or "")
         if self._statements:
+            counts_time = event == topic_message(CLOCK_TOPIC)
             for part in actors:
                 if self._session.is_machine(part.instance):
                     for line in self._places.of_part(part):
-                        hits += ((breakpoint_, part.instance) for breakpoint_ in self._statements.get(line, ()))
-        event = received_by(step.action or "")
+                        if not (counts_time and self._places.is_channel(line)):
+                            hits += ((breakpoint_, part.instance) for breakpoint_ in self._statements.get(line, ()))
         if self._nodes and (tree := read_tree_event(event)) and tree.kind is TreeEventKind.TICK:
             hits += ((breakpoint_, first) for breakpoint_ in self._nodes.get(tree.number, ()))
         if self._events:
