@@ -22,8 +22,10 @@ from roaml.ide.code_actions import actions
 from roaml.ide.describe import describe
 from roaml.ide.diagrams.ros import ros_picture
 from roaml.ide.diagrams.tree import tree_picture
+from roaml.ide.expectation import is_written_in_file
 from roaml.ide.names.lookup import symbol_group, symbol_group_at
 from roaml.ide.rename import RenameRefusal, Renaming, rename
+from roaml.ide.verifiable import expected_beside, verifiable
 from roaml.jani.writer import write
 from roaml.mocks.mock import MockError, read_mock
 from roaml.roles import SymbolKind
@@ -679,3 +681,103 @@ def test_trees_that_share_a_file_need_plugins_with_the_same_ports(tmp_path: Path
     replaced(main, ('src="zone.xml"', 'src="place.xml"'))
     (problem,) = problems(main)
     assert problem.startswith("the trees `place` and `zone` execute one file, in which their plugins `Act` have")
+
+
+# ------------------------------------------------------- properties of instances
+
+EACH = {
+    "properties": [
+        {
+            "name": "$(var robot)_ends",
+            "expression": {
+                "op": "filter",
+                "fun": "values",
+                "values": {
+                    "op": "Pmin",
+                    "exp": {
+                        "op": "F",
+                        "exp": {"op": "=", "left": "bt_$(var number)_response__status", "right": "status"},
+                    },
+                },
+                "states": {"op": "initial"},
+            },
+        }
+    ]
+}
+ENDS = {"anna": ("1000", "1", DELIVERS["anna"]), "carl": ("3000", "2", 0.9 * 0.25)}
+"""Robot -> number of its tree, status with which it ends, probability of this. A blocked robot waits for ever."""
+
+
+@pytest.fixture
+def each(fleet: Path) -> Path:
+    """The fleet with a file of properties in JANI that is listed for two robots."""
+    (fleet / "each.jani").write_text(json.dumps(EACH), encoding="utf-8")
+    inputs = "".join(
+        f'<input type="jani" src="each.jani"><param name="robot" value="{robot}" />'
+        f'<param name="number" value="{number}" /><param name="status" value="{status}" /></input>\n'
+        for robot, (number, status, _) in ENDS.items()
+    )
+    replaced(fleet / "main.xml", ("    </properties>", f"{inputs}    </properties>"))
+    return fleet / "main.xml"
+
+
+def test_properties_in_jani_are_listed_for_each_robot(each: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert problems(each) == []
+    values = exact(capsys, each, "--property", "anna_ends", "--property", "carl_ends")
+    for robot, (_, _, expected) in ENDS.items():
+        assert values[f"{robot}_ends"] == pytest.approx((expected, expected), abs=1e-9)
+    plain = each.parent / "plain"
+    assert run(["translate", str(each), "--expand", str(plain), "-o", str(each.parent / "x.jani")]) == 0
+    assert jani(plain / "main.xml") == jani(each)
+
+
+def test_editors_know_the_names_of_properties_of_instances(each: Path) -> None:
+    """Each property has the name with which it can be verified, and the place of the text that the user wrote."""
+    analysis = api.check([str(each)]).snapshot.analysis
+    found = verifiable(analysis, str(each))
+    written = {p.name: Path(p.path).read_text("utf-8")[p.name_span.start : p.name_span.end] for p in found}
+    assert written == {
+        **{f"{robot}_delivers": "$(var robot)_delivers" for robot in DELIVERS},
+        "all_deliver": "all_deliver",
+        **{f"{robot}_ends": "$(var robot)_ends" for robot in ENDS},
+    }
+    assert set(written) == {property_.name for property_ in api.to_jani(api.load(str(each))).properties}
+
+
+def test_the_expectation_of_one_instance_is_in_the_configuration(each: Path) -> None:
+    """That of all of them is in the file."""
+    analysis = api.check([str(each)]).snapshot.analysis
+    assert not any(is_written_in_file(analysis, property_) for property_ in verifiable(analysis, str(each)))
+    replaced(each.parent / "delivers.xml", ('pattern="existence"', 'pattern="existence" expect="&gt;= 0.7"'))
+    analysis = api.check([str(each)]).snapshot.analysis
+    assert expected_beside(analysis, str(each)).keys() == {f"{robot}_delivers" for robot in DELIVERS}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('<param name="status"', '<param name="stat"', "does not use the parameter `stat`; remove it"),
+        (
+            '<param name="robot" value="carl" /><param name="n',
+            '<param name="n',
+            "there is no parameter `robot`; declare",
+        ),
+    ],
+)
+def test_wrong_parameters_of_properties_in_jani(old: str, new: str, message: str, each: Path) -> None:
+    replaced(each, (old, new))
+    found = problems(each)
+    assert not any("no such file" in text for text in found)
+    assert [text for text in found if message in text]
+
+
+def test_a_parameter_of_properties_in_jani_is_renamed(each: Path) -> None:
+    before = jani(each)
+    analysis = api.check([str(each)]).snapshot.analysis
+    at = each.read_text(encoding="utf-8").index('"number"') + 1
+    renaming = rename(analysis, str(each), at, "place")
+    assert isinstance(renaming, Renaming), renaming
+    for changed, edits in renaming.edits.items():
+        Path(changed).write_text(apply_edits(Path(changed).read_text("utf-8"), tuple(edits)), "utf-8")
+    assert "bt_$(var place)_response" in (each.parent / "each.jani").read_text("utf-8")
+    assert jani(each) == before

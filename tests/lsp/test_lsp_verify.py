@@ -103,6 +103,20 @@ async def test_all_properties_and_messages(robot: Path) -> None:
     assert [text.split(":")[0] for kind, text in messages[1:] if kind is types.MessageType.Info] == names
 
 
+async def test_properties_of_instances_have_a_lens_each(tmp_path: Path) -> None:
+    """They are at the same place, so that their lenses and results name them."""
+    folder = shutil.copytree(EXAMPLE.parent / "fleet", tmp_path / "fleet")
+    main, properties = folder / "main.xml", folder / "delivers.xml"
+    async with connect(folder) as client:
+        client.open(properties, language="xml")
+        names = [f"{robot}_delivers" for robot in ("anna", "bert", "carl")]
+        assert await lenses(client, properties) == [f"Verify {name}" for name in names]
+        rows = (await verify(client, main, ["bert_delivers"], QUICK))["results"]
+        assert [row["property"] for row in rows] == ["bert_delivers"]
+        ((text, _),) = await hints(client, properties)
+        assert text.split()[1] == "bert_delivers"
+
+
 async def test_lens_and_hint_show_the_result_until_it_is_stale(robot: Path) -> None:
     main, properties = robot / "main_with_bug.xml", robot / "properties.jani"
     (robot / "main.xml").unlink()

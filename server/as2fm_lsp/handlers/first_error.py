@@ -84,7 +84,7 @@ def lenses(on: RequestedDocument, broken: Mapping[str, tuple[Diagnostic, ...]]) 
             title = f"{counted(errors)}: cannot be translated or verified"
             yield types.CodeLens(on.range(file.element.name_span), types.Command(title, COMMAND, arguments=arguments))
             continue
-        for property_ in verifiable(on.analysis, system):
-            if property_.path == on.path:
-                title = f"{counted(errors)} in {names[system]}: cannot be verified"
-                yield types.CodeLens(on.range(property_.name_span), types.Command(title, COMMAND, arguments=arguments))
+        properties = (p for p in verifiable(on.analysis, system) if p.path == on.path)
+        for place in dict.fromkeys(property_.name_span for property_ in properties):
+            title = f"{counted(errors)} in {names[system]}: cannot be verified"
+            yield types.CodeLens(on.range(place), types.Command(title, COMMAND, arguments=arguments))

@@ -12,7 +12,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from contextlib import suppress
 from functools import partial
 from typing import Any
@@ -190,7 +190,7 @@ def lenses(context: Context, on: RequestedDocument, broken: Collection[str]) -> 
                 continue
             known = current.get(property_.name)
             words = [result_words(current, known)] if shows_words and known is not None else []
-            title = " · ".join([f"{TITLE}{where}", *words])
+            title = " · ".join([f"{TITLE}{_of_instance(property_, properties)}{where}", *words])
             commands = [types.Command(title, VERIFY, arguments=[uri, [property_.name]])]
             commands += [] if known is None else result_commands(context, uri, property_.name, known.result)
             for command in commands:
@@ -219,17 +219,24 @@ def hints(context: Context, on: RequestedDocument, within: types.Range) -> Itera
     for system, name in systems.items():
         where = f" in {name}" if len(systems) > 1 else ""
         current = CurrentResults(context, on.snapshot, system)
-        for property_ in verifiable(on.analysis, system) if context.results.has(system) else ():
+        properties = verifiable(on.analysis, system) if context.results.has(system) else ()
+        for property_ in properties:
             known = current.get(property_.name)
             if known is None or property_.path != on.path or not span.start <= property_.name_span.end <= span.end:
                 continue
             mark = SYMBOLS[mark_of(known.result)]
             # Editors cut long hints. The value and its system come first.
-            text = f"{mark} {result_words(current, known, where)}"
+            text = f"{mark}{_of_instance(property_, properties)} {result_words(current, known, where)}"
             position = on.convert.position(on.source, min(property_.name_span.end + 1, len(on.source.text)))
             place_of = partial(place_in_words, known.result.traces.target if known.result.traces else None)
             tooltip = one_as_text(known.result, place_of)
             yield types.InlayHint(position, text, tooltip=tooltip, padding_left=True)
+
+
+def _of_instance(property_: Verifiable, properties: Iterable[Verifiable]) -> str:
+    """The name of a property, after a blank, if other instances have a property at the same place; otherwise ""."""
+    place = property_.path, property_.name_span
+    return f" {property_.name}" if sum((p.path, p.name_span) == place for p in properties) > 1 else ""
 
 
 def _shows_hints(context: Context) -> bool:

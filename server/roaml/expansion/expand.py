@@ -44,17 +44,20 @@ from roaml.model.kinds import GRAMMARS, FileKind
 from roaml.model.syntax import Name
 from roaml.model.system_file import TREE_ATTRIBUTE, SystemSection
 from roaml.record import Record, field
+from roaml.regex import regex
 from roaml.roles import SymbolKind
 from roaml.scxml.names import sanitise
 from roaml.suggest import close_names, did_you_mean, listing
 from roaml.text import Span, TextEdit
-from roaml.xml_syntax import Document, Element, parse
+from roaml.xml_syntax import Attribute, Document, Element, parse
 
 if TYPE_CHECKING:
     from roaml.expansion.draws import DrawnNumber
     from roaml.model.ros import InterfaceType
 
 _STRING = ScalarKind.STRING
+_LITERAL = regex(r"(?:-?(?:0|[1-9]\d*)(?:\.\d+)?(?:[eE][-+]?\d+)?|true|false)\Z")
+"""A number or boolean in JSON."""
 CHANNELS = "channels"
 """The name of the section of a system file that declares channels."""
 
@@ -229,6 +232,7 @@ class _Expander:
         self.channels: dict[str, tuple[str, Span]] = {}
         self.delivered: dict[Symbol, tuple[Symbol, Symbol]] = {}
         self.namespaces: dict[str, str] = {}
+        self.declared: tuple[Declared, ...] = ()
 
     def problems_of(self, path: str) -> Problems:
         return self.problems.setdefault(path, Problems())
@@ -257,7 +261,7 @@ class _Expander:
         document = self.sources.document(self.path)
         assert document is not None
         problems = self.problems_of(self.path)
-        declared = declarations(document, problems)
+        declared = self.declared = declarations(document, problems)
         given = {name: Given(text, None, SETTING) for name, text in self.given.items() if "." not in name}
         scope = values(declared, given, {}, problems, varied=self.varied)
         self.settable |= {parameter.name.value for parameter in declared}
@@ -531,7 +535,7 @@ class _Expander:
     def _expand_listed(self, source: str, path: str, instance: ListedInstance | None, scope: Scope) -> None:
         kind = self.sources.kind(source)
         if kind is FileKind.PROPERTIES:
-            self._expand_jani(source, scope)
+            self._expand_jani(source, path, instance, scope)
             return
         document = self.sources.document(source) if kind in GRAMMARS else None
         if document is None or document.root is None:
@@ -647,18 +651,7 @@ class _Expander:
                 problems.add(ExpansionProblem.UNKNOWN, param.span, message, close=close)
                 continue
             self.note(self.path, source, param.value, param.span)
-            for match in VARIABLE.finditer(value.value):
-                if match[1] not in scope:
-                    message = f"there is no parameter `{match[1]}`; declare it with `<parameter>`"
-                    problems.add(ExpansionProblem.UNKNOWN, value.value_span, message)
-            text = VARIABLE.sub(lambda m: scope[m[1]].text if m[1] in scope else m[0], value.value)
-            system = self.sources.document(self.path)
-            assert system is not None
-            if known[param.value].type != "string" or "$(var" in value.value:
-                for use in uses_in(system, value, scope):
-                    self.used.add(use.name)
-                    self.note(self.path, self.path, use.name, use.span)
-            given[param.value] = Given(text, value.value_span, "`<param>`")
+            given[param.value] = self._given_by_param(value, known[param.value].type, scope, problems)
         root = document.root
         machine = root.get("name") if root is not None else None
         name = instance.name.value if instance and instance.name else (machine.value.strip() if machine else "")
@@ -671,31 +664,80 @@ class _Expander:
                     self.of_instances |= {f"{owner}.{parameter}": self.given[key] for owner in names[-1:]}
         return given
 
-    def _expand_jani(self, source: str, scope: Scope) -> None:
+    def _given_by_param(self, value: Attribute, type_: str, scope: Scope, problems: Problems) -> Given:
+        """The value that a `<param>` gives to a parameter of a type."""
+        for match in VARIABLE.finditer(value.value):
+            if match[1] not in scope:
+                message = f"there is no parameter `{match[1]}`; declare it with `<parameter>`"
+                problems.add(ExpansionProblem.UNKNOWN, value.value_span, message)
+        text = VARIABLE.sub(lambda m: scope[m[1]].text if m[1] in scope else m[0], value.value)
+        system = self.sources.document(self.path)
+        assert system is not None
+        if type_ != "string" or "$(var" in value.value:
+            for use in uses_in(system, value, scope):
+                self.used.add(use.name)
+                self.note(self.path, self.path, use.name, use.span)
+        return Given(text, value.value_span, "`<param>`")
+
+    def _undeclared(self, instance: ListedInstance, scope: Scope) -> dict[str, ParameterValue]:
+        """The values of the `<param>` of an input whose file cannot declare parameters: those of parameters of the
+        system with these names, and texts."""
+        problems, given = self.problems_of(self.path), dict[str, ParameterValue]()
+        for param, value in instance.params:
+            declared = [parameter for parameter in self.declared if parameter.name.value == param.value]
+            type_ = declared[0].type if declared else "string"
+            of_param = self._given_by_param(value, type_, scope, problems)
+            if declared:
+                given |= values(tuple(declared), {param.value: of_param}, scope, problems)
+            else:
+                given[param.value] = ParameterValue("string", of_param.text)
+        return given
+
+    def _expand_jani(self, source: str, path: str, instance: ListedInstance | None, scope: Scope) -> None:
+        """Expand a file of properties in JANI, which uses the parameters of the system and the `<param>` of its
+        input."""
         text = self.sources.text(source)
         if text is None:
             return
         problems = self.problems_of(source)
         edits: list[TextEdit] = []
+        own = {} if instance is None else self._undeclared(instance, scope)
+        scope = {**scope, **own}
+        used: set[str] = set()
         for declared in self.sources.properties(source):
             for name, span in identifiers(declared.expression):
                 value = scope.get(name)
                 if value is not None and span.end > span.start:
-                    self.used.add(name)
-                    self.note(source, self.path, name, span)
+                    used.add(name)
+                    self.note(source, self._owner(source, name), name, span)
                     quoted = Span(span.start - 1, span.end + 1)
-                    edits.append(TextEdit(quoted, json.dumps(value.content) if value.kind is _STRING else value.text))
+                    is_text = value.kind is _STRING and not (name in own and _LITERAL.match(value.text))
+                    edits.append(TextEdit(quoted, json.dumps(value.content) if is_text else value.text))
         for match in VARIABLE.finditer(text):
             value = scope.get(match[1])
             if value is None:
-                message = f"there is no parameter `{match[1]}`; declare it in the system file with `<parameter>`"
+                message = (
+                    f"there is no parameter `{match[1]}`; declare it in the system file with `<parameter>`, or set it "
+                    "with `<param>` in the input of this file"
+                )
                 problems.add(ExpansionProblem.UNKNOWN, Span(*match.span(1)), message)
             else:
-                self.used.add(match[1])
-                self.note(source, self.path, match[1], Span(*match.span(1)))
+                used.add(match[1])
+                self.note(source, self._owner(source, match[1]), match[1], Span(*match.span(1)))
                 edits.append(TextEdit(Span(*match.span()), value.text.replace("\\", "\\\\").replace('"', '\\"')))
-        if edits:
-            self.texts[source] = expanded_text(source, source, text, edits)
+        self.used |= used
+        for param, _ in () if instance is None else instance.params:
+            owner = self._owner(source, param.value)
+            self.note(self.path, owner, param.value, param.span, defines=owner == source)
+            if instance is not None and param.value not in used:
+                message = f"`{instance.src.value}` does not use the parameter `{param.value}`; remove it"
+                self.problems_of(self.path).add(ExpansionProblem.UNKNOWN, param.span, message)
+        if edits or path != source:
+            self.texts[path] = expanded_text(path, source, text, edits)
+
+    def _owner(self, source: str, name: str) -> str:
+        """The file to which a parameter belongs that the file `source` uses and cannot declare."""
+        return self.path if any(parameter.name.value == name for parameter in self.declared) else source
 
     def _report_unused(self, declared: tuple[Declared, ...], problems: Problems) -> None:
         document = self.sources.document(self.path)

@@ -14,8 +14,12 @@ from roaml.xml_syntax.escapes import escape
 
 
 def is_written_in_file(analysis: Analysis, property_: Verifiable) -> bool:
-    """Whether the expectation is an attribute of the property; otherwise it is in the configuration."""
-    return analysis.kind(property_.path) is FileKind.XML_PROPERTIES
+    """Whether the expectation is an attribute of the property; otherwise it is in the configuration, as that of a
+    property of one instance: the attribute would be that of all instances."""
+    if analysis.kind(property_.path) is not FileKind.XML_PROPERTIES:
+        return False
+    file = analysis.property_file(property_.path)
+    return file is not None and any(w.id is not None and w.id.value == property_.name for w in file.properties)
 
 
 def in_property_file(analysis: Analysis, property_: Verifiable, expected: str) -> WorkspaceEdit:

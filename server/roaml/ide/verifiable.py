@@ -14,9 +14,9 @@ from roaml.model.kinds import FileKind, mocks_path
 from roaml.model.property_file import PropertyFile
 from roaml.project.analysis import Analysis
 from roaml.project.mock_files import executed_tree
-from roaml.record import Record
+from roaml.record import Record, replace
 from roaml.scxml.names import SUCCEEDS
-from roaml.text import SourceFile, Span
+from roaml.text import Location, SourceFile, Span
 
 Texts: TypeAlias = tuple[tuple[str, bytes], ...]
 """Paths of files, each with the digest of the content."""
@@ -26,7 +26,8 @@ class Verifiable(Record, frozen=True):
     """A property of a system. `span` is its place in the file `path`; `name_span` is the place of its name without
     quotes.
 
-    `comment` describes the property: its sentence if it is written in XML, or its comment in a JANI file.
+    `name` is that of the expanded property: properties of instances can have the same place. `comment` describes the
+    property: its sentence if it is written in XML, or its comment in a JANI file.
     """
 
     name: str
@@ -45,11 +46,31 @@ def verifiable(analysis: Analysis, system: str) -> tuple[Verifiable, ...]:
         return (Verifiable(SUCCEEDS, "The tree returns SUCCESS.", system, tree.element.span, name),)
     properties: dict[str, Iterator[Verifiable]] = {}
     for listed in analysis.listed(system):
-        if listed.usable and listed.required_kind is FileKind.PROPERTIES:
-            properties.setdefault(listed.path, _in_jani(analysis, listed.path))
-        elif listed.usable and listed.required_kind is FileKind.XML_PROPERTIES:
-            properties.setdefault(listed.path, _in_xml(analysis, listed.path, system))
+        if listed.usable and listed.required_kind in (FileKind.PROPERTIES, FileKind.XML_PROPERTIES):
+            properties.setdefault(listed.path, _in_file(analysis, listed.path, system))
     return tuple(property_ for in_file in properties.values() for property_ in in_file)
+
+
+def _in_file(analysis: Analysis, path: str, system: str) -> Iterator[Verifiable]:
+    """The properties in the expanded texts of a file, at their places in the file."""
+    is_jani, expanded = analysis.kind(path) is FileKind.PROPERTIES, analysis.expanded(system)
+    for inner, variant in variants(analysis, path, system):
+        for property_ in _in_jani(inner, variant) if is_jani else _in_xml(inner, variant, system):
+            if expanded is None:
+                yield property_
+                continue
+            place, name = (expanded.location(Location(variant, span)) for span in (property_.span, property_.name_span))
+            yield replace(property_, path=place.path, span=place.span, name_span=name.span)
+
+
+def variants(analysis: Analysis, path: str, system: str) -> Iterator[tuple[Analysis, str]]:
+    """The analysis of the texts that a file is expanded to in a system, each with its path; those of the file itself if
+    the system is not expanded."""
+    expanded = analysis.expanded(system)
+    if expanded is None:
+        yield analysis, path
+        return
+    yield from ((expanded.analysis, variant) for variant in expanded.expansion.paths(path))
 
 
 def _in_jani(analysis: Analysis, path: str) -> Iterator[Verifiable]:
@@ -71,9 +92,14 @@ def _in_xml(analysis: Analysis, path: str, system: str) -> Iterator[Verifiable]:
 def expected_beside(analysis: Analysis, system: str) -> dict[str, Comparison]:
     """The expectations in the XML property files of a system, by the names of the properties."""
     expected: dict[str, Comparison] = {}
-    for listed in analysis.listed(system):
-        is_xml = listed.usable and listed.required_kind is FileKind.XML_PROPERTIES
-        linked = analysis.linked_properties(listed.path, system) if is_xml else None
+    files = dict.fromkeys(
+        listed.path
+        for listed in analysis.listed(system)
+        if listed.usable and listed.required_kind is FileKind.XML_PROPERTIES
+    )
+    texts = (variant for path in files for variant in variants(analysis, path, system))
+    for inner, path in texts:
+        linked = inner.linked_properties(path, system)
         for property_ in linked.properties if linked is not None else ():
             expect = property_.written.expect
             comparison = read_comparison(expect.value) if expect is not None else None
