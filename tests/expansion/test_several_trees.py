@@ -781,3 +781,81 @@ def test_a_parameter_of_properties_in_jani_is_renamed(each: Path) -> None:
         Path(changed).write_text(apply_edits(Path(changed).read_text("utf-8"), tuple(edits)), "utf-8")
     assert "bt_$(var place)_response" in (each.parent / "each.jani").read_text("utf-8")
     assert jani(each) == before
+
+
+# --------------------------------------------------------- parameters in tree files
+
+
+@pytest.fixture
+def attempts(fleet: Path) -> Path:
+    """The fleet whose tree file has the number of attempts from the trees."""
+    replaced(fleet / "deliver.xml", ('num_attempts="2"', 'num_attempts="$(var attempts)"'))
+    return fleet / "main.xml"
+
+
+def with_attempts(main: Path, **attempts: str) -> None:
+    """Set the number of attempts of some trees."""
+    text = main.read_text(encoding="utf-8")
+    for robot, value in attempts.items():
+        param = f'<param name="attempts" value="{value}" />'
+        text = re.sub(rf'(name="{robot}" namespace="{robot}"[^/>]*) />', rf"\1>{param}</input>", text)
+        text = re.sub(rf'(name="{robot}" namespace="{robot}"[^/>]*>)(?!<param name="attempts")', rf"\1{param}", text)
+    main.write_text(text, encoding="utf-8")
+
+
+def test_a_tree_file_uses_the_values_of_its_trees(attempts: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with_attempts(attempts, anna="3", bert="3", carl="3")
+    assert problems(attempts) == []
+    values = exact(capsys, attempts, "--property", "carl_delivers")
+    assert values["carl_delivers"][0] == pytest.approx(0.9 * (1 - 0.5**3), abs=1e-9)
+    plain = attempts.parent / "plain"
+    assert run(["translate", str(attempts), "--expand", str(plain), "-o", str(attempts.parent / "x.jani")]) == 0
+    assert jani(plain / "main.xml") == jani(attempts)
+
+
+@pytest.mark.parametrize("missing", ["is 2 in the tree `carl`", "has no value in the tree `carl`"])
+def test_different_values_in_one_tree_file_are_reported(missing: str, attempts: Path) -> None:
+    with_attempts(attempts, anna="3", bert="3", **({"carl": "2"} if "is 2" in missing else {}))
+    (found,) = problems(attempts)
+    assert found.startswith("`attempts` is 3 in the tree `anna` and ")
+    assert missing in found
+    assert "list a copy of the file with other IDs" in found
+
+
+def test_a_copy_of_a_tree_file_has_other_values(attempts: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """As the message proposes."""
+    text = (attempts.parent / "deliver.xml").read_text(encoding="utf-8").replace("Deliver", "DeliverOnce")
+    (attempts.parent / "once.xml").write_text(text, encoding="utf-8")
+    replaced(attempts, ('src="deliver.xml" name="carl"', 'src="once.xml" name="carl"'))
+    with_attempts(attempts, anna="2", bert="2", carl="1")
+    assert problems(attempts) == []
+    values = exact(capsys, attempts, "--property", "carl_delivers", "--property", "anna_delivers")
+    assert values["carl_delivers"][0] == pytest.approx(0.9 * 0.5, abs=1e-9)
+    assert values["anna_delivers"][0] == pytest.approx(DELIVERS["anna"], abs=1e-9)
+
+
+def test_a_value_of_a_tree_precedes_that_of_the_system(attempts: Path) -> None:
+    """It has the type of the parameter of the system."""
+    declared = '<parameter name="attempts" type="int32" value="2" min="1" max="5" />'
+    replaced(
+        attempts, ("    <parameters>", f"<parameter_declarations>{declared}</parameter_declarations>\n    <parameters>")
+    )
+    before = jani(attempts)
+    with_attempts(attempts, anna="1 + 1")
+    assert problems(attempts) == []
+    assert jani(attempts) == before
+    replaced(attempts, ("1 + 1", "6"))
+    assert any("greater than its `max`" in text for text in problems(attempts))
+
+
+def test_a_value_of_trees_is_renamed(attempts: Path) -> None:
+    with_attempts(attempts, anna="3", bert="3", carl="3")
+    before = jani(attempts)
+    tree = attempts.parent / "deliver.xml"
+    at = tree.read_text(encoding="utf-8").index("$(var attempts)") + len("$(var a")
+    renaming = rename(api.check([str(attempts)]).snapshot.analysis, str(tree), at, "trials")
+    assert isinstance(renaming, Renaming), renaming
+    for changed, edits in renaming.edits.items():
+        Path(changed).write_text(apply_edits(Path(changed).read_text("utf-8"), tuple(edits)), "utf-8")
+    assert attempts.read_text(encoding="utf-8").count('name="trials"') == 3
+    assert jani(attempts) == before

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import functools
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Protocol
 
 from roaml.diagnostics import Finding, Fix, Severity, Symbol, Tag
@@ -226,6 +226,8 @@ class _Expander:
         self.drawn: dict[DrawnNumber, None] = {}
         self.remapped: set[Remap] = set()
         self.set_by_trees: set[Name] = set()
+        self.plugin_parameters: dict[str, str] = {}
+        """The name of a parameter of plugins -> the path of a plugin that declares it."""
         self.data: dict[str, str | None] = {}
         self.machines: dict[str, str] = {}
         """The path of each machine -> the path of its file."""
@@ -298,11 +300,12 @@ class _Expander:
             if new != target:
                 edits.append(TextEdit(instance.src.value_span, _relative(new, instance.src.value)))
             edits += self._plain_input(document, instance)
-        self._report_trees(trees, problems)
-        edits += self._expand_channels(document, scope)
+        executing = self._trees_of_files(trees)
         for other in self.others:
             if other not in seen:
-                self._expand_listed(other, other, None, scope)
+                self._expand_listed(other, other, None, scope, executing.get(other, ()))
+        self._report_trees(trees, problems)
+        edits += self._expand_channels(document, scope)
         self._expand_draws()
         self._report_unused(declared, problems)
         if edits:
@@ -332,6 +335,7 @@ class _Expander:
             self._expand_listed(target, new, instance, scope)
             inputs.append((_relative(new, plugin.src.value), _named(tree)))
             self.set_by_trees |= {name for name, _ in tree.params if name.value in own}
+            self.plugin_parameters |= dict.fromkeys(own, target)
         if len(owners) < 2:
             if inputs[0][0] != plugin.src.value:
                 yield TextEdit(plugin.src.value_span, inputs[0][0])
@@ -354,7 +358,7 @@ class _Expander:
         for tree in trees:
             for name, _ in tree.params:
                 if name not in self.set_by_trees:
-                    message = f"no plugin of this tree has a parameter `{name.value}`"
+                    message = f"no plugin of this tree has a parameter `{name.value}`, and none of its files uses it"
                     problems.add(ExpansionProblem.UNKNOWN, name.span, message)
             report_unused(tree.remaps, self.remapped, problems)
         if len(trees) > 1:
@@ -532,7 +536,70 @@ class _Expander:
 
     # ---------------------------------------------------------- the other files
 
-    def _expand_listed(self, source: str, path: str, instance: ListedInstance | None, scope: Scope) -> None:
+    def _trees_of_files(self, trees: list[ListedInstance]) -> dict[str, list[ListedInstance]]:
+        """The path of a file of trees -> the trees that a system executes with it: of one that sets values, all that
+        list or include the file."""
+        executing: dict[str, list[ListedInstance]] = {}
+        for tree in trees if any(tree.params for tree in trees) else ():
+            pending, known = [self.resolve(self.path, tree.src.value)], set[str]()
+            while pending:
+                path = pending.pop()
+                document = self.sources.document(path) if path not in known and path in self.others else None
+                known.add(path)
+                if document is None or document.root is None:
+                    continue
+                executing.setdefault(path, []).append(tree)
+                includes = (child.get("path") for child in document.root.elements if child.name == "include")
+                pending += (self.resolve(path, name.value) for name in includes if name is not None)
+        return executing
+
+    def _values_of_trees(self, trees: Sequence[ListedInstance], scope: Scope) -> dict[str, ParameterValue]:
+        """The values that a file of trees has from the trees that are executed with it: those of the first one that
+        sets them."""
+        given = [self._undeclared(tree, scope) for tree in trees]
+        return {name: value for of_tree in reversed(given) for name, value in of_tree.items()}
+
+    def _note_tree_value(
+        self, source: str, name: str, trees: Sequence[ListedInstance], scope: Scope, uses: Sequence[Span]
+    ) -> None:
+        """Record the uses of a value of trees in the file of trees `source`. The file is one text, so that different
+        values are a problem.
+
+        Args:
+            scope: the parameters of the system.
+            uses: the places of the name in the file.
+        """
+        written = [param for tree in trees for param, _ in tree.params if param.value == name]
+        self.set_by_trees |= set(written)
+        owner = self.plugin_parameters.get(name) or self._owner(source, name)
+        for param in written:
+            self.note(self.path, owner, name, param.span, defines=owner == source)
+        for span in uses:
+            self.note(source, owner, name, span)
+        values_ = [(_named(tree), self._undeclared(tree, scope).get(name) or scope.get(name)) for tree in trees]
+        first, value = next((tree, value) for tree, value in values_ if value is not None)
+        for tree, other in values_:
+            if other is not None and other.text == value.text:
+                continue
+            shown = f"is {other.text}" if other is not None else "has no value"
+            message = (
+                f"`{name}` is {value.text} in the tree `{first}` and {shown} in the tree `{tree}`, but both execute "
+                "this file, which is one text; list a copy of the file with other IDs for one of the trees, or use the "
+                "parameter in a plugin, of which each tree has its own"
+            )
+            for span in uses:
+                self.problems_of(source).add(ExpansionProblem.VALUE, span, message)
+            return
+
+    def _expand_listed(
+        self,
+        source: str,
+        path: str,
+        instance: ListedInstance | None,
+        scope: Scope,
+        trees: Sequence[ListedInstance] = (),
+    ) -> None:
+        """Expand a file. `trees` are the trees that are executed with a file of trees, if these set values."""
         kind = self.sources.kind(source)
         if kind is FileKind.PROPERTIES:
             self._expand_jani(source, path, instance, scope)
@@ -541,6 +608,9 @@ class _Expander:
         if document is None or document.root is None:
             return
         problems, system_problems = self.problems_of(source), self.problems_of(self.path)
+        of_system = scope
+        of_trees = self._values_of_trees(trees, scope)
+        scope = {**scope, **of_trees}
         own = declarations(document, problems) if kind in (FileKind.MACHINE, FileKind.XML_PROPERTIES) else ()
         given = self._given(source, instance, own, scope, document, system_problems)
         # A value from the system file is reported there; the problems of defaults and of `--set` belong to the file.
@@ -554,7 +624,11 @@ class _Expander:
         names = {use.name for use in uses.uses} | uses.hidden
         self.used |= names - own_values.keys()
         for use in uses.uses:
-            self.note(source, source if use.name in own_values else self.path, use.name, use.span)
+            if use.name not in of_trees:
+                self.note(source, source if use.name in own_values else self.path, use.name, use.span)
+        for name in dict.fromkeys(use.name for use in uses.uses if use.name in of_trees):
+            spans = [use.span for use in uses.uses if use.name == name]
+            self._note_tree_value(source, name, trees, of_system, spans)
         self.note_declarations(source, document, own, scope)
         edits = list(uses.edits)
         edits += (removed(document, parameter.element) for parameter in own)
