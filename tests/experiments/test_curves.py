@@ -17,10 +17,10 @@ from roaml.experiments.curves import Curve, curve_plot, median_curves, traces_fo
 from roaml.smc.model import ModelChecker
 from roaml.smc.run import Options
 
-RUNS = 150
+RUNS = 300
 CONFIDENCE = 0.9
-LEAST_COVERED = 123
-"""With a coverage of 0.9, at least this many of 150 runs are covered with a probability of 0.999."""
+LEAST_COVERED = 253
+"""With a coverage of 0.9, at least this many of 300 runs are covered with a probability of 0.999."""
 P = 0.2
 STEPS = 12
 

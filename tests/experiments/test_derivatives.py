@@ -73,12 +73,14 @@ def test_differences_of_exact_values(written: Json) -> None:
     except NoDerivativeError:
         return
     for name, slope in found.slopes:
-        ends = []
-        for shift in (-1e-4, 1e-4):
+        values = []
+        for shift in (-2e-3, -1e-3, 1e-3, 2e-3):
             moved = tuple((key, repr(float(value) + shift) if key == name else value) for key, value in setting)
             (point,) = shared_points(space, [moved], grid.options)
-            ends.append(point.maximum or 0.0)
-        assert slope == pytest.approx((ends[1] - ends[0]) / 2e-4, abs=1e-5)
+            values.append(point.maximum or 0.0)
+        # The difference of fourth order.
+        difference = (values[0] - 8 * values[1] + 8 * values[2] - values[3]) / 12e-3
+        assert slope == pytest.approx(difference, abs=1e-6, rel=1e-6)
 
 
 def test_schedulers_that_differ() -> None:
