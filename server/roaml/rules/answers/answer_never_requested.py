@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.model.behavior.explore import Behavior, ChartConfiguration
 from roaml.model.behavior.phases import AWAITED_ANSWER, Phase, Subject
-from roaml.model.machine import Handler, If, ReturnStatus, RosSend, State, statements
+from roaml.model.machine import Chart, Handler, If, ReturnStatus, RosSend, State, statements
 from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
@@ -25,6 +25,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for behavior in behaviors(context):
         if not behavior.approximate:
             yield from _dead_waits(context, behavior)
+    for chart in context.machine.charts:
+        yield from _after_the_end(chart)
 
 
 def _dead_waits(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
@@ -54,6 +56,54 @@ def _dead_waits(context: MachineContext, behavior: Behavior) -> Iterator[Finding
         what = "this state handles only answers, and requests" if _serves(state) else "this state handles only answers"
         related = [Related(state.id.span, what)]
         yield RULE.at(step.handler.element.name_span, message, related=related)
+
+
+def _after_the_end(chart: Chart) -> Iterator[Finding]:
+    """Report a tick that returns SUCCESS or FAILURE and enters a state in which a plugin waits for a message, if all
+    other handlers that enter it send something first: nothing causes the message that the next tick waits for."""
+    states = {state.id.value: state for state in chart.states if state.id is not None}
+    entering: dict[str, list[tuple[Handler, bool]]] = {}
+    for state in chart.states:
+        for handler in state.handlers if state.id is not None else ():
+            for target in handler.targets if handler.effective else ():
+                if state.id is not None and target.state is not None and target.state.value != state.id.value:
+                    sends = any(isinstance(s, RosSend) and s.part in _CAUSES for s in statements(target.body))
+                    entering.setdefault(target.state.value, []).append((handler, sends))
+    for name, handlers in entering.items():
+        awaits = states.get(name)
+        silent = [handler for handler, sends in handlers if not sends]
+        if awaits is None or awaits.id is None or awaits.entry is not None or len(silent) != 1 or len(handlers) < 2:
+            continue
+        (handler,) = silent
+        if _waits_for_message(awaits) and _ends(handler):
+            message = (
+                f"after this, the plugin waits in the state `{name}` for a message, and it has not sent what is sent "
+                "on the other paths to this state"
+            )
+            yield RULE.at(handler.element.name_span, message, related=[Related(awaits.id.span, "the state")])
+
+
+_CAUSES = (ProtocolPart.MESSAGE, ProtocolPart.REQUEST, ProtocolPart.GOAL)
+
+
+def _waits_for_message(state: State) -> bool:
+    """Whether a message ends a state, and ticks return only RUNNING and stay there."""
+    ticks = [h for h in state.handlers if h.effective and h.trigger is ProtocolPart.BT_TICK]
+    return (
+        bool(ticks)
+        and all(_keeps_running(state, handler) for handler in ticks)
+        and any(h.effective and h.trigger is ProtocolPart.MESSAGE and not _stays(state, h) for h in state.handlers)
+    )
+
+
+def _ends(handler: Handler) -> bool:
+    """Whether a handler of ticks returns SUCCESS or FAILURE on each path."""
+    inside = [s for target in handler.targets for s in statements(target.body) if isinstance(s, ReturnStatus)]
+    return (
+        handler.trigger is ProtocolPart.BT_TICK
+        and bool(inside)
+        and all(s.status is not None and s.status.value in ("SUCCESS", "FAILURE") for s in inside)
+    )
 
 
 def _waits_in_vain(context: MachineContext, state: State | None, configuration: ChartConfiguration) -> bool:

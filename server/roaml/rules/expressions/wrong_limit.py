@@ -10,11 +10,11 @@ from typing import TypeGuard
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.expr.format import format_expr
 from roaml.expr.infer import constant
-from roaml.expr.operators import Operator, OperatorKind
-from roaml.expr.tree import Binary, Call, Expr, Member, walk
+from roaml.expr.operators import MIRRORED, Operator, OperatorKind
+from roaml.expr.tree import Binary, Call, Expr, Member, Name, walk
 from roaml.expr.types import INTEGER_RANGES
 from roaml.model.behavior.knowledge import variables_in
-from roaml.model.machine import Assign, Chart, If, Statement, bodies
+from roaml.model.machine import Assign, Chart, If, RosSend, Send, State, Statement, bodies, statements
 from roaml.model.syntax import Expression
 from roaml.model.values.evaluate import place_of
 from roaml.model.waits import fixed_variables
@@ -32,9 +32,11 @@ def check(context: MachineContext) -> Iterator[Finding]:
         types = context.typed.variables.get(chart.scope, {})
         positive = {name for name, value in fixed.items() if value > 0}
         positive |= {name for name, type_ in types.items() if INTEGER_RANGES.get(str(type_), (-1, 0))[0] == 0}
+        yield from _one_beyond(chart)
         for statement in chart.statements:
             if isinstance(statement, If):
                 yield from _tested(statement)
+                yield from _clamped(statement)
             if isinstance(statement, Assign) and statement.location is not None:
                 place = place_of(statement.location.tree)
                 tree = statement.value.tree if isinstance(statement.value, Expression) else None
@@ -75,6 +77,108 @@ def _tested(statement: If) -> Iterator[Finding]:
                 same = [tree for tree in made if format_expr(tree.right) == format_expr(step.right)]
                 if same and all(tree.operator is _OPPOSITE[step.operator] for tree in same):
                     yield from (_reversed(tree, step) for tree in same)
+
+
+def _clamped(statement: If) -> Iterator[Finding]:
+    """Report an `<if>` that assigns a limit where the step that it compares with the limit does not pass it, or that
+    takes a step of another size than the one that it compares."""
+    if len(statement.branches) != 1 or statement.otherwise is None:
+        return
+    branch, otherwise = statement.branches[0], statement.otherwise
+    test = branch.cond.tree if branch.cond is not None else None
+    if not isinstance(test, Binary) or test.operator.kind is not OperatorKind.ORDER:
+        return
+    for step, limit in ((test.left, test.right), (test.right, test.left)):
+        place = place_of(step.left) if isinstance(step, Binary) and step.operator in _OPPOSITE else None
+        values = [_only_value(part.body, place) for part in (branch, otherwise)] if place is not None else []
+        if not isinstance(step, Binary) or place is None or None in values:
+            continue
+        kept = [value for value in values if value is not None and format_expr(value) == format_expr(limit)]
+        taken = [v for v in values if v is not None and _is_step(v, place) and v.operator is step.operator]
+        if len(kept) != 1 or len(taken) != 1 or not _is_step(taken[0], place):
+            continue
+        amount = taken[0].right
+        if (kept[0] is values[0]) is not _passes(test, step):
+            symbol = MIRRORED[test.operator].symbol
+            message = (
+                f"`{place}` is set to the limit `{format_expr(limit)}` where `{format_expr(step)}` does not pass it, "
+                f"and passes it otherwise; use `{symbol}`"
+            )
+            text = symbol.replace("<", "&lt;").replace(">", "&gt;")
+            fix = Fix(f"Change to `{symbol}`", (TextEdit(test.operator_span, text),))
+            yield RULE.at(test.operator_span, message, fix)
+        elif format_expr(amount) != format_expr(step.right):
+            tested = format_expr(step.right)
+            message = (
+                f"the condition compares `{format_expr(step)}` with the limit, and `{place}` becomes "
+                f"`{format_expr(taken[0])}`, which may pass it; use `{tested}`"
+            )
+            fix = Fix(f"Change to `{tested}`", (TextEdit(amount.span, tested),))
+            yield RULE.at(amount.span, message, fix, related=[Related(step.span, "the step that is tested")])
+
+
+def _only_value(body: Sequence[Statement], place: str) -> Expr | None:
+    """The value of the only assignment to `place` in `body`; `None` if there are several or none."""
+    values = [s.value for s in body if isinstance(s, Assign) and _assigns(s, place)]
+    value = values[0] if len(values) == 1 else None
+    return value.tree if isinstance(value, Expression) and not value.broken else None
+
+
+def _one_beyond(chart: Chart) -> Iterator[Finding]:
+    """Report a variable that a state counts up while it is at most a limit, so that it ends one beyond the limit,
+    although other states compare it with the limit itself, and none with the number behind it."""
+    equal: dict[str, list[tuple[Binary, Expr, State]]] = {}
+    counted: list[tuple[Binary, str, Expr, State]] = []
+    for state in chart.states:
+        for tree in _conditions_in(state):
+            for node in walk(tree):
+                if isinstance(node, Binary) and node.operator is Operator.EQUAL:
+                    for variable, limit in ((node.left, node.right), (node.right, node.left)):
+                        if isinstance(variable, Name):
+                            equal.setdefault(variable.name, []).append((node, limit, state))
+        for handler in state.handlers:
+            test = handler.cond.tree if handler.cond is not None and not handler.cond.broken else None
+            body = [s for target in handler.targets for s in target.body]
+            if not isinstance(test, Binary) or test.operator is not Operator.LESS_EQUAL:
+                continue
+            place = place_of(test.left)
+            if any(
+                isinstance(s, Assign) and isinstance(s.value, Expression) and place is not None and _assigns(s, place)
+                # A step of 1 is the only one that cannot miss the limit.
+                and step_of(s.value.tree, place) > 0 and isinstance(s.value.tree, Binary)
+                and constant(s.value.tree.right) == 1
+                for s in body
+            ):  # fmt: skip
+                assert place is not None
+                counted.append((test, place, test.right, state))
+    for test, place, limit, state in counted:
+        others = equal.get(place, ())
+        same = [(node, where) for node, other, where in others if format_expr(other) == format_expr(limit)]
+        number = constant(limit)
+        beyond = number is not None and any(constant(other) == number + 1 for _, other, _ in others)
+        if same and not beyond and all(where is not state for _, where in same):
+            message = (
+                f"`{place}` is counted beyond `{format_expr(limit)}`, although another state compares it with "
+                f"`{format_expr(limit)}`; use `<`"
+            )
+            fix = Fix("Change to `<`", (TextEdit(test.operator_span, "&lt;"),))
+            yield RULE.at(test.operator_span, message, fix, related=[Related(same[0][0].span, "compared here")])
+
+
+def _conditions_in(state: State) -> Iterator[Expr]:
+    """The expressions in a state: its conditions, and the values that it assigns or sends."""
+    bodies_in = [b.statements for b in (state.entry, state.exit) if b is not None]
+    bodies_in += [target.body for handler in state.handlers for target in handler.targets]
+    values: list[object] = [handler.cond for handler in state.handlers]
+    for statement in (s for body in bodies_in for s in statements(body)):
+        match statement:
+            case If(branches=branches):
+                values += [branch.cond for branch in branches]
+            case Assign(value=value):
+                values.append(value)
+            case Send(params=params) | RosSend(fields=params):
+                values += [param.value for param in params]
+    yield from (value.tree for value in values if isinstance(value, Expression) and not value.broken)
 
 
 def _passes(test: Binary, step: Binary) -> bool:

@@ -9,14 +9,14 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.expr.infer import constant
-from roaml.expr.operators import MIRRORED, Operator, OperatorKind
-from roaml.expr.tree import Binary, Expr, Member, Name, String, walk
+from roaml.expr.operators import MIRRORED, Operator, OperatorKind, UnaryOperator
+from roaml.expr.tree import Binary, Boolean, Expr, Member, Name, String, Unary, walk
 from roaml.expr.types import INTEGER_RANGES, Scalar
 from roaml.forest.scripts import scripts_of
 from roaml.interruption import checkpoint
 from roaml.model.behavior.explore import condition_facts
 from roaml.model.behavior.knowledge import NOTHING, ConditionFacts, variables_in
-from roaml.model.machine import Assign, Chart, Handler, If, State, Statement
+from roaml.model.machine import Assign, Chart, Handler, If, RosSend, Send, SetOutput, State, Statement, bodies
 from roaml.model.property_links import LinkedFile
 from roaml.model.syntax import Expression
 from roaml.model.triggers import trigger
@@ -64,6 +64,91 @@ def check(context: MachineContext) -> Iterator[Finding]:
         yield _at_step(context, span) or finding
     yield from _never_sent(context, findings.keys())
     yield from _beyond_type(context, findings.keys())
+    yield from _decided_values(context)
+    yield from _never_handled(context, findings.keys())
+
+
+def _decided_values(context: MachineContext) -> Iterator[Finding]:
+    """Report parts of Boolean values joined with `&&` or `||` that decide the value, because an assignment before them,
+    in the same content, gives the variable a constant that it does not have elsewhere."""
+    for chart in context.machine.charts:
+        for _, _, body in bodies(chart):
+            assigned: dict[str, Assign] = {}
+            for statement in body:
+                for value in _values_of(statement):
+                    for node, part in _junctions(value.tree):
+                        name = place_of(part)
+                        before = assigned.get(name) if name is not None else None
+                        last = before.value if before is not None else None
+                        if before is None or not isinstance(last, Expression) or not isinstance(last.tree, Boolean):
+                            continue
+                        if last.tree.value is (node.operator is Operator.OR):
+                            word = "true" if last.tree.value else "false"
+                            message = (
+                                f"this is always {word}, because `{name}` has just become {word}; use it before that "
+                                "assignment"
+                            )
+                            related = [Related(before.element.name_span, f"becomes {word}")]
+                            yield RULE.at(node.span, message, related=related)
+                            break
+                place = (
+                    place_of(statement.location.tree) if isinstance(statement, Assign) and statement.location else None
+                )
+                if place is not None and isinstance(statement, Assign):
+                    assigned[place] = statement
+                elif isinstance(statement, If):
+                    assigned.clear()
+
+
+def _values_of(statement: Statement) -> Iterator[Expression]:
+    """The values that a statement assigns or sends."""
+    values: list[object] = []
+    match statement:
+        case Assign(value=value) | SetOutput(value=value):
+            values = [value]
+        case Send(params=params) | RosSend(fields=params):
+            values = [param.value for param in params]
+    yield from (value for value in values if isinstance(value, Expression) and not value.broken)
+
+
+def _junctions(tree: Expr) -> Iterator[tuple[Binary, Expr]]:
+    """The `&&` and `||` in `tree`, each with one of its parts."""
+    for node in walk(tree):
+        if isinstance(node, Binary) and node.operator in (Operator.AND, Operator.OR):
+            yield node, node.left
+            yield node, node.right
+
+
+def _never_handled(context: MachineContext, reported: Collection[Span]) -> Iterator[Finding]:
+    """Report handlers of a message whose conditions test the same Boolean field, if all machines send the same value in
+    it, with which none of the handlers does anything."""
+    for chart in context.machine.charts:
+        groups: dict[str, list[tuple[Handler, ValueSet | None]]] = {}
+        for handler in (handler for state in chart.states for handler in state.handlers):
+            if handler.trigger is ProtocolPart.MESSAGE and handler.handle is not None:
+                groups.setdefault(handler.handle.value, []).append((handler, _holds_for_sent(context, handler)))
+        for handlers in groups.values():
+            if all(holds == FALSE for _, holds in handlers):
+                cond = handlers[0][0].cond
+                if cond is not None and cond.span not in reported:
+                    sent = "true" if isinstance(cond.tree, Unary) else "false"
+                    message = (
+                        f"this condition is never true, and nothing else handles the message: the only value that "
+                        f"machines send is {sent}"
+                    )
+                    yield RULE.at(cond.span, message)
+
+
+def _holds_for_sent(context: MachineContext, handler: Handler) -> ValueSet | None:
+    """The result of a condition that is a Boolean field of a message, or its negation, for the only value that machines
+    send in the field; `None` for other conditions and if several values are sent."""
+    tree = handler.cond.tree if handler.cond is not None and not handler.cond.broken else None
+    is_negated = isinstance(tree, Unary) and tree.operator is UnaryOperator.NOT
+    field = tree.operand if isinstance(tree, Unary) else tree
+    known = _sent(context, handler, field, _FROM_SENDERS) if field is not None else None
+    if known is None or not isinstance(known.value, bool):
+        return None
+    return FALSE if known.value is is_negated else TRUE
 
 
 def check_properties(file: LinkedFile) -> Iterator[Finding]:

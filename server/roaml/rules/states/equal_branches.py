@@ -7,11 +7,24 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence, Set
 
 from roaml.diagnostics import Finding, Related, Severity
+from roaml.expr.tree import Name
 from roaml.expr.types import ScalarKind, is_kind
 from roaml.model.behavior.knowledge import variables_in
-from roaml.model.machine import Assign, Branch, Chart, Handler, If, ReturnHalted, State, Statement, Target
+from roaml.model.machine import (
+    Assign,
+    Branch,
+    Chart,
+    Handler,
+    If,
+    ReturnHalted,
+    ReturnStatus,
+    RosSend,
+    State,
+    Statement,
+    Target,
+)
 from roaml.model.syntax import Expression
-from roaml.model.triggers import trigger
+from roaml.model.triggers import Trigger, trigger
 from roaml.model.value_types import GOAL_STATUSES
 from roaml.model.values.evaluate import place_of
 from roaml.roles import ProtocolPart
@@ -31,8 +44,10 @@ def check(context: MachineContext) -> Iterator[Finding]:
         for statement in chart.statements:
             if isinstance(statement, If):
                 yield from _branches(context, chart, statement)
+        yield from _equal_states(chart)
         for state in chart.states:
             yield from _handlers(context, state)
+            yield from _last_handlers(context, state)
             for handler in state.handlers:
                 if handler.is_probabilistic:
                     yield from _targets(handler)
@@ -46,7 +61,9 @@ def _branches(context: MachineContext, chart: Chart, statement: If) -> Iterator[
         yield from _alike(message, [part.body[0].element.name_span for part in parts])
     elif len(parts) >= _MIN_CASES:
         types = context.typed.variables.get(chart.scope, {})
-        yield from _repeated(parts, {name for name, type_ in types.items() if is_kind(type_, ScalarKind.REAL)})
+        real = {name for name, type_ in types.items() if is_kind(type_, ScalarKind.REAL)}
+        repeated = list(_repeated(parts, real))
+        yield from repeated or _repeated_steps(parts)
     elif len(parts) == 2 and statement.otherwise is not None:
         yield from _half_equal(chart, parts)
 
@@ -106,6 +123,16 @@ def _repeated(parts: Sequence[Branch], real: Set[str]) -> Iterator[Finding]:
             yield from _alike(message, [value.span for value in equal])
 
 
+def _repeated_steps(parts: Sequence[Branch]) -> Iterator[Finding]:
+    """Report two branches that compute the same from variables, if each of the others computes something else."""
+    if not all(part.body and all(_is_progress(statement) for statement in part.body) for part in parts):
+        return
+    contents = Counter(_content(part.body) for part in parts)
+    if len(contents) == len(parts) - 1:
+        message = "another branch of this `<if>` does the same, and each of the others something else"
+        yield from _alike(message, [p.body[0].element.name_span for p in parts if contents[_content(p.body)] > 1])
+
+
 _COORDINATES = frozenset(("x", "y", "z", "row", "column", "col"))
 
 
@@ -144,6 +171,78 @@ def _handlers(context: MachineContext, state: State) -> Iterator[Finding]:
                 yield from _alike("the handlers for the success and the failure of this goal do the same", spans)
         elif len(does) == 1 and handlers[-1].cond is None and all(handler.cond for handler in handlers[:-1]):
             yield from _alike("all handlers of this event do the same, so their conditions have no effect", spans)
+
+
+def _last_handlers(context: MachineContext, state: State) -> Iterator[Finding]:
+    """Report the last condition among several on one event, or among eventless transitions, if the transition behind
+    it, which has none, does the same. Transitions that only lead to the same state often list cases."""
+    for handlers in _by_trigger(context, state).values():
+        last, fallback = handlers[-2:] if len(handlers) > 2 else (None, None)
+        if last is None or fallback is None or last.cond is None or fallback.cond is not None:
+            continue
+        if all(target.body for target in last.targets[:1]) and _does(last) == _does(fallback):
+            spans = [h.targets[0].body[0].element.name_span for h in (last, fallback)]
+            yield from _alike("the last transitions do the same, so the condition of the first has no effect", spans)
+
+
+def _by_trigger(context: MachineContext, state: State) -> dict[Trigger, list[Handler]]:
+    groups: dict[Trigger, list[Handler]] = {}
+    for handler in state.handlers:
+        if handler.effective and handler.targets:
+            key = trigger(context.machine, handler)
+            if key is not None:
+                groups.setdefault(key, []).append(handler)
+    return groups
+
+
+def _does(handler: Handler) -> tuple[tuple[str | None, str | None, tuple[object, ...]], ...]:
+    """What a handler does after its condition."""
+    return tuple(
+        (
+            target.state.value if target.state is not None else None,
+            target.probability.value if target.probability is not None else None,
+            _content(target.body),
+        )
+        for target in handler.targets
+    )
+
+
+def _equal_states(chart: Chart) -> Iterator[Finding]:
+    """Report two states that answer in the same way, with constants: one of them is probably a copy of the other."""
+    alike: dict[object, list[State]] = {}
+    for state in chart.states:
+        if _answers(state):
+            alike.setdefault(_behavior(state), []).append(state)
+    for equal in alike.values():
+        if len(equal) == 2:
+            names = " and ".join(f"`{state.id.value}`" for state in equal if state.id is not None)
+            yield from _alike(f"the states {names} do the same", [_answers(state)[0] for state in equal])
+
+
+def _answers(state: State) -> list[Span]:
+    """The places of the statuses that a state returns, and of the constants that it sends in answers: first those in
+    fields with the names of constants, such as `SKILL_SUCCESS`."""
+    own = [*(state.entry.statements if state.entry is not None else ())]
+    own += [statement for handler in state.handlers for target in handler.targets for statement in target.body]
+    found = [s.status.span for s in own if isinstance(s, ReturnStatus) and s.status is not None]
+    sent = [s for s in own if isinstance(s, RosSend) and s.part is ProtocolPart.RESPONSE]
+    values = [p.value for s in sent for p in s.fields if isinstance(p.value, Expression) and not p.value.broken]
+    return [*found, *(v.span for v in values if isinstance(v.tree, Name))]
+
+
+def _behavior(state: State) -> tuple[object, ...]:
+    """The content of a state, without its name."""
+    own = state.id.value if state.id is not None else ""
+    return (
+        *((_content(body.statements) if body is not None else ()) for body in (state.entry, state.exit)),
+        *(
+            (
+                tuple(sorted((a.name, a.value) for a in h.element.attributes if a.name != "target")),
+                tuple(("" if end == own else end, probability, content) for end, probability, content in _does(h)),
+            )
+            for h in state.handlers
+        ),
+    )
 
 
 def _is_progress(statement: Statement) -> bool:
@@ -198,4 +297,5 @@ RULE = Rule(
     Severity.WARNING,
     "Branches of an `<if>`, handlers of an event or targets of a transition do the same.",
     machine=check,
+    whole=True,
 )

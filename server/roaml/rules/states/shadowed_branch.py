@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Related, Severity
 from roaml.model.behavior.explore import condition_facts
 from roaml.model.machine import If
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.conditions import covered
+from roaml.rules.support.conditions import covered, exhausting_order
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -31,6 +31,17 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 message = f"this branch is never executed: {why}; change one of the conditions"
                 related = [Related(branch.element.name_span, "tested first") for branch in earlier]
                 yield RULE.at(branches[cover.number].element.name_span, message, related=related)
+            otherwise = statement.otherwise
+            if otherwise is None or not otherwise.body:
+                continue
+            last = exhausting_order(condition_facts(chart), [branch.cond for branch in branches])
+            if last is not None:
+                message = (
+                    "this condition always holds where the earlier ones do not, so the branch of `<else/>` is never "
+                    "executed; change the condition, or remove the branch"
+                )
+                related = [Related(otherwise.element.name_span, "never executed")]
+                yield RULE.at(last.span, message, related=related)
 
 
 RULE = Rule(

@@ -97,7 +97,11 @@ def misdirected(behavior: Behavior, duty: Duty) -> RosSend | None:
 
 
 def _is_right_elsewhere(behavior: Behavior, step: BehaviorStep, fault: Fault) -> bool:
-    """Whether the state that a step enters also sends the answer of a fault on a path on which it is requested."""
+    """Whether the state that a step enters also sends the answer of a fault on a path on which it is requested. What a
+    handler of requests sends itself is sent on no other path."""
+    is_asked = step.event is not None and step.event.part is ProtocolPart.REQUEST
+    if is_asked and any(s is fault.statement for target in step.handler.targets for s in statements(target.body)):
+        return False
     answer = ProtocolEvent(SENT[fault.duty.kind], fault.duty.handle)
     state = behavior.configurations[step.target].state
     return any(

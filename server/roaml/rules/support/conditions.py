@@ -6,7 +6,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from roaml.expr.tree import Expr, is_draw, walk
+from roaml.expr.operators import OperatorKind
+from roaml.expr.tree import Binary, Expr, is_draw, walk
 from roaml.model.behavior.knowledge import MAX_CONJUNCTIONS, NOTHING, ConditionFacts, Knowledge
 from roaml.model.syntax import Expression
 from roaml.record import Record
@@ -53,6 +54,28 @@ def covered(facts: ConditionFacts, conditions: Sequence[Expression | None]) -> I
         left = tuple(rest for known in left for rest in facts.assume(known, tree, False))
         if len(left) > MAX_CONJUNCTIONS:
             return
+
+
+def exhausting_order(facts: ConditionFacts, conditions: Sequence[Expression | None]) -> Expression | None:
+    """The last condition, if it compares an order, as `x >= 0` does, and always holds where the earlier ones do not.
+    Equalities are not judged: listing all cases and providing for others is usual."""
+    last = conditions[-1] if len(conditions) > 1 else None
+    if len(conditions) > MAX_CONDITIONS or last is None or last.broken:
+        return None
+    if not isinstance(last.tree, Binary) or last.tree.operator.kind is not OperatorKind.ORDER:
+        return None
+    left: tuple[Knowledge, ...] = (NOTHING,)
+    for number, condition in enumerate(conditions):
+        if condition is None or condition.broken or any(is_draw(node) for node in walk(condition.tree)):
+            return None
+        if number == len(conditions) - 1 and not any(facts.assume(known, condition.tree) for known in left):
+            return None  # the last condition never holds, which is reported
+        left = tuple(rest for known in left for rest in facts.assume(known, condition.tree, False))
+        if not left:
+            return last if number == len(conditions) - 1 else None
+        if len(left) > MAX_CONJUNCTIONS:
+            return None
+    return None
 
 
 def _beside(facts: ConditionFacts, first: Expr, other: Expr) -> bool:

@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from roaml.diagnostics import Finding, Severity
+from roaml.diagnostics import Finding, Related, Severity
 from roaml.expr.tree import Index, Member, Name, access_path, walk
 from roaml.expr.types import Scalar, leaves
-from roaml.model.machine import Assign, Chart, Data, Declaration
+from roaml.model.machine import Assign, Chart, Data, Declaration, bodies
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Expression
 from roaml.model.value_types import INTERFACE_KINDS, ValueUse, find_handle, section_of
@@ -19,7 +19,8 @@ from roaml.model.values.evaluate import is_within, literal, place_of
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.assignments import is_unchanged
-from roaml.rules.support.words import words_of
+from roaml.rules.support.words import difference, words_of
+from roaml.text import Span
 
 _RECEIVED = (ProtocolPart.MESSAGE, ProtocolPart.REQUEST, ProtocolPart.GOAL)
 """What other machines send without being asked."""
@@ -38,11 +39,17 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         assigned = _assigned(chart)
         candidates = _read(context, chart)
+        alike = _by_words(assigned)
         for data in chart.data:
             if data.id is not None and data.id.value in candidates and not data.id.value.isupper():
                 value = _only_value(context, chart, data, assigned.get(data.id.value, []))
                 if value is not None:
-                    yield from _constant(context, chart, data.id.value, data, value, assigned.get(data.id.value, []))
+                    statements = assigned.get(data.id.value, [])
+                    similar = None if statements else _similar(context, chart, data.id.value, assigned, alike)
+                    if similar is not None:
+                        yield _forgotten(data.id.value, data.id.span, value, similar)
+                        continue
+                    yield from _constant(context, chart, data.id.value, data, value, statements)
 
 
 def _constant(
@@ -70,6 +77,66 @@ def _constant(
         if unread is not None:
             message = f"`{name}` is always {shown}, because nothing assigns it, and nothing reads `{unread}`"
             yield RULE.at(data.id.span, f"{message}; assign received data to it, or remove it")
+
+
+def _forgotten(name: str, span: Span, value: ValueSet, similar: Assign) -> Finding:
+    assert similar.location is not None
+    other = similar.location.text.strip()
+    message = (
+        f"`{name}` is always {described(value)}, because nothing assigns it, although `{other}` gets other values; "
+        "assign it, or replace it by its value"
+    )
+    return RULE.at(span, message, related=[Related(similar.location.span, f"`{other}` is assigned")])
+
+
+def _similar(
+    context: MachineContext,
+    chart: Chart,
+    name: str,
+    assigned: Mapping[str, Sequence[Assign]],
+    alike: Mapping[tuple[object, ...], Sequence[str]],
+) -> Assign | None:
+    """An assignment of a value that is not constant to a variable of the same type whose name differs in a
+    number, or in which different requests store different data."""
+    types = context.typed.variables.get(chart.scope, {})
+    for other in (other for key in _keys(name) for other in alike.get(key, ())[:_MAX_ALIKE]):
+        statements, words = assigned[other], difference(name, other)
+        if words is None or types.get(other) != types.get(name):
+            continue
+        received = [s for s in statements if isinstance(s.value, Expression) and _variables(s.value)]
+        if received and (all(word.isdigit() for word in words) or _is_for_two(chart, received)):
+            return received[0]
+    return None
+
+
+_MAX_ALIKE = 8
+"""How many similar variables are compared with one that nothing assigns."""
+
+
+def _by_words(names: Iterable[str]) -> dict[tuple[object, ...], list[str]]:
+    """The names that differ in one word only, by the number of this word and the others."""
+    result: dict[tuple[object, ...], list[str]] = {}
+    for name in names:
+        for key in _keys(name):
+            result.setdefault(key, []).append(name)
+    return result
+
+
+def _keys(name: str) -> Iterator[tuple[object, ...]]:
+    words = words_of(name)
+    yield from ((number, *words[:number], *words[number + 1 :]) for number in range(len(words)))
+
+
+def _is_for_two(chart: Chart, received: Sequence[Assign]) -> bool:
+    """Whether different goals or requests store what they ask for in the same variable."""
+    places = {
+        handler.handle.value: s.value.text.strip()
+        for _, handler, body in bodies(chart)
+        if handler is not None and handler.handle is not None and handler.trigger in _RECEIVED[1:]
+        for s in received
+        if s in body and isinstance(s.value, Expression)
+    }
+    return len(places) > 1 and len(set(places.values())) == len(places)
 
 
 def _is_named(name: str, value: ValueSet) -> bool:

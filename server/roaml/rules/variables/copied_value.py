@@ -8,19 +8,20 @@ from typing import NamedTuple
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.expr.format import format_expr
-from roaml.expr.tree import Expr, Member, access_path, walk
+from roaml.expr.tree import Binary, Call, Expr, Member, access_path, walk
 from roaml.expr.tree import Name as NameExpr
 from roaml.expr.types import Scalar, Struct, Type, leaves
 from roaml.forest.names import entry_of
 from roaml.forest.ports import ports_of
 from roaml.model.behavior.knowledge import variables_in
-from roaml.model.machine import Assign, Chart, Handler, If, Param, RosSend, Send, SetOutput, Statement, bodies
+from roaml.model.machine import Assign, Chart, Data, Handler, If, Param, RosSend, Send, SetOutput, Statement, bodies
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Expression, Value
 from roaml.model.tree import TreeNode
 from roaml.model.value_types import INTERFACE_KINDS, ValueUse, find_handle
 from roaml.model.values.analyse import DataChannel
 from roaml.model.values.evaluate import is_within, place_of
+from roaml.model.waits import fixed_variables
 from roaml.record import replace
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule, TreeContext, replacements
@@ -50,10 +51,12 @@ def check(context: MachineContext) -> Iterator[Finding]:
         reported: set[Span] = set()
         for _, handler, body in bodies(chart):
             twice = _read_twice(context, chart, handler, body) if handler is not None else ()
-            for finding in (*_named(context, chart, handler, body), *twice):
+            for finding in (*_named(context, chart, handler, body), *twice, *_equal_changes(body)):
                 if finding.span not in reported:
                     reported.add(finding.span)
                     yield finding
+        yield from _constant_fields(context, chart)
+        yield from _equal_constants(chart)
 
 
 def _named(
@@ -125,6 +128,84 @@ def _continues(chart: Chart, starts: Sequence[Assign]) -> bool:
         )
         for place in places
     )
+
+
+def _equal_changes(body: Sequence[Statement]) -> Iterator[Finding]:
+    """Report two similar variables to which the same computed value is added, or from which it is subtracted: only
+    their sum would differ from one of them."""
+    changes: dict[str, Assign] = {}
+    for statement in body:
+        if not isinstance(statement, Assign) or statement.location is None:
+            continue
+        tree = statement.value.tree if isinstance(statement.value, Expression) else None
+        place = place_of(statement.location.tree)
+        if not isinstance(tree, Binary) or place is None or place_of(tree.left) != place:
+            continue
+        if not any(isinstance(node, Call) for node in walk(tree.right)):
+            continue
+        earlier = changes.setdefault(f"{tree.operator.symbol}{format_expr(tree.right)}", statement)
+        other = place_of(earlier.location.tree) if earlier.location is not None else None
+        if other is not None and difference(place, other) is not None:
+            message = f"`{place}` changes by the same value as `{other}`; change one of them"
+            yield RULE.at(tree.right.span, message, related=[Related(earlier.element.name_span, "the same change")])
+
+
+def _equal_constants(chart: Chart) -> Iterator[Finding]:
+    """Report two constants whose names differ in one word, such as `SKILL_SUCCESS` and `SKILL_FAILURE`, if they have
+    the same value and are sent in the same field: its receivers cannot distinguish them."""
+    fixed = fixed_variables(chart)
+    sent: dict[str, set[str]] = {}
+    for statement in chart.statements:
+        if not isinstance(statement, RosSend) or statement.handle is None:
+            continue
+        for param in statement.fields:
+            tree = param.value.tree if isinstance(param.value, Expression) and not param.value.broken else None
+            if isinstance(tree, NameExpr) and tree.name.isupper() and tree.name in fixed and param.name is not None:
+                sent.setdefault(f"{statement.handle.value} {param.name.value}", set()).add(tree.name)
+    first: dict[object, Data] = {}
+    for data in chart.data:
+        if data.id is None or not data.id.value.isupper() or data.id.value not in fixed or data.value is None:
+            continue
+        earlier = first.setdefault(fixed[data.id.value], data)
+        if earlier is data or earlier.id is None or difference(earlier.id.value, data.id.value) is None:
+            continue
+        if any({earlier.id.value, data.id.value} <= names for names in sent.values()):
+            message = (
+                f"`{data.id.value}` has the same value as `{earlier.id.value}`, and both are sent in the same field; "
+                "change one of them"
+            )
+            for span, other in ((earlier.id.span, data.id.span), (data.id.span, earlier.id.span)):
+                yield RULE.at(span, message, related=[Related(other, "the same value")])
+
+
+def _constant_fields(context: MachineContext, chart: Chart) -> Iterator[Finding]:
+    """Report a field of a message that is read although all machines send the same constant in it, if nothing reads the
+    only other field of its type that arrives with other values, and their names differ in one word."""
+    meant: dict[tuple[str, str], str | None] = {}
+    for value in context.typed.values:
+        handler, expression = value.place.handler, value.value
+        if value.place.chart is not chart or handler is None or handler.trigger is not ProtocolPart.MESSAGE:
+            continue
+        if not isinstance(expression, Expression) or expression.broken or _DATA not in expression.text:
+            continue
+        nodes = {place: node for node in walk(expression.tree) if (place := place_of(node)) is not None}
+        declaration = find_handle(context.machine, handler)
+        if declaration is None or declaration.handle is None:
+            continue
+        arriving = context.values.arriving.get(DataChannel(handler.trigger, declaration.handle.value), {})
+        for place, node in nodes.items():
+            known = arriving.get(place.removeprefix(_DATA)) if place.startswith(_DATA) else None
+            if known is None or known.value is None:
+                continue
+            key = (declaration.handle.value, place)
+            if key not in meant:
+                meant[key] = _unread(context, chart, handler, place)
+            unread = meant[key]
+            if unread is not None and difference(place, unread) is not None:
+                message = (
+                    f"`{place}` always arrives with the same value, and nothing reads `{unread}`; did you mean that?"
+                )
+                yield RULE.at(node.span, message, Fix(f"Change to `{unread}`", (TextEdit(node.span, unread),)))
 
 
 _DATA = "_msg."

@@ -6,20 +6,36 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from typing import NamedTuple
 
-from roaml.diagnostics import Finding, Related, Severity
+from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.expr.format import format_expr
 from roaml.expr.infer import constant
 from roaml.expr.operators import Operator, OperatorKind, UnaryOperator
-from roaml.expr.tree import Binary, Boolean, Name, Unary, access_path, walk
+from roaml.expr.tree import Binary, Boolean, Name, String, Unary, access_path, walk
 from roaml.expr.types import Type
 from roaml.model.behavior.knowledge import variables_in
-from roaml.model.machine import Assign, Chart, If, Param, RosSend, Send, SetOutput, Statement, statements
+from roaml.model.machine import (
+    Assign,
+    Chart,
+    Handler,
+    If,
+    Param,
+    ReturnStatus,
+    RosSend,
+    Send,
+    SetOutput,
+    Statement,
+    bodies,
+    statements,
+)
 from roaml.model.syntax import Expression, Value
+from roaml.model.syntax import Name as SyntaxName
 from roaml.model.values.evaluate import place_of
+from roaml.model.waits import fixed_variables
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule, replacements
 from roaml.rules.support.words import difference, with_word, words_of
-from roaml.text import Span
+from roaml.scxml.names import STATUSES
+from roaml.text import Span, TextEdit
 
 _INITIATED = (ProtocolPart.MESSAGE, ProtocolPart.REQUEST, ProtocolPart.GOAL)
 """What a machine sends unasked. Answers have the names of what they answer; other rules check these."""
@@ -46,11 +62,13 @@ def check(context: MachineContext) -> Iterator[Finding]:
         known |= {s.event.value for s in chart.statements if isinstance(s, Send) and s.event is not None}
         reported: set[Span] = set()
         findings = (*_copied(list(_parts(chart)), known), *_steps(chart), *_pairs(context, chart), *_guards(chart))
+        findings += (*_bounds(chart, types), *_statuses(chart))
         findings += tuple(_previous(chart, types))
         for finding in findings:
             if finding.span not in reported:
                 reported.add(finding.span)
                 yield finding
+    yield from _numbered(context)
 
 
 # --------------------------------------------------------- parts with similar names
@@ -82,6 +100,7 @@ def _copies(part: _Part, other: _Part, word: str, own: str, known: frozenset[str
     opposite = {
         name for (role, name), forms in part.forms.items() if forms.isdisjoint(other.forms.get((role, name), forms))
     }
+    wrong: dict[tuple[str, str], list[tuple[str, Span]]] = {}
     for (role, name), span in part.uses.items():
         meant = with_word(name, word, own) if (role, name) in other.uses else None
         if name in opposite or meant is None or (role, meant) in part.uses or (role, meant) in other.uses:
@@ -92,11 +111,15 @@ def _copies(part: _Part, other: _Part, word: str, own: str, known: frozenset[str
             continue
         if not name.isdigit() and meant not in known:
             continue
+        wrong.setdefault((name, meant), []).append((role, span))
+    for (name, meant), places in wrong.items():
         message = (
             f"`{part.name}` uses `{name}`, as `{other.name}` does, although there is `{meant}`; did you mean that?"
         )
+        fix = Fix(f"Change to `{meant}`", tuple(TextEdit(span, meant) for _, span in places))
+        role, span = places[0]
         related = [Related(other.uses[role, name], f"used for `{other.name}`")]
-        yield RULE.at(span, message, *replacements(span, (meant,)), related=related)
+        yield RULE.at(span, message, fix, related=related)
 
 
 def _parts(chart: Chart) -> Iterator[_Part]:
@@ -112,6 +135,7 @@ def _parts(chart: Chart) -> Iterator[_Part]:
                 )
         if state.id is not None:
             yield _Part("state", state.id.value, state.id.span, _uses(inside), _forms(inside))
+    beside = _beside(chart)
     for statement in chart.statements:
         match statement:
             case If(branches=branches):
@@ -119,12 +143,22 @@ def _parts(chart: Chart) -> Iterator[_Part]:
                 for branch in branches:
                     if branch.cond is not None and not branch.cond.broken:
                         uses = {**_uses(branch.body), **numbers[branch.element.span]}
-                        kind = f"if {statement.element.span.start}"
+                        kind = f"if {beside.get(statement.element.span.start, statement.element.span.start)}"
                         yield _Part(kind, branch.cond.text.strip(), branch.cond.span, uses, _forms(branch.body))
             case Send(event=event, params=params) if event is not None:
                 yield _Part("send", event.value, event.span, _fields(params))
             case RosSend(handle=handle, fields=fields) if handle is not None:
                 yield _Part(statement.element.name, handle.value, handle.span, _fields(fields))
+
+
+def _beside(chart: Chart) -> dict[int, int]:
+    """The offset of each `<if>` with one branch -> that of the first one in the same content: such elements one after
+    the other are compared like the branches of one."""
+    first: dict[int, int] = {}
+    for _, _, body in bodies(chart):
+        alone = [s.element.span.start for s in body if isinstance(s, If) and len(s.branches) == 1 and not s.otherwise]
+        first.update(dict.fromkeys(alone, alone[0]) if alone else {})
+    return first
 
 
 def _fields(params: Sequence[Param]) -> dict[tuple[str, str], Span]:
@@ -279,7 +313,7 @@ def _pairs(context: MachineContext, chart: Chart) -> Iterator[Finding]:
     types = context.typed.variables.get(chart.scope, {})
     for left, right, operator, first, last, second, other in split:
         pattern = matching.get((first, second))
-        if last == other or pattern is None or not first or not second:
+        if last == other or pattern is None or not (first or second):
             continue
         meant = with_word(right.name, other, last)
         if meant is None or meant not in types or with_word(left.name, last, other) not in types:
@@ -291,9 +325,155 @@ def _pairs(context: MachineContext, chart: Chart) -> Iterator[Finding]:
         yield RULE.at(right.span, message, *replacements(right.span, (meant,)), related=related)
 
 
+_LIMITS = frozenset(("max", "min", "maximum", "minimum", "limit", "threshold"))
+"""A word in the name of a constant with which a variable is compared."""
+
+
+def _bounds(chart: Chart, types: Mapping[str, Type]) -> Iterator[Finding]:
+    """Comparisons of a variable with a constant, although nothing reads a constant with the name of the variable, such
+    as `max_tries` for `tries`."""
+    fixed = fixed_variables(chart)
+    limits = {name: frozenset(words_of(name)) - _LIMITS for name in fixed if not _LIMITS.isdisjoint(words_of(name))}
+    if not limits:
+        return
+    expressions = [value for value in _values(chart) if not value.broken]
+    read = {node.name for value in expressions for node in walk(value.tree) if isinstance(node, Name)}
+    unread = {name: words for name, words in limits.items() if words and name not in read}
+    for value in expressions if unread else ():
+        for node in walk(value.tree):
+            if not isinstance(node, Binary) or node.operator.kind not in _COMPARING:
+                continue
+            for variable, constant_name in ((node.left, node.right), (node.right, node.left)):
+                if not isinstance(variable, Name) or not isinstance(constant_name, Name):
+                    continue
+                own = frozenset(words_of(variable.name))
+                if constant_name.name not in fixed or variable.name in fixed or own & {*words_of(constant_name.name)}:
+                    continue
+                for meant, words in unread.items():
+                    if words <= own and types.get(meant) == types.get(constant_name.name):
+                        message = (
+                            f"`{variable.name}` is compared with `{constant_name.name}`, and nothing reads `{meant}`; "
+                            "did you mean that?"
+                        )
+                        yield RULE.at(constant_name.span, message, *replacements(constant_name.span, (meant,)))
+
+
+def _values(chart: Chart) -> Iterator[Expression]:
+    """The expressions of a chart: conditions, and values that are assigned or sent."""
+    values: list[Value | None] = [h.cond for state in chart.states for h in state.handlers]
+    for statement in chart.statements:
+        match statement:
+            case If(branches=branches):
+                values += [branch.cond for branch in branches]
+            case Assign(value=value) | SetOutput(value=value):
+                values.append(value)
+            case Send(params=params) | RosSend(fields=params):
+                values += [param.value for param in params]
+    yield from (value for value in values if isinstance(value, Expression))
+
+
 def _split(name: str) -> tuple[tuple[str, ...], str]:
     words = words_of(name)
     return tuple(words[:-1]), words[-1] if words else ""
+
+
+# ------------------------------------------------------------- statuses
+
+
+def _statuses(chart: Chart) -> Iterator[Finding]:
+    """Handlers of one state that return another status than the one after which the constant in their condition is
+    named, as in `_res.status == SKILL_RUNNING`, if another handler returns the status with the name of its constant."""
+    for state in chart.states:
+        named = [
+            (status, returned, returned.value == status)
+            for handler in state.handlers
+            if (status := _named_status(handler)) is not None and (returned := _returned(handler)) is not None
+        ]
+        right = {status for status, _, is_right in named if is_right}
+        for status, returned, is_right in named:
+            if not is_right and returned.value in right:
+                message = (
+                    f"this returns {returned.value} under a condition for {status}, as another handler does; did you "
+                    f"mean {status}?"
+                )
+                yield RULE.at(returned.span, message, *replacements(returned.span, (status,)))
+
+
+def _named_status(handler: Handler) -> str | None:
+    """The status in the name of the constant with which the condition of a handler compares something."""
+    tree = handler.cond.tree if handler.cond is not None and not handler.cond.broken else None
+    if not isinstance(tree, Binary) or tree.operator is not Operator.EQUAL:
+        return None
+    names = [side.name for side in (tree.left, tree.right) if isinstance(side, Name) and side.name.isupper()]
+    statuses = [word.upper() for name in names for word in words_of(name)[-1:] if word.upper() in STATUSES]
+    return statuses[0] if len(statuses) == 1 else None
+
+
+def _returned(handler: Handler) -> SyntaxName | None:
+    """The only status that a handler returns."""
+    found = [s.status for target in handler.targets for s in statements(target.body) if isinstance(s, ReturnStatus)]
+    return found[0] if len(found) == 1 else None
+
+
+# -------------------------------------------------- machines with numbers
+
+_MIN_NUMBERED = 3
+"""How many machines of a system must have names that differ only in a number before their constants are compared with
+it."""
+
+
+def _numbered(context: MachineContext) -> Iterator[Finding]:
+    """Constants with another number than the name of the machine, one of several that are copies of each other: the
+    text `'door_3'`, or 3 in the field `door`, in the machine `CloseDoor2`."""
+    words = words_of(context.machine.name.value) if context.machine.name is not None else []
+    numbers = [place for place, word in enumerate(words) if word.isdigit()]
+    if context.system is None or len(numbers) != 1 or numbers[0] == 0:
+        return
+    (at,) = numbers
+    alike = [words_of(outline.name) for _, outline in context.system.nodes]
+    alike = [other for other in alike if len(other) == len(words) and other[at].isdigit()]
+    alike = [other for other in alike if (*other[:at], *other[at + 1 :]) == (*words[:at], *words[at + 1 :])]
+    if len({tuple(other) for other in alike}) < _MIN_NUMBERED:
+        return
+    kind, own = words[at - 1], words[at]
+    texts = [
+        (node, "")
+        for value in context.typed.values
+        if isinstance(value.value, Expression) and not value.value.broken
+        for node in walk(value.value.tree)
+        if isinstance(node, String)
+    ]
+    fields = [
+        (param.value.tree, param.name.value)
+        for chart in context.machine.charts
+        for statement in chart.statements
+        for param in _params(statement)
+        if param.name is not None and isinstance(param.value, Expression) and not param.value.broken
+    ]
+    for tree, field in (*texts, *fields):
+        number = constant(tree) if field else None
+        text = words_of(tree.value) if isinstance(tree, String) and not field else []
+        digits = [word for word in text if word.isdigit()]
+        if kind in text and len(digits) == 1 and digits[0] != own and text not in alike:
+            assert isinstance(tree, String)
+            quote = context.source.text[tree.span.start]
+            meant = f"{quote}{tree.value.replace(digits[0], own)}{quote}"
+        elif number is not None and kind in words_of(field) and str(number) != own:
+            meant = own
+        else:
+            continue
+        fix = Fix(f"Change to `{meant}`", (TextEdit(tree.span, meant),))
+        assert context.machine.name is not None
+        name = context.machine.name
+        message = f"the machine `{name.value}` uses the number of another one here; did you mean `{meant}`?"
+        yield RULE.at(tree.span, message, fix, related=[Related(name.span, "the number of this machine")])
+
+
+def _params(statement: Statement) -> Sequence[Param]:
+    match statement:
+        case Send(params=params) | RosSend(fields=params):
+            return params
+    return ()
 
 
 # --------------------------------------------------------- previous values

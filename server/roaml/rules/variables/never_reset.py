@@ -3,15 +3,19 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from roaml.diagnostics import Finding, Related, Severity
+from roaml.expr.infer import constant
 from roaml.expr.operators import Operator
 from roaml.expr.tree import Binary, Boolean, Expr, Name
 from roaml.model.machine import Assign, Chart, Data, Handler, If, Machine, State, Statement, bodies, statements
 from roaml.model.syntax import Expression
 from roaml.model.triggers import trigger
+from roaml.model.values.domain import ValueSet
+from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.steps import step_of
 from roaml.rules.support.words import words_of
@@ -29,7 +33,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         assigned = _assigned(chart)
         yield from _counters(chart, assigned)
+        yield from _loops(context.machine, chart, assigned)
         yield from _flags(context.machine, chart, assigned)
+        yield from _latches(context, chart, assigned)
 
 
 class _Assigned(NamedTuple):
@@ -74,6 +80,50 @@ def _counters(chart: Chart, assigned: Mapping[str, Sequence[_Assigned]]) -> Iter
                 )
                 related = [Related(step.statement.element.name_span, "counted here") for step in steps]
                 yield RULE.at(cond.span, message, related=related, severity=_severity(name, _POSITIONS))
+
+
+def _loops(machine: Machine, chart: Chart, assigned: Mapping[str, Sequence[_Assigned]]) -> Iterator[Finding]:
+    """Report the condition of a timer that counts up to a limit and leaves the state there, if the machine can enter
+    the state again, and all assignments lead towards the limit or behind the initial value."""
+    initial = {data.id.value: data.value for data in chart.data if data.id is not None}
+    for state in chart.states:
+        for handler, name, limit in _counting(machine, chart, state):
+            steps, begin = assigned.get(name, ()), initial.get(name)
+            start = constant(begin.tree) if isinstance(begin, Expression) else None
+            values = [(constant(s.value), step_of(s.value, name)) for s in steps if s.value is not None]
+            if start is None or len(values) != len(steps):
+                continue
+            if any(s.handler is not handler and s.state is not state for s in steps):
+                continue
+            if not all(step > 0 or (number is not None and number > start) for number, step in values):
+                continue
+            message = (
+                f"nothing resets `{name}`, so the next time in this state it is still at the limit, and the machine "
+                "leaves the state at once; assign the initial value"
+            )
+            related = [Related(step.statement.element.name_span, "counted here") for step in steps]
+            yield RULE.at(limit.span, message, related=related, severity=_severity(name, _POSITIONS))
+
+
+def _counting(machine: Machine, chart: Chart, state: State) -> Iterator[tuple[Handler, str, Expression]]:
+    """The handlers of timers that count while a variable is less than a limit, with the variable and the condition, if
+    the next handler of the timer leaves the state in which the machine may later be again."""
+    own = state.id.value if state.id is not None else ""
+    timers = [h for h in state.handlers if h.trigger is ProtocolPart.TICK]
+    for handler, following in itertools.pairwise(timers):
+        test = handler.cond.tree if handler.cond is not None and not handler.cond.broken else None
+        ends = [target.state.value if target.state is not None else "" for target in following.targets]
+        if handler.cond is None or not isinstance(test, Binary) or not isinstance(test.left, Name):
+            continue
+        counts = any(
+            isinstance(s, Assign) and isinstance(s.value, Expression) and step_of(s.value.tree, test.left.name) > 0
+            for target in handler.targets for s in target.body
+        )  # fmt: skip
+        stays = all(target.state is not None and target.state.value == own for target in handler.targets)
+        is_alike = trigger(machine, handler) == trigger(machine, following)
+        is_limit = test.operator in (Operator.LESS, Operator.LESS_EQUAL) and counts and stays and is_alike
+        if is_limit and own not in ends and _returns(chart, state, ends):
+            yield handler, test.left.name, handler.cond
 
 
 def _is_limit(tree: Expr, name: str, sign: int) -> bool:
@@ -175,6 +225,44 @@ def _flags(machine: Machine, chart: Chart, assigned: Mapping[str, Sequence[_Assi
         is_known = len(events) == 1 and None not in events and len(states) == len(places)
         if len(places) > 1 and not is_known and constants == {not data.value.tree.value}:
             yield _flag(data, data.id.value, not data.value.tree.value, values)
+
+
+def _latches(context: MachineContext, chart: Chart, assigned: Mapping[str, Sequence[_Assigned]]) -> Iterator[Finding]:
+    """Report the condition with which a machine leaves a state when a message has set a flag there, if it can enter the
+    state again, and nothing changes the flag back: the second time, the machine does not wait for the message."""
+    values = context.values.charts.get(chart.scope)
+    for data in chart.data if values is not None else ():
+        begin = data.value.tree if isinstance(data.value, Expression) and not data.value.broken else None
+        if data.id is None or not isinstance(begin, Boolean):
+            continue
+        name = data.id.value
+        sets = assigned.get(name, ())
+        states = {id(s.state) for s in sets}
+        changed = {None if s.value is None or values is None else _only(values.at(s.value)) for s in sets}
+        if len(states) != 1 or changed != {not begin.value}:
+            continue
+        state, own = sets[0].state, sets[0].state.id.value if sets[0].state.id is not None else ""
+        if any(s.handler is None or own not in _ends(s.handler) for s in sets):
+            continue
+        for handler in state.handlers:
+            tree = handler.cond.tree if handler.cond is not None and not handler.cond.broken else None
+            is_left = isinstance(tree, Name) and tree.name == name and own not in _ends(handler)
+            if begin.value or not is_left or handler.cond is None or not _returns(chart, state, _ends(handler)):
+                continue
+            message = (
+                f"nothing resets `{name}`, so the next time in this state it is still true, and the machine does not "
+                "wait; assign false when the state is left or entered"
+            )
+            related = [Related(s.statement.element.name_span, "set here") for s in sets]
+            yield RULE.at(handler.cond.span, message, related=related, severity=_severity(name, _RECORDS))
+
+
+def _only(known: ValueSet | None) -> object:
+    return known.value if known is not None else None
+
+
+def _ends(handler: Handler) -> list[str]:
+    return [target.state.value if target.state is not None else "" for target in handler.targets]
 
 
 def _flag(data: Data, name: str, value: bool, values: Sequence[_Assigned]) -> Finding:

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The rule `inconsistent-operator`, which inconsistent_operator.md describes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.expr.format import format_expr
+from roaml.expr.operators import MIRRORED, Operator, OperatorKind
+from roaml.expr.tree import Binary, Expr, Unary, walk
+from roaml.model.machine import Handler, If, State
+from roaml.model.syntax import Expression
+from roaml.model.triggers import Trigger, trigger
+from roaml.model.values.evaluate import place_of
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.words import difference, words_of
+from roaml.text import Span, TextEdit
+
+_LOGICAL = (Operator.AND, Operator.OR)
+
+MIN_ALIKE = 3
+"""How many alike conditions there must be, with the different one, before one operator is suspicious."""
+
+MAX_ALIKE = 100
+"""The maximum number of conditions that are compared with each other."""
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for chart in context.machine.charts:
+        reported: set[Span] = set()
+        groups: list[list[Expr]] = []
+        for state in chart.states:
+            groups += [_trees([handler.cond for handler in group]) for group in _handlers(context, state)]
+        for statement in chart.statements:
+            if isinstance(statement, If):
+                groups.append(_trees([branch.cond for branch in statement.branches]))
+        for group in groups:
+            parts = [_joined(tree, operator) for tree in group for operator in _LOGICAL]
+            for alike in (group, *(part for part in parts if len(part) > 1)):
+                for finding in (*_connectives(alike[:MAX_ALIKE]), *_limits(alike[:MAX_ALIKE])):
+                    if finding.span not in reported:
+                        reported.add(finding.span)
+                        yield finding
+
+
+def _handlers(context: MachineContext, state: State) -> Iterator[Sequence[Handler]]:
+    groups: dict[Trigger, list[Handler]] = {}
+    for handler in state.handlers:
+        key = trigger(context.machine, handler) if handler.effective else None
+        if key is not None:
+            groups.setdefault(key, []).append(handler)
+    yield from groups.values()
+
+
+def _trees(conditions: Sequence[Expression | None]) -> list[Expr]:
+    return [cond.tree for cond in conditions if cond is not None and not cond.broken]
+
+
+def _joined(tree: Expr, operator: Operator) -> list[Expr]:
+    """What `tree` joins with `operator`, without what parentheses join."""
+    if isinstance(tree, Binary) and tree.operator is operator:
+        return [*_joined(tree.left, operator), tree.right]
+    return [tree]
+
+
+# ------------------------------------------------------------- && and ||
+
+
+def _connectives(trees: Sequence[Expr]) -> Iterator[Finding]:
+    """Report the only one of several alike conditions that joins its comparisons with the other operator."""
+    shapes: dict[object, list[Binary]] = {}
+    for tree in trees:
+        if isinstance(tree, Binary) and tree.operator in _LOGICAL:
+            shapes.setdefault((_shape(tree.left), _shape(tree.right)), []).append(tree)
+    for alike in shapes.values():
+        for operator in _LOGICAL:
+            odd = [tree for tree in alike if tree.operator is not operator]
+            if len(alike) >= MIN_ALIKE and len(odd) == 1:
+                usual = next(tree for tree in alike if tree.operator is operator)
+                message = (
+                    f"this condition joins its parts with `{odd[0].operator.symbol}`, and the {len(alike) - 1} "
+                    f"conditions like it with `{operator.symbol}`; did you mean that?"
+                )
+                text = operator.symbol.replace("&", "&amp;")
+                fix = Fix(f"Change to `{operator.symbol}`", (TextEdit(odd[0].operator_span, text),))
+                related = [Related(usual.operator_span, f"`{operator.symbol}`")]
+                yield RULE.at(odd[0].operator_span, message, fix, related=related)
+
+
+def _shape(tree: Expr) -> object:
+    """The structure of a condition: what it compares, and how it joins comparisons. The directions of comparisons are
+    left out."""
+    if isinstance(tree, Binary) and tree.operator in _LOGICAL:
+        return (tree.operator, _shape(tree.left), _shape(tree.right))
+    if isinstance(tree, Binary) and tree.operator.kind in (OperatorKind.ORDER, OperatorKind.EQUALITY):
+        return tree.operator.kind
+    if isinstance(tree, Unary):
+        return (tree.operator, _shape(tree.operand))
+    return "value"
+
+
+# ---------------------------------------------------------------- < and <=
+
+
+class _Limit(NamedTuple):
+    """A comparison of a variable with a limit, with the variable on the left."""
+
+    node: Binary
+    place: str
+    operator: Operator
+    limit: str
+
+
+_STRICT = {Operator.LESS: Operator.LESS_EQUAL, Operator.GREATER: Operator.GREATER_EQUAL}
+_LOOSE = {loose: strict for strict, loose in _STRICT.items()}
+
+
+def _limits(trees: Sequence[Expr]) -> Iterator[Finding]:
+    """Report the only comparison that includes its limit, or excludes it, if a similar variable is compared with the
+    same limit in the other way, and all other comparisons are strict, or not."""
+    limits = [limit for tree in trees for node in walk(tree) if (limit := _limit(node)) is not None]
+    strict = [limit for limit in limits if limit.operator in _STRICT]
+    loose = [limit for limit in limits if limit.operator in _LOOSE]
+    for few, many in ((strict, loose), (loose, strict)):
+        if len(few) != 1 or len(many) < MIN_ALIKE - 1:
+            continue
+        odd = few[0]
+        usual = _STRICT.get(odd.operator) or _LOOSE[odd.operator]
+        for other in many:
+            if other.operator is usual and other.limit == odd.limit and _is_similar(odd.place, other.place):
+                written = usual if place_of(odd.node.left) == odd.place else MIRRORED[usual]
+                message = (
+                    f"`{odd.place}` is compared with `{odd.limit}` by `{odd.node.operator.symbol}`, and "
+                    f"`{other.place}` by `{other.node.operator.symbol}`; did you mean `{written.symbol}`?"
+                )
+                text = written.symbol.replace("<", "&lt;")
+                fix = Fix(f"Change to `{written.symbol}`", (TextEdit(odd.node.operator_span, text),))
+                related = [Related(other.node.span, "a similar comparison")]
+                yield RULE.at(odd.node.operator_span, message, fix, related=related)
+                break
+
+
+def _is_similar(name: str, other: str) -> bool:
+    """Whether two names differ in one word and share the others, or are letters, such as `x` and `y`."""
+    words = difference(name, other)
+    return words is not None and (len(words_of(name)) > 1 or len(words[0]) == len(words[1]) == 1)
+
+
+def _limit(node: Expr) -> _Limit | None:
+    if not isinstance(node, Binary) or node.operator.kind is not OperatorKind.ORDER:
+        return None
+    left, right = place_of(node.left), place_of(node.right)
+    if left is not None:
+        return _Limit(node, left, node.operator, format_expr(node.right))
+    return _Limit(node, right, MIRRORED[node.operator], format_expr(node.left)) if right is not None else None
+
+
+RULE = Rule(
+    "inconsistent-operator",
+    Severity.WARNING,
+    "A condition has another operator than the similar conditions beside it.",
+    machine=check,
+)
