@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names of entries in the attributes of nodes (docs/spec/lone-trees.md#entries)."""
+"""The names of entries in the attributes of nodes (docs/spec/lone-trees.md#entries), and what names of nodes suggest."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ from roaml.regex import regex
 _TRUE = ("1", "true", "True", "TRUE")
 NAME = regex(r"@?[A-Za-z_][\w.:-]*\Z", re.ASCII)
 """Matches the names of entries."""
+READS_AS_CONDITION = regex(r"(Is|Has|Are|Can)[A-Z_0-9]|(is|has|are|can)_")
+"""Matches the beginning of the name of a node that reads as a condition."""
 
 
 def entry_of(setting: PortSetting) -> str | None:

@@ -9,6 +9,7 @@ from enum import Enum
 from fractions import Fraction
 
 from roaml.forest.forest import Forest
+from roaml.forest.names import READS_AS_CONDITION
 from roaml.libraries.programs.statuses import SUCCESS
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree
 from roaml.lower.programs.nodes import EVENT_PROBABILITY, event_probability, is_own_parent, program_of
@@ -18,10 +19,7 @@ from roaml.mocks.likeness import Likeness
 from roaml.mocks.mock import ALL, Mock, mock_for
 from roaml.mocks.unfolding import unfold
 from roaml.record import Record
-from roaml.regex import regex
 
-_READS_AS_CONDITION = regex(r"(Is|Has|Are|Can)[A-Z_0-9]|(is|has|are|can)_")
-"""The beginning of a name that reads as a condition."""
 _LIBRARY = "Nav2"
 CONDITION_PROBABILITY = 0.5
 GUARD_PROBABILITY = 0.999
@@ -229,7 +227,7 @@ def _assumed(node: ExecutedNode, kind: LeafKind, continuing: frozenset[int]) -> 
         return Assumption(CONDITION_PROBABILITY, Fraction(0), "no library describes it: both outcomes are as likely")
     if kind is LeafKind.SYNCHRONOUS:
         return Assumption(ACTION.probability, Fraction(0), ACTION.reason)
-    if node.known is None and _READS_AS_CONDITION.match(node.type):
+    if node.known is None and READS_AS_CONDITION.match(node.type):
         return Assumption(
             CONDITION_PROBABILITY, Fraction(0), "its name reads as a condition: both outcomes are as likely"
         )

@@ -156,6 +156,7 @@ from roaml.rules.states import (
 )
 from roaml.rules.systems import (
     beyond_max_time,
+    inconsistent_value,
     inexact_max_time,
     input_count,
     lost_messages,
@@ -175,6 +176,7 @@ from roaml.rules.trees import (
     duplicate_model,
     early_read,
     hidden_failure,
+    inconsistent_branch,
     invalid_port,
     late_condition,
     missing_port,

@@ -6,11 +6,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
+from roaml.forest.entries import Use
+from roaml.forest.forest import Forest
+from roaml.libraries import node_in_libraries
 from roaml.model.gaps import GapAct
-from roaml.roles import Direction
-from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean
+from roaml.model.tree import TreeNode
+from roaml.roles import Direction, NodeKind
+from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, replacements
 from roaml.rules.support.blackboard import described, places, renamings
+from roaml.rules.support.entries import entries_of
 from roaml.scxml.names import BLACKBOARD_WRITE_PREFIX
+from roaml.suggest import nearest_name
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
@@ -18,6 +24,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     blackboard-never-written reports variables that are neither read nor written."""
     system = context.system
     if system is None:
+        yield from _in_vain(context)
         return
     board = system.blackboard
     read = [name for name, ports in board.items() if any(bound.port.read for bound in ports)]
@@ -38,6 +45,69 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 close = close_names(own, [name.removeprefix(prefix) for name in unwritten if name.startswith(prefix)])
                 message = f"no node reads {described(own, written)}{did_you_mean(close)}"
                 yield RULE.at(span, message, *renamings(span, written, own, close))
+
+
+def _in_vain(context: TreeContext) -> Iterator[Finding]:
+    """Report the outputs of library nodes in trees without a system that have no other effect, such as `TruncatePath`.
+    Nodes that no library describes may read any entry."""
+    forest = context.forest
+    if forest is None or not all(_is_described(forest, node) for _, _, node in forest.all_nodes):
+        return
+    entries = entries_of(forest)
+    unwritten = {
+        bound.use.name: bound.use.type
+        for uses in entries.by_entry.values()
+        for bound in uses
+        if bound.use.reads and not any(other.use.writes is not False for other in uses)
+    }
+    in_vain: dict[TreeNode, list[Use]] = {}
+    useful: set[TreeNode] = set()
+    for uses in entries.by_entry.values():
+        is_used = any(bound.use.reads is not False or bound.use.remaps for bound in uses)
+        for bound in uses:
+            use = bound.use
+            if not use.writes or use.script or use.port not in _outputs(forest, use.node):
+                continue
+            name = use.name.removeprefix("@")
+            is_own = bound.executed and use.name not in bound.frame.remapped and name not in forest.host_entries
+            if is_used or not is_own or use.path != context.source.path or nearest_name(name, unwritten) is not None:
+                useful.add(use.node)
+            else:
+                in_vain.setdefault(use.node, []).append(use)
+    for node, outputs in in_vain.items():
+        if node in useful:
+            continue
+        use, type_ = outputs[0], node.plugin.value if node.plugin is not None else ""
+        named = [name for name in unwritten if name == use.port and name not in forest.host_entries]
+        alike = [name for name, read_as in unwritten.items() if read_as == use.type and name not in forest.host_entries]
+        meant = (*(named or alike),) if named or len(alike) == 1 else ()
+        if type_.endswith(_OPTIONAL) and not named:
+            continue
+        message = f"no node reads {described(use.name, use.name)}, and `{type_}` has no other effect"
+        yield RULE.at(use.span, message + did_you_mean(meant), *replacements(use.span, [f"{{{n}}}" for n in meant]))
+
+
+_OPTIONAL = "Selector"
+"""The end of the types that let users choose a part of Nav2. Many trees have them although nothing reads the choice."""
+_FOR_ERRORS = frozenset(("error_code_id", "error_msg"))
+_WITH_EFFECT = frozenset(("server_name", "service_name"))
+"""Ports of nodes that call an action or a service, so that their outputs are not their only effect."""
+
+
+def _outputs(forest: Forest, node: TreeNode) -> frozenset[str]:
+    """The output ports of a node that are its only effect."""
+    known = forest.known_node(node)
+    library = node_in_libraries(known.name) if known is not None and known.behaviour else None
+    if library is None or library.kind is NodeKind.CONDITION:
+        return frozenset()
+    names = {port.name for port in library.ports}
+    outputs = {port.name for port in library.ports if port.direction is Direction.OUT} - _FOR_ERRORS
+    return frozenset() if names & _WITH_EFFECT else frozenset(outputs)
+
+
+def _is_described(forest: Forest, node: TreeNode) -> bool:
+    known = forest.known_node(node)
+    return forest.calls_tree(node) or (known is not None and known.behaviour != "")
 
 
 RULE = Rule("blackboard-never-read", Severity.WARNING, "A blackboard variable is written but never read.", tree=check)

@@ -7,8 +7,10 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.forest.forest import Forest
+from roaml.forest.names import READS_AS_CONDITION
 from roaml.forest.statuses import statuses_of
 from roaml.libraries.programs.statuses import RUNNING
+from roaml.model.outline import MachineOutline
 from roaml.model.tree import TreeNode
 from roaml.roles import NodeKind, ProtocolPart
 from roaml.rules.rule import Rule, TreeContext
@@ -55,10 +57,22 @@ def _is_condition(forest: Forest, node: TreeNode) -> bool:
     known = forest.known_node(node)
     if known is not None and forest.is_machine(known):
         outline = forest.system.plugin(known.name)[1] if forest.system is not None else None
-        sends = (part for use in outline.interfaces for part in use.sends) if outline is not None else ()
-        is_silent = outline is not None and not outline.sent and not {*sends} & _COMMANDS
-        return is_silent and RUNNING not in statuses_of(forest).statuses(node)[node].ever
+        return (
+            outline is not None
+            and _only_answers(
+                outline,
+                is_named_so=node.element.name == "Condition" or READS_AS_CONDITION.match(known.name) is not None,
+            )
+            and RUNNING not in statuses_of(forest).statuses(node)[node].ever
+        )
     return node.element.name == "Condition" or (known is not None and known.kind is NodeKind.CONDITION)
+
+
+def _only_answers(outline: MachineOutline, *, is_named_so: bool) -> bool:
+    """Whether a plugin has no other effect than its status. A request may be a question or a command."""
+    sends = {part for use in outline.interfaces for part in use.sends}
+    has_effect = bool(outline.sent or sends & _COMMANDS) or any(port.written for port in outline.ports)
+    return not has_effect and (is_named_so or ProtocolPart.REQUEST not in sends)
 
 
 def _inside(node: TreeNode) -> Iterator[TreeNode]:
