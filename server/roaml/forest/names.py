@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names of entries in the attributes of nodes (docs/spec/lone-trees.md#entries), and what names of nodes suggest."""
+"""The names of entries in the attributes of nodes (docs/spec/lone-trees.md#entries); names that read as conditions."""
 
 from __future__ import annotations
 

@@ -1,23 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks files of mocks: lines that are not mocks, and mocks that match no node (docs/spec/mocks.md#leaves)."""
+"""Checks files of mocks: lines that are not mocks, mocks that match no node, repeated
+and missing mocks (docs/spec/mocks.md#leaves)."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 
-from roaml.diagnostics import Finding
+from roaml.diagnostics import Finding, Fix, Related
 from roaml.durations import NANOSECONDS
+from roaml.edit.elements import removal
 from roaml.expansion.uses import VARIABLE
 from roaml.forest.forest import Forest
 from roaml.mocks.likeness import needs_likeness
-from roaml.mocks.mock import TREE_MARK, MockableWords, MockError, mock_for, mock_spans, read_mock, read_mocks
+from roaml.mocks.mock import TREE_MARK, Mock, MockableWords, MockError, mock_for, mock_spans, read_mock, read_mocks
 from roaml.model.tree import TreeFile, TreeNode, nodes
 from roaml.record import replace
-from roaml.rules.parser_rules import MOCK_SYNTAX, UNMATCHED_MOCK
-from roaml.rules.rule import replacements
-from roaml.text import SourceFile, Span
+from roaml.rules.parser_rules import MISSING_MOCK, MOCK_SYNTAX, REPEATED_MOCK, UNMATCHED_MOCK
+from roaml.rules.rule import listing, replacements
+from roaml.text import SourceFile, Span, TextEdit
 
 _FOLDER = "the trees in this folder"
 
@@ -33,16 +35,26 @@ def mock_findings(
         forest: returns the trees in a file that is not in a system; `None` if it cannot be read.
     """
     words = _words(source.path, beside, forest)
+    first: dict[tuple[str, bool], Span] = {}
+    mocks: list[Mock] = []
+    is_right = True
     for span in mock_spans(source.text):
         line = source.text[span.start : span.end]
         if VARIABLE.search(line):
+            is_right = False
             continue
         try:
             mock = read_mock(line)
         except MockError as error:
+            is_right = False
             yield MOCK_SYNTAX.at(span, str(error))
             continue
         start = span.start
+        mocks.append(mock)
+        earlier = first.setdefault((mock.pattern, mock.like is None), span)
+        if earlier is not span:
+            yield _repeated(source, mock, span, earlier)
+            continue
         if words.trees == _FOLDER and TREE_MARK in mock.pattern:
             tree, _, node = mock.pattern.partition(TREE_MARK)
             start, mock = start + len(tree) + len(TREE_MARK), replace(mock, pattern=node)
@@ -50,7 +62,38 @@ def mock_findings(
         if reason:
             at = Span(start, start + len(mock.pattern))
             fixes = replacements(at, words.close(mock))
+            is_right = False
             yield UNMATCHED_MOCK.at(at, f"the mock `{mock.pattern}` {reason}", *fixes)
+
+    trees = forest(_tree_of(source.path))
+    if is_right and trees is not None:
+        yield from _missing(source, trees, mocks)
+
+
+def _repeated(source: SourceFile, mock: Mock, span: Span, earlier: Span) -> Finding:
+    message = f"there is a mock for `{mock.pattern}` above, which is used; remove one of them"
+    fix = Fix("Remove this mock", (removal(source.text, span),), preferred=False)
+    related = [Related(earlier, "this mock is used")]
+    return REPEATED_MOCK.at(Span(span.start, span.start + len(mock.pattern)), message, fix, related=related)
+
+
+def _missing(source: SourceFile, trees: Forest, mocks: Sequence[Mock]) -> Iterator[Finding]:
+    """The finding that leaves of the tree have no mock, at the last mock."""
+    from roaml.lower.programs.refusal import TreeRefusal  # noqa: PLC0415 - most files with mocks have no such tree
+    from roaml.mocks.proposal import completed_text, mockable_leaves  # noqa: PLC0415
+
+    try:
+        leaves = [leaf for leaf in mockable_leaves(trees, mocks) if leaf.is_missing]
+    except TreeRefusal:
+        return
+    if not leaves:
+        return
+    names = listing([leaf.proposed.pattern for leaf in leaves])
+    span = next(reversed([*mock_spans(source.text)]), Span(0, 0))
+    message = f"no mock matches {names} of `{os.path.basename(_tree_of(source.path))}`, so `verify` does not start"
+    end = len(source.text)
+    added = TextEdit(Span(end, end), completed_text(source.text, leaves)[end:])
+    yield MISSING_MOCK.at(span, message, Fix("Add the missing mocks as they are proposed", (added,)))
 
 
 def mocked_durations(file: TreeFile, text: str) -> Mapping[TreeNode, Fraction]:
@@ -76,7 +119,7 @@ def _words(
 ) -> MockableWords:
     """The names and types of the nodes that the mocks of a file may describe: those of the tree `fetch.xml` beside
     `fetch.mocks`; if there is none, of all trees of the folder."""
-    tree = f"{os.path.splitext(path)[0]}.xml"
+    tree = _tree_of(path)
     is_beside = forest(tree) is not None
     words: dict[str, None] = {}
     parents: dict[str, None] = {}
@@ -87,3 +130,8 @@ def _words(
             (parents if trees is not None and needs_likeness(trees, node) else words).update(dict.fromkeys(own))
     phrase = f"`{os.path.basename(tree)}`" if is_beside else _FOLDER
     return MockableWords(phrase, tuple(words), tuple(parents))
+
+
+def _tree_of(path: str) -> str:
+    """The path of the tree beside a file of mocks."""
+    return f"{os.path.splitext(path)[0]}.xml"

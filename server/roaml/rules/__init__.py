@@ -129,6 +129,7 @@ from roaml.rules.interfaces import (
 )
 from roaml.rules.json_syntax import jani_type
 from roaml.rules.properties import (
+    contradictory_name,
     decided_at_start,
     equal_ports,
     ignored_bounds,

@@ -63,8 +63,15 @@ JSON_SYNTAX = _parser_rule("json-syntax", Severity.ERROR, "The file is not well-
 MISSING_FOLDER = _parser_rule(
     "missing-folder", Severity.WARNING, "A configuration file names a folder that does not exist."
 )
+MISSING_MOCK = _parser_rule(
+    "missing-mock", Severity.WARNING, "A leaf of a tree has no mock in the file beside the tree."
+)
 MOCK_SYNTAX = _parser_rule("mock-syntax", Severity.ERROR, "A line of a file of mocks is not a mock.")
 NESTING_TOO_DEEP = _parser_rule("nesting-too-deep", Severity.ERROR, "Elements are nested too deeply to be analysed.")
+REPEATED_CONSTANT = _parser_rule(
+    "repeated-constant", Severity.WARNING, "Two constants of one enumeration have the same value."
+)
+REPEATED_MOCK = _parser_rule("repeated-mock", Severity.WARNING, "A file contains two mocks for the same nodes.")
 TOML_SYNTAX = _parser_rule("toml-syntax", Severity.ERROR, "A configuration file is not valid TOML.")
 UNDEFINED_ENTITY = _parser_rule(
     "undefined-entity", Severity.ERROR, "An entity is not one of the five predefined entities."
@@ -82,8 +89,11 @@ RULES = (
     JSON_SCHEMA,
     JSON_SYNTAX,
     MISSING_FOLDER,
+    MISSING_MOCK,
     MOCK_SYNTAX,
     NESTING_TOO_DEEP,
+    REPEATED_CONSTANT,
+    REPEATED_MOCK,
     TOML_SYNTAX,
     UNDEFINED_ENTITY,
     UNMATCHED_MOCK,

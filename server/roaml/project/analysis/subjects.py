@@ -347,7 +347,11 @@ class _Reader:
         kind: Kind = "msg" if extension == "msg" else "srv" if extension == "srv" else "action"
         package = self.path.replace("\\", "/").split("/")[-3:-2]
         definition, findings = parse_interface(self.source.text, package[0] if package else "package", name, kind)
-        return (*findings, *self._misspelled_fields(definition, findings), *self._exchanged_sections(definition))
+        from roaml.project.repeated_constants import repeated_constants  # noqa: PLC0415 - only for interfaces
+
+        repeated = repeated_constants(self.source.text, definition)
+        misspelled = self._misspelled_fields(definition, findings)
+        return (*findings, *misspelled, *repeated, *self._exchanged_sections(definition))
 
     def _exchanged_sections(self, definition: Definition) -> Iterator[Finding]:
         """The finding that the request and the response of a service are exchanged."""

@@ -37,8 +37,8 @@ def _tree(context: TreeContext) -> Iterator[Finding]:
 
 
 def _mocked(context: TreeContext) -> Iterator[Finding]:
-    """Report timeouts and rates of a tree that are too short for the durations of the mocks beside it."""
-    forest = context.forest if context.mocked else None
+    """Report timeouts and rates of a tree that are too short for its mocks, or for the durations in its ports."""
+    forest = context.forest
     for _, node in forest.own_nodes if forest is not None else ():
         known = forest.known_node(node) if forest is not None else None
         port = _TIMES.get(known.name) if known is not None and known.behaviour else None
@@ -47,15 +47,16 @@ def _mocked(context: TreeContext) -> Iterator[Finding]:
         if port is None or setting is None or number is None or number <= 0 or len(node.children) != 1:
             continue
         least = _least(context, node.children[0])
+        reason = " with the mocks of this tree" if context.mocked else ""
         if port == "msec" and number * NANOSECONDS["ms"] <= least:
             message = (
                 f"this timeout of {duration(number * NANOSECONDS['ms'])} ends its child before the child can succeed, "
-                f"which takes {duration(least)} at least with the mocks of this tree"
+                f"which takes {duration(least)} at least{reason}"
             )
             yield RULE.at(setting.value.span, message)
         if port == "hz" and least * number > NANOSECONDS["s"]:
             message = (
-                f"the child takes {duration(least)} at least with the mocks of this tree, so it is ticked anew at most "
+                f"the child takes {duration(least)} at least{reason}, so it is ticked anew at most "
                 f"{float(NANOSECONDS['s'] / least):.3g} times in a second, not {float(number):g} times"
             )
             yield RULE.at(setting.value.span, message)
@@ -72,12 +73,37 @@ def _least(context: TreeContext, node: TreeNode) -> Fraction:
     name = node.plugin.value if node.plugin is not None else ""
     inside = [_least(context, child) for child in node.children if not child.scripts]
     if not node.children:
-        return context.mocked.get(node, Fraction(0))
+        return context.mocked.get(node, _own_time(context, node))
+    if name == "Delay":
+        return _number(node, "delay_msec") * NANOSECONDS["ms"] + sum(inside, Fraction(0))
     if name in _IN_TURN:
         return sum(inside, Fraction(0))
     if name == "Fallback":
         return min(inside) if len(inside) == len(node.children) else Fraction(0)
     return inside[0] if name in _PASSING and len(inside) == 1 else Fraction(0)
+
+
+def _own_time(context: TreeContext, node: TreeNode) -> Fraction:
+    """The least time, in ns, that a leaf of a library takes to succeed according to the constants of its ports."""
+    known = context.forest.known_node(node) if context.forest is not None else None
+    match known.name if known is not None and known.behaviour else "":
+        case "Sleep":
+            return _number(node, "msec") * NANOSECONDS["ms"]
+        case "Wait":
+            return _number(node, "wait_duration") * NANOSECONDS["s"]
+        case "DriveOnHeading":
+            distance, speed = _number(node, "dist_to_travel"), _number(node, "speed")
+        case "BackUp":
+            distance, speed = _number(node, "backup_dist"), _number(node, "backup_speed")
+        case _:
+            return Fraction(0)
+    return distance / speed * NANOSECONDS["s"] if distance and speed else Fraction(0)
+
+
+def _number(node: TreeNode, port: str) -> Fraction:
+    """The absolute value of a constant; 0 if the port has none."""
+    text = next((setting.value.value for setting in node.ports if setting.attribute.name == port), "")
+    return abs(exact_number(text) or Fraction(0))
 
 
 def _timeouts(context: TreeContext, times: Mapping[TreeNode, tuple[str, int]]) -> Iterator[Finding]:

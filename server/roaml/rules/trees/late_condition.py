@@ -57,14 +57,9 @@ def _is_condition(forest: Forest, node: TreeNode) -> bool:
     known = forest.known_node(node)
     if known is not None and forest.is_machine(known):
         outline = forest.system.plugin(known.name)[1] if forest.system is not None else None
-        return (
-            outline is not None
-            and _only_answers(
-                outline,
-                is_named_so=node.element.name == "Condition" or READS_AS_CONDITION.match(known.name) is not None,
-            )
-            and RUNNING not in statuses_of(forest).statuses(node)[node].ever
-        )
+        is_named_so = node.element.name == "Condition" or READS_AS_CONDITION.match(known.name) is not None
+        is_silent = outline is not None and _only_answers(outline, is_named_so=is_named_so)
+        return is_silent and RUNNING not in statuses_of(forest).statuses(node)[node].ever
     return node.element.name == "Condition" or (known is not None and known.kind is NodeKind.CONDITION)
 
 

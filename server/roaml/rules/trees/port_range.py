@@ -94,7 +94,8 @@ def _check(context: TreeContext, node: TreeNode, known: Node, texts: Mapping[str
         # The translation computes the period of a rate, so it refuses rates that are not positive.
         severity = Severity.ERROR if reason and port.limits.is_exclusive else None
         if not reason and port.limits.magnitude is not None and abs(number) > port.limits.magnitude:
-            reason = f"from {-port.limits.magnitude:g} to {port.limits.magnitude:g}"
+            lowest = -port.limits.magnitude if port.limits.minimum is None else port.limits.minimum
+            reason = f"from {lowest:g} to {port.limits.magnitude:g}"
         if not reason:
             reason, effect = _order(known, port.limits, number, texts), f"; {port.limits.effect}"
         if reason:
@@ -111,6 +112,11 @@ def _too_slow(node: TreeNode, known: Node, texts: Mapping[str, str]) -> Iterator
             continue
         names = (port.name, limits.distance, limits.speed)
         time, distance, speed = (_constant_of(known, name, texts) for name in names)
+        if known.name in _SIGNED and distance is not None and speed is not None and distance * speed < 0:
+            written = limits.speed if limits.speed in texts else limits.distance
+            message = f"`{limits.distance}` and `{limits.speed}` of `{known.name}` must have the same sign"
+            yield RULE.at(place_of(node, written), f"{message}; the behavior would fail at once")
+            continue
         if time is None or distance is None or speed is None or time <= 0:  # 0 is no limit
             continue
         if abs(distance) <= time * abs(speed) * (1 + 1e-9):
@@ -120,6 +126,10 @@ def _too_slow(node: TreeNode, known: Node, texts: Mapping[str, str]) -> Iterator
         if place is not None and place in texts:
             message = f"`{known.name}` has {time:g} s for {abs(distance):g} m with {abs(speed):g} m/s, but {needs}"
             yield RULE.at(place_of(node, place), f"{message}; {limits.effect}")
+
+
+_SIGNED = frozenset(("DriveOnHeading",))
+"""The nodes that drive backwards if the distance and the speed are negative. Others ignore the signs."""
 
 
 def _constant_of(known: Node, name: str, texts: Mapping[str, str]) -> float | None:

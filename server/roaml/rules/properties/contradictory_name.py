@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The rule `contradictory-name`, which contradictory_name.md describes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.edit.elements import rename_tag
+from roaml.jani.expressions import Binary, Integer, Name
+from roaml.jani.operators import BinaryOperator
+from roaml.jani.properties import Property, walk
+from roaml.model.property_links import LinkedFile
+from roaml.model.tree import TreeNode, nodes
+from roaml.observers.properties import Pattern
+from roaml.regex import regex
+from roaml.rules.rule import PropertiesContext, Rule, TreeContext, replacements
+from roaml.rules.support.words import words_of
+
+_SEQUENCE, _FALLBACK = "Sequence", "Fallback"
+_WORDS = {_SEQUENCE: frozenset(("sequence",)), _FALLBACK: frozenset(("fallback", "selector"))}
+
+
+def _tree(context: TreeContext) -> Iterator[Finding]:
+    """Report sequences that are named as fallbacks, and the other way round."""
+    for tree in context.file.trees:
+        children_of_fallbacks = {c for n in nodes(tree) if _kind(n) == _FALLBACK for c in n.children}
+        for node in nodes(tree):
+            kind = _kind(node)
+            if not kind or node.name is None or not node.children:
+                continue
+            other = _FALLBACK if kind == _SEQUENCE else _SEQUENCE
+            words = {*words_of(node.name.value)}
+            # A sequence that a fallback ticks last can be called its fallback.
+            if not words & _WORDS[other] or words & _WORDS[kind] or node in children_of_fallbacks:
+                continue
+            type_ = node.element.name
+            message = f"the name `{node.name.value}` is that of a `{other}`, but this is a `{_type(node)}`"
+            is_known = node.compact and type_.replace(kind, other) in _TYPES
+            fixes = (rename_tag(node.element, type_.replace(kind, other)),) if is_known else ()
+            yield RULE.at(node.element.name_span, message, *fixes, related=[Related(node.name.span, "the name")])
+
+
+_TYPES = frozenset(f"{prefix}{kind}" for prefix in ("", "Reactive", "Async") for kind in (_SEQUENCE, _FALLBACK))
+
+
+def _type(node: TreeNode) -> str:
+    return node.plugin.value if node.plugin is not None else node.element.name
+
+
+def _kind(node: TreeNode) -> str:
+    """`Sequence` or `Fallback` for the nodes of BehaviorTree.CPP that are one; otherwise ""."""
+    name = _type(node)
+    if name in _TYPES or name == "SequenceWithMemory":
+        return _SEQUENCE if _SEQUENCE in name else _FALLBACK
+    return ""
+
+
+_OPPOSITES = {
+    "never": ((Pattern.EXISTENCE, Pattern.RECURRENCE), Pattern.ABSENCE),
+    "eventually": ((Pattern.ABSENCE, Pattern.UNIVERSALITY), Pattern.EXISTENCE),
+}
+"""A word in the name of a property -> the patterns that it contradicts, and the one that it names."""
+
+
+def _xml(file: LinkedFile) -> Iterator[Finding]:
+    """Report properties whose names contradict their patterns. Expectations may turn a pattern into its opposite."""
+    for written in file.file.properties:
+        if written.id is None or written.pattern is None or written.expect is not None:
+            continue
+        words = words_of(written.id.value)
+        for word, (contradicted, named) in _OPPOSITES.items():
+            if word in words and written.pattern.value in {pattern.value for pattern in contradicted}:
+                message = (
+                    f"the name of this property says `{word}`, but its pattern is `{written.pattern.value}`; did you "
+                    f"mean `{named.value}`?"
+                )
+                yield RULE.at(written.pattern.span, message, *replacements(written.pattern.span, (named.value,)))
+
+
+_STATUS = regex(r"bt_\d+_response__status\Z")
+_STATUSES = {
+    1: ("SUCCESS", frozenset(("success", "succeeds", "succeeded"))),
+    2: ("FAILURE", frozenset(("failure", "fails", "failed"))),
+    3: ("RUNNING", frozenset(("running", "runs"))),
+}
+
+
+def _jani(context: PropertiesContext) -> Iterator[Finding]:
+    """Report properties whose names end with a status, and which compare that of a tree with another one."""
+    for property_ in context.properties:
+        last = words_of(property_.name)[-1:]
+        named = [number for number, (_, names) in _STATUSES.items() if names.intersection(last)]
+        compared = [*_compared(property_)]
+        if len(named) != 1 or len({number.value for _, number in compared}) != 1:
+            continue
+        (_, number), *_ = compared
+        if number.origin is not None and number.value in _STATUSES and number.value != named[0]:
+            message = (
+                f"the name `{property_.name}` says {_STATUSES[named[0]][0]}, which is {named[0]}, but {number.value} "
+                f"is {_STATUSES[number.value][0]}"
+            )
+            yield RULE.at(number.origin.span, message, *replacements(number.origin.span, (f"{named[0]}",)))
+
+
+def _compared(property_: Property) -> Iterator[tuple[Name, Integer]]:
+    """The numbers with which a property compares the status of a tree."""
+    for part in walk(property_.expression):
+        if isinstance(part, Binary) and part.operator is BinaryOperator.EQUAL:
+            for name, number in ((part.left, part.right), (part.right, part.left)):
+                if isinstance(name, Name) and isinstance(number, Integer) and _STATUS.match(name.identifier):
+                    yield name, number
+
+
+RULE = Rule(
+    "contradictory-name",
+    Severity.WARNING,
+    "The name of a node or property contradicts what it is.",
+    tree=_tree,
+    properties=_jani,
+    xml_properties=_xml,
+)
