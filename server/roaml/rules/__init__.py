@@ -138,6 +138,7 @@ from roaml.rules.properties import (
     unknown_property_variable,
     unportable_expectation,
     unsupported_property,
+    vacuous_expectation,
 )
 from roaml.rules.rule import Rule
 from roaml.rules.states import (
