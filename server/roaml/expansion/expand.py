@@ -21,6 +21,7 @@ from roaml.expansion.declarations import (
     declarations,
     values,
 )
+from roaml.expansion.instance_numbers import report_inconsistent
 from roaml.expansion.instances import (
     REMAP,
     ListedInstance,
@@ -270,6 +271,7 @@ class _Expander:
         self.note_declarations(self.path, document, declared, scope)
         listed = list(instances(document, problems))
         report_repeated(listed, problems)
+        report_inconsistent(listed, problems)
         edits = list(self._system_edits(document, scope))
         count: dict[str, int] = {}
         for instance in listed:

@@ -23,6 +23,7 @@ class ExpansionProblem(enum.Enum):
     ASSIGNED = "assigned-parameter"
     INSTANCE = "invalid-instance"
     NAMESPACE = "repeated-namespace"
+    INCONSISTENT = "inconsistent-parameter"
     CHANNEL = "invalid-channel"
     DISTRIBUTION = "invalid-distribution"
     MISPLACED = "misplaced-random"

@@ -29,6 +29,11 @@ RULES = (
         Severity.WARNING,
         "Two inputs of a file are in one namespace, and none is in another one that is used.",
     ),
+    _rule(
+        ExpansionProblem.INCONSISTENT,
+        Severity.WARNING,
+        "The value of a parameter has another number than its instance, unlike at all other instances.",
+    ),
     _rule(ExpansionProblem.DECLARATION, Severity.ERROR, "The declaration of a parameter is incomplete or invalid."),
     _rule(ExpansionProblem.VALUE, Severity.ERROR, "The value of a parameter has another type, or is out of range."),
     _rule(ExpansionProblem.UNKNOWN, Severity.ERROR, "A parameter is used or set that is not declared."),

@@ -13,7 +13,7 @@ from roaml.libraries.programs.assembly import programs
 from roaml.model.expand import PortConstant
 from roaml.model.machine import Declaration
 from roaml.model.syntax import Expression, Name
-from roaml.model.system import SystemAutomaton
+from roaml.model.system import System, SystemAutomaton
 from roaml.model.system_file import TICK_RATE
 from roaml.model.timing import NANOSECONDS_PER_SECOND, TimerRate, period, rate
 from roaml.model.tree import TreeNode
@@ -87,6 +87,21 @@ def tick_period(context: TreeContext) -> int | None:
     names = [root.tree for root in context.system.roots]
     rates = {context.system.tick_rate(name) for name in names} or {context.system.parameters.tick_rate}
     return min(period(Fraction(str(rate))).nanoseconds for rate in rates)
+
+
+def running_first(system: System) -> dict[int, int]:
+    """The nodes of the trees whose plugins never return SUCCESS at their first tick: number of the node -> the time
+    until the next tick, in ns."""
+    times: dict[int, int] = {}
+    for automaton in system.automata:
+        statuses = automaton.outline.plugin.statuses
+        if automaton.instance is not None and automaton.path and _SUCCESS in statuses.ever - statuses.first:
+            rate = Fraction(str(system.tick_rate(automaton.instance.tree)))
+            times[automaton.instance.number] = period(rate).nanoseconds
+    return times
+
+
+_SUCCESS = "SUCCESS"
 
 
 def tree_rates(context: SystemContext) -> Iterator[tuple[Span, Fraction, str]]:

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
+from roaml.model.node_effects import tree_effects
 from roaml.model.property_links import LinkedFile
 from roaml.model.property_problems import ProblemKind
 from roaml.model.system import System
@@ -14,7 +15,16 @@ from roaml.model.tree import TreeNode
 from roaml.rules.rule import MachineContext, Rule, SystemContext, TreeContext
 from roaml.rules.support.property_problems import problems
 from roaml.rules.support.settings import place_of
-from roaml.rules.support.timing import counted_waits, duration, durations, port_durations, timers, tree_rates
+from roaml.rules.support.timing import (
+    counted_waits,
+    duration,
+    durations,
+    port_durations,
+    running_first,
+    timers,
+    tree_rates,
+)
+from roaml.text import Span
 
 SHORT_RUN = 10**10
 """The `max_time`, in ns, from which on it is probably right if no timer ticks before it: 10 s."""
@@ -86,6 +96,28 @@ def _system(context: SystemContext) -> Iterator[Finding]:
                 f"{duration(end)} (`max_time`)"
             )
             yield RULE.at(place, message)
+    if shown is not None:
+        value = shown.get("value")
+        yield from _too_many_ticks(context.system, end, value.value_span if value is not None else shown.name_span)
+
+
+def _too_many_ticks(system: System, end: int, place: Span) -> Iterator[Finding]:
+    """Report a tree that needs more ticks to succeed than it gets, because its actions are RUNNING at their first
+    tick."""
+    waits = running_first(system)
+    if not waits or max(waits.values()) > end:
+        return  # the tree is never ticked twice, which is reported at the rate
+    effects = tree_effects(system)
+    for root in system.roots:
+        automaton = system.by_instance.get(root.number)
+        least = effects.time_to_success(system, automaton, waits) if automaton is not None else 0
+        if least > end:
+            message = (
+                f"the tree never succeeds: its nodes that are RUNNING at their first tick need {duration(least)} at "
+                f"least, and the system runs for {duration(end)}"
+            )
+            yield RULE.at(place, message)
+            return
 
 
 def _properties(file: LinkedFile) -> Iterator[Finding]:

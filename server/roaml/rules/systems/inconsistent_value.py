@@ -10,11 +10,11 @@ from typing import NamedTuple
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.model.property_file import Port, WrittenProperty
 from roaml.model.property_links import LinkedFile
+from roaml.model.series import Alike, KeyedText, odd_numbers
 from roaml.model.syntax import Name, name_of
 from roaml.model.tree import TreeNode, nodes
 from roaml.record import Record
 from roaml.rules.rule import Rule, SystemContext, TreeContext, listing, replacements
-from roaml.rules.support.series import Alike, KeyedText, odd_numbers
 from roaml.rules.support.words import words_of
 from roaml.text import Span, TextEdit
 from roaml.xml_syntax import Element
@@ -163,20 +163,13 @@ def _texts(node: TreeNode) -> Iterator[KeyedText]:
 
 
 def _system(context: SystemContext) -> Iterator[Finding]:
-    # invalid-instance and repeated-namespace report names and namespaces of instances.
-    reserved = {
-        name.span for f in context.files for key in ("name", "namespace") if (name := name_of(f.input.element.get(key)))
-    }
-    alike = (_input(file.input.element) for file in context.files)
-    yield from (finding for finding in _findings(alike) if finding.span not in reserved)
+    # inconsistent-parameter reports parameters of instances, repeated-namespace their namespaces.
+    return _findings(_input(file.input.element) for file in context.files)
 
 
 def _input(element: Element) -> Alike:
-    names = tuple(name.value for child in element.elements if (name := child.get("name")) is not None)
-    attributes = [(element, key) for key in ("src", "id", "name", "namespace")]
-    attributes += [(child, key) for child in element.elements for key in ("value", "to")]
-    texts = ((key, name_of(part.get(key))) for part, key in attributes)
-    return Alike(names, tuple(KeyedText(key, text) for key, text in texts if text is not None))
+    texts = ((key, name_of(element.get(key))) for key in ("src", "id"))
+    return Alike((), tuple(KeyedText(key, text) for key, text in texts if text is not None))
 
 
 def _properties(file: LinkedFile) -> Iterator[Finding]:

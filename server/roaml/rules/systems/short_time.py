@@ -17,7 +17,7 @@ from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.instances import instances
 from roaml.rules.support.property_problems import problems
 from roaml.rules.support.settings import place_of
-from roaml.rules.support.timing import duration, durations, port_durations, tick_period
+from roaml.rules.support.timing import duration, durations, port_durations, running_first, tick_period
 
 
 def _tree(context: TreeContext) -> Iterator[Finding]:
@@ -120,6 +120,7 @@ def _timeouts(context: TreeContext, times: Mapping[TreeNode, tuple[str, int]]) -
     for _, automaton, _, _, ns in port_durations(context):
         if automaton.instance is not None:
             waits[automaton.instance.number] = ns
+    with_ticks = running_first(context.system) | waits
     reported: set[TreeNode] = set()
     for node, automaton in timed:
         port, ns = times[node]
@@ -127,6 +128,9 @@ def _timeouts(context: TreeContext, times: Mapping[TreeNode, tuple[str, int]]) -
         if automaton.instance.number in waits or node in reported:
             continue
         least = effects.time_to_success(context.system, automaton, waits)
+        if least < ns:
+            least = effects.time_to_success(context.system, automaton, with_ticks)
+            least = least if least > ns else 0  # at the same time, either may be first
         if least >= ns:
             reported.add(node)
             message = (
