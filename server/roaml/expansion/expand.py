@@ -21,7 +21,6 @@ from roaml.expansion.declarations import (
     declarations,
     values,
 )
-from roaml.expansion.instance_numbers import report_inconsistent
 from roaml.expansion.instances import (
     REMAP,
     ListedInstance,
@@ -33,7 +32,7 @@ from roaml.expansion.instances import (
     removed_attribute,
     report_unused,
 )
-from roaml.expansion.namespaces import report_repeated
+from roaml.expansion.namespaces import report_inconsistent, report_repeated
 from roaml.expansion.problems import ExpansionProblem, Problems
 from roaml.expansion.text import CopiedText, ExpandedText, edited_again, expanded_text
 from roaml.expansion.uses import VARIABLE, ParameterUses, uses_in
