@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 import shutil
 from pathlib import Path
 
@@ -33,3 +34,11 @@ async def test_a_counterexample_parts_from_the_nearest_passing_trace(tmp_path: P
     assert here["details"] != there["details"]
     # It is a turn of the counterexample, and highlighted like it.
     assert [turn["highlights"] for turn in trace["steps"] if turn["step"] == here["step"]] == [here["highlights"]]
+    # The steps of both traces are aligned up to the turns that differ.
+    aligned = parting["alignment"]
+    assert (aligned["here"]["step"], aligned["there"]["step"]) == (here["step"] - 1, there["step"] - 1)
+    assert aligned["here"]["end"] >= trace["steps"][-1]["lastStep"]
+    assert all(
+        earlier[0] < later[0] and earlier[1] <= later[1]
+        for earlier, later in itertools.pairwise([*aligned["pairs"], [here["step"], there["step"]]])
+    )

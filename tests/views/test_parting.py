@@ -14,7 +14,7 @@ from roaml.verification.counterexample import unwanted_trace
 from roaml.verification.nearest import nearest
 from roaml.verification.results import Result
 from roaml.views.cause import cause
-from roaml.views.parting import parting, parting_text
+from roaml.views.parting import alignment, parting, parting_text, read_trace
 from roaml.views.turn_words import details
 
 LAMP = """<ascxml name="{name}" version="1.0" initial="off">
@@ -116,6 +116,26 @@ def test_no_other_trace_has_more_in_common(result: Result) -> None:
     assert len(passed) == near.compared > 1
     others = [parting(story, other) for other in passed]
     assert max(other.common for other in others if other is not None and other.there) == near.parting.common
+
+
+def test_states_that_belong_together_have_the_same_turns(result: Result) -> None:
+    assert result.traces is not None
+    story = story_of(result)
+    near = nearest(result, story, result.traces.target.clock)
+    assert near is not None
+    assert near.parting.there is not None
+    aligned = alignment(story, near.story, near.parting)
+    here, there = read_trace(story), read_trace(near.story)
+    assert (aligned.here, aligned.there) == (near.parting.here.number - 1, near.parting.there.number - 1)
+    assert (aligned.here_time, aligned.there_time) == (5.0, 5.0)
+    assert len(aligned.pairs) > near.parting.common // 2
+    for step, other in aligned.pairs:
+        assert step <= aligned.here
+        assert other <= aligned.there
+        for instance, lane in here.lanes.items():
+            done = [here.keys[index] for index in lane if here.turns[index].last <= step]
+            also = [there.keys[index] for index in there.lanes[instance] if there.turns[index].last <= other]
+            assert also[: len(done)] == done or other == aligned.there
 
 
 def test_a_trace_does_not_part_from_itself(result: Result) -> None:

@@ -82,6 +82,49 @@ def first_difference(first: ReadTrace, second: ReadTrace) -> Parting | None:
     return Parting(index, first.turns[index], None if other is None else second.turns[other])
 
 
+class Alignment(Record, frozen=True):
+    """Which states of two traces that part belong to each other.
+
+    Attributes:
+        pairs: numbers of steps after which the first and the second trace have finished a common turn, ascending.
+        here, there: the numbers of steps before the turns that differ.
+        here_time, there_time: the times of these turns, in s; `None` if the model has no clock.
+    """
+
+    pairs: tuple[tuple[int, int], ...]
+    here: int
+    there: int
+    here_time: float | None
+    there_time: float | None
+
+
+def alignment(first: Story, second: Story, difference: Parting) -> Alignment:
+    """The states of two traces that belong to each other up to their first difference.
+
+    The order between different automata can differ, so a state of the second trace is the first one in which it has
+    finished all turns that the first trace has finished, and the turn that differs has not begun.
+    """
+    read, other = read_trace(first), read_trace(second)
+    here = difference.here.number - 1
+    limit = len(second.steps) if difference.there is None else difference.there.number - 1
+    finished = sorted(
+        (read.turns[one].last, other.turns[another].last)
+        for instance, lane in read.lanes.items()
+        for one, another in zip(lane, other.lanes.get(instance, ()), strict=False)
+        if one < difference.common and read.turns[one].last <= here
+    )
+    pairs: list[tuple[int, int]] = []
+    step = 0
+    for one, another in finished:
+        step = max(step, min(another, limit))
+        if pairs and pairs[-1][0] == one:
+            pairs.pop()
+        pairs.append((one, step))
+    there = step if difference.there is None else limit
+    other_time = difference.here.time if difference.there is None else difference.there.time
+    return Alignment(tuple(pairs), here, there, difference.here.time, other_time)
+
+
 def _difference(first: ReadTrace, second: ReadTrace, instance: int) -> tuple[int, int | None] | None:
     """The indexes of the first turns of an automaton that differ."""
     here, there = first.lanes[instance], second.lanes.get(instance, ())
