@@ -217,6 +217,9 @@ async def test_counterexample_leads_to_the_models(robot: Path) -> None:
     assert f". {PLACED} failed in trace {explanation['trace']} after " in explanation["heading"]
     steps = explanation["steps"]
     assert " turns matter" in explanation["heading"]
+    summary = explanation["summary"]
+    assert summary.startswith(f"{PLACED} failed in trace {explanation['trace']} after ")
+    assert summary.endswith(" turns matter")
     numbers = [step["step"] for step in steps]
     assert numbers == sorted(numbers)
     arm = (robot / "arm.ascxml").as_uri()

@@ -303,7 +303,10 @@ export interface Step extends Partial<Place> {
 
 export interface Counterexample {
     readonly property: string;
+    /** What the property requires, why the trace has its verdict, and a summary. */
     readonly heading: string;
+    /** The verdict and the length of the trace. */
+    readonly summary: string;
     readonly verdict: string;
     readonly seed: number;
     readonly trace: number;

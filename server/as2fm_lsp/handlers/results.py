@@ -76,7 +76,9 @@ def register(context: Context) -> None:
 
     @context.feature(COUNTEREXAMPLE)
     async def explain(params: Any) -> Json | None:
-        """The shortest trace that contradicts a property or, with `witness`, supports it; `null` if none is known."""
+        """The shortest trace that contradicts a property or, with `witness`, supports it; `null` if none is known.
+        `heading` is what the property requires, why the trace has its verdict, and a summary of the trace; `summary`
+        is only its verdict and length."""
         path = session.convert.path(document_uri(params))
         current = CurrentResults(context, session.moment().snapshot(path), path)
         known = current.get(string(params, "property"))
@@ -92,6 +94,7 @@ def register(context: Context) -> None:
         return {
             "property": result.name,
             "heading": _heading(markdown.plain(own_words(target, result.name)), why.heading),
+            "summary": why.summary,
             "verdict": why.verdict.value,
             "seed": known.result.traces.options.seed,
             "trace": why.trace,

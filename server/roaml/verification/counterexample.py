@@ -26,13 +26,15 @@ class Counterexample(Record, frozen=True):
     """The explanation of a trace.
 
     Attributes:
-        heading: a summary of the trace, in one sentence.
+        heading: why the trace has its verdict, and a summary of the trace.
+        summary: the verdict of the trace, its length, and how many of its turns matter, in one short sentence.
         verdict: the verdict of the trace on the property.
         trace: the number of the trace.
         lines: one line for each turn of an automaton.
     """
 
     heading: str
+    summary: str
     verdict: TraceVerdict
     trace: int
     lines: tuple[StoryLine, ...]
@@ -104,13 +106,13 @@ def _counterexample(
     verdict = VERDICTS[story.recording.verdict]
     from roaml.verification.nearest import nearest  # noqa: PLC0415
     from roaml.views.cause import cause  # noqa: PLC0415 - most verifications do not need a story
-    from roaml.views.story import heading, lines  # noqa: PLC0415
+    from roaml.views.story import heading, lines, summary  # noqa: PLC0415
 
     place = place_of or _path_and_line(traces.target)
     near = nearest(result, story, traces.target.clock)
     why = cause(story, place, None if near is None else (near.parting, near.story))
     words = f"{why}. {heading(story)}" if why else heading(story)
-    return Counterexample(words, verdict, seen.trace, tuple(lines(story, place)))
+    return Counterexample(words, summary(story), verdict, seen.trace, tuple(lines(story, place)))
 
 
 def _path_and_line(target: VerificationTarget) -> Callable[[Location], str]:

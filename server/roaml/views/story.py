@@ -133,8 +133,8 @@ def as_text(story: Story, place_of: PlaceOf, shown: str = "", near: tuple[Partin
     return f"{text}  {last}\n" if last else text
 
 
-def heading(story: Story) -> str:
-    """A sentence that summarises the trace."""
+def summary(story: Story) -> str:
+    """The verdict of a trace, its length, and how many of its turns matter, in one short sentence."""
     verdict = VERDICTS[story.recording.verdict]
     outcome = "went wrong" if verdict is TraceVerdict.FAULT else verdict.value
     steps = f"{len(story.steps):,} {'step' if len(story.steps) == 1 else 'steps'}"
@@ -147,7 +147,14 @@ def heading(story: Story) -> str:
     if story.is_whole:
         return text
     count = len(turns(story))
-    text += f"; {count:,} {'turn matters' if count == 1 else 'turns matter'}"
+    return f"{text}; {count:,} {'turn matters' if count == 1 else 'turns matter'}"
+
+
+def heading(story: Story) -> str:
+    """A sentence that summarises the trace, with the variables that the property reads."""
+    text = summary(story)
+    if story.is_whole:
+        return text
     automata = {automaton.name for automaton in story.automata}
     read = [name for name in story.variables if not reads_observer(name, automata) and not _is_status(name)]
     variables = message_phrases(read, automata)

@@ -6,6 +6,7 @@
 
 import * as vscode from "vscode";
 import { counterexample, parting, traceState, type Counterexample, type Parting, type Step } from "../protocol";
+import { folded } from "../verification/folded";
 import { AT_STEP, ON_STAGE, type Debugging } from "./debugging";
 import type { PicturePanels } from "./picturePanels";
 import { jump } from "./pictureSource";
@@ -30,12 +31,21 @@ interface Detail {
     readonly text: string;
 }
 
+/** The text above the list if it is long, and a line of it. */
+interface Reason {
+    readonly reasons: readonly ReasonLine[];
+}
+
+interface ReasonLine {
+    readonly line: string;
+}
+
 interface PartingEntry {
     readonly parting: Parting;
     readonly sides: readonly Turn[];
 }
 
-type Entry = Turn | Detail | PartingEntry;
+type Entry = Turn | Detail | PartingEntry | Reason | ReasonLine;
 
 export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvider<Entry> {
     private readonly changed = new vscode.EventEmitter<undefined>();
@@ -44,6 +54,7 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
     private readonly state = new TraceStateView();
     private shown: Counterexample | undefined;
     private turns: readonly Turn[] = [];
+    private reason: Reason | undefined;
     private parting: PartingEntry | undefined;
     private isPartingShown = false;
     private system = "";
@@ -89,6 +100,8 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
         this.shown = trace;
         this.turns = trace.steps.map((step) => ({ step, trace: trace.trace, side: "" }));
         this.system = system;
+        const { message, lines } = folded(`${trace.heading}.`, `${trace.summary}.`);
+        this.reason = lines.length > 0 ? { reasons: lines.map((line) => ({ line })) } : undefined;
         await vscode.commands.executeCommand("setContext", "as2fm.hasCounterexample", true);
         await this.setParting(undefined);
         this.isPartingShown = false;
@@ -96,9 +109,7 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
         await vscode.commands.executeCommand(`${VIEW}.focus`);
         // Only a view that is visible makes space for its message.
         this.view.description = trace.property;
-        this.view.message = trace.stale
-            ? vscode.l10n.t("{0} The files have changed since then.", `${trace.heading}.`)
-            : `${trace.heading}.`;
+        this.view.message = trace.stale ? vscode.l10n.t("{0} The files have changed since then.", message) : message;
         const last = this.turns.at(-1);
         if (last) await this.select(last);
         const found = await this.server.ask(parting, asked);
@@ -164,6 +175,8 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
             item.iconPath = new vscode.ThemeIcon("symbol-variable");
             return item;
         }
+        if ("reasons" in entry) return reasonItem(entry);
+        if ("line" in entry) return new vscode.TreeItem(entry.line);
         return "parting" in entry ? partingItem(entry.parting) : this.turnItem(entry);
     }
 
@@ -186,7 +199,12 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
     }
 
     getChildren(entry?: Entry): Entry[] {
-        if (entry === undefined) return [...(this.parting && this.isPartingShown ? [this.parting] : []), ...this.turns];
+        if (entry === undefined) {
+            const parting = this.parting && this.isPartingShown ? [this.parting] : [];
+            return [...(this.reason ? [this.reason] : []), ...parting, ...this.turns];
+        }
+        if ("reasons" in entry) return [...entry.reasons];
+        if ("line" in entry) return [];
         if ("parting" in entry) return [...entry.sides];
         return "of" in entry || entry.side !== ""
             ? []
@@ -195,6 +213,7 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
 
     getParent(entry: Entry): Entry | undefined {
         if ("of" in entry) return entry.of;
+        if ("line" in entry) return this.reason;
         return "step" in entry && entry.side !== "" ? this.parting : undefined;
     }
 
@@ -231,6 +250,14 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
         const after = vscode.l10n.t("after step {0}", step.lastStep);
         this.state.show(rows ?? [], step.time === "" ? after : `${after}, ${step.time}`);
     }
+}
+
+function reasonItem({ reasons }: Reason): vscode.TreeItem {
+    const item = new vscode.TreeItem(vscode.l10n.t("Why"), vscode.TreeItemCollapsibleState.Collapsed);
+    item.iconPath = new vscode.ThemeIcon("info");
+    item.description = reasons[0]?.line ?? "";
+    item.tooltip = reasons.map(({ line }) => line).join("\n");
+    return item;
 }
 
 function partingItem({ heading }: Parting): vscode.TreeItem {
