@@ -6,7 +6,8 @@ import type { Locator } from "playwright-core";
 import { MEND, sample, SharedFolder, type Stage } from "./support/stage";
 import { themes } from "./support/themes";
 import type { Window } from "./support/window";
-import { write } from "./support/workbench";
+import { ROOT } from "./support/paths";
+import { temporaryFolder, write } from "./support/workbench";
 
 export function verification(stage: Stage): void {
     stage.use();
@@ -232,6 +233,44 @@ export function verification(stage: Stage): void {
         await stage.locator('body[data-step]:not([data-step="0"])').waitFor();
     });
 
+    stage.test("a counterexample beside the nearest passing run, from where they part", dropping, async (window) => {
+        await window.openFile("main_with_bug.xml");
+        await window.running();
+        await window.run("AS2FM: Verify");
+        await window.openFile("properties.jani");
+        await window.repeat(() => lens(window, "Show counterexample").first().click(), selected(window));
+        await window.run("AS2FM: Compare with a Passing Run");
+        const stage = await window.picture(".side.there .pane-timeline .drawing > svg");
+        const [status, here, there] = [".compare-status", ".side.here", ".side.there"].map((part) =>
+            stage.locator(part),
+        ) as [Locator, Locator, Locator];
+        await status.getByText("Here the runs part, at").waitFor();
+        await stage.locator('.side.here[data-where="at"] .side-choice', { hasText: "/block/dropped" }).waitFor();
+        await window.becomes(() => stage.locator(".marked-line:visible").count(), 2);
+        await window.becomes(() => stage.locator(".stage-grid").count(), 2);
+        await window.screenshot("compare-at");
+        const step = async (side: Locator) => Number(await side.getAttribute("data-step"));
+        const [first, second] = [await step(here), await step(there)];
+        const toolbar = stage.locator("body > .stage-bar");
+
+        // One toolbar moves both. Before the runs part, they do the same; after it, the same time has passed.
+        await toolbar.getByRole("button", { name: "Step Forward (.)" }).click();
+        await status.getByText("The runs have parted").waitFor();
+        await window.becomes(() => step(here), first + 1);
+        await window.until(async () => (await step(there)) > second);
+        await toolbar.getByRole("button", { name: "Go to the Start" }).click();
+        await status.getByText("both runs do the same").waitFor();
+        await window.becomes(async () => [await step(here), await step(there)], [0, 0]);
+        await status.getByRole("button", { name: "Where the Runs Part" }).click();
+        await window.becomes(async () => [await step(here), await step(there)], [first, second]);
+
+        // The second run leads if the user goes to a step in its timeline.
+        await there.locator(".rows").press("ArrowRight");
+        await window.becomes(() => step(there), second + 1);
+        await window.until(async () => (await step(here)) > first);
+        await window.screenshot("compare-after");
+    });
+
     stage.test("an expectation is set from a result and judges it at once", late, async (window) => {
         await window.openFile("properties.jani");
         await window.running();
@@ -252,6 +291,13 @@ export function verification(stage: Stage): void {
         await lens(window, "Show witness").first().click();
         await window.page.locator(".panel .message", { hasText: "all_delivered passed in trace" }).waitFor();
     });
+}
+
+/** A copy of the robot that drops the block. */
+function dropping(): string {
+    const folder = path.join(temporaryFolder("robot"), "assembly_robot");
+    fs.cpSync(path.join(ROOT, "examples/assembly_robot"), folder, { recursive: true });
+    return folder;
 }
 
 /** A robot that charges too late, after its battery is empty. */

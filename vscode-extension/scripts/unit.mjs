@@ -22,7 +22,7 @@ await esbuild.build({
     target: "node20",
     outExtension: { ".js": ".mjs" },
     alias: { vscode: "./test/support/vscode.ts" },
-    external: ["vscode-oniguruma", "vscode-textmate"],
+    external: ["vscode-oniguruma", "vscode-textmate", "vscode-languageserver-protocol/node.js"],
     logLevel: "warning",
 });
 const tests = fs.readdirSync(out).map((name) => path.join(out, name));

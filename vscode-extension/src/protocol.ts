@@ -13,6 +13,7 @@ import type {
     Place,
     Theme,
 } from "./pictures/contract";
+import type { Alignment } from "./stage/alignment";
 
 export type FileKind = "machine" | "system" | "tree" | "structs" | "properties" | "interface" | "model" | "";
 
@@ -317,7 +318,8 @@ export interface Counterexample {
 
 /**
  * The first difference between a trace and the nearest one with the opposite verdict: what an automaton does in each.
- * `there` is null if it does nothing more; `trace` is the number of the other trace, null if it has none.
+ * `there` is null if it does nothing more; `trace` is the number of the other trace, null if it has none. `alignment`
+ * says which steps of both belong together.
  */
 export interface Parting {
     readonly heading: string;
@@ -325,6 +327,7 @@ export interface Parting {
     readonly there: Step | null;
     readonly seed: number;
     readonly trace: number | null;
+    readonly alignment: Alignment;
 }
 
 export interface PropertyParams extends DocumentParams {

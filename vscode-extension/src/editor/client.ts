@@ -42,6 +42,7 @@ export const EXPERIMENT = "as2fm.experiment";
 export const SHOW_COUNTEREXAMPLE = "as2fm.showCounterexample";
 export const SHOW_WITNESS = "as2fm.showWitness";
 export const SET_EXPECTATION = "as2fm.setExpectation";
+export const COMPARE_RUNS = "as2fm.compareRuns";
 export const DEBUG_COUNTEREXAMPLE = "as2fm.debugCounterexample";
 
 /** Debugs a system or a tree. Arguments: its URI, and attributes of `launch`. */

@@ -5,6 +5,7 @@ import { migrate, TRANSLATE } from "../protocol";
 import { thisHost } from "../server/host";
 import { pythons } from "../server/python";
 import {
+    COMPARE_RUNS,
     DEBUG_COUNTEREXAMPLE,
     DEBUG_MODEL,
     EDIT_MOCKS,
@@ -15,6 +16,7 @@ import {
     SHOW_WITNESS,
 } from "./client";
 import type { Activation } from "./activation";
+import { compareRuns } from "./compareRuns";
 import type { Counterexamples } from "./counterexamples";
 import type { Debugging, Trace } from "./debugging";
 import type { Documents } from "./documents";
@@ -112,6 +114,15 @@ export function registerCommands(parts: Parts): void {
         ),
     );
     context.subscriptions.push(
+        // From the command palette and the view of a counterexample, without arguments.
+        vscode.commands.registerCommand(
+            COMPARE_RUNS,
+            async (of: string | vscode.TestItem | Asked | undefined, property: string) => {
+                const { asked: shown } = parts.counterexamples;
+                const asked = of === undefined ? shown : parts.tests.asked(of, property);
+                if (asked && isTrusted()) await compareRuns(server, parts.debugging, asked);
+            },
+        ),
         vscode.commands.registerCommand(
             DEBUG_COUNTEREXAMPLE,
             (of: string | vscode.TestItem | Asked, property: string, trace?: Trace) => {

@@ -11,6 +11,7 @@ import { AT_STEP, ON_STAGE, type Debugging } from "./debugging";
 import type { PicturePanels } from "./picturePanels";
 import { jump } from "./pictureSource";
 import type { LanguageServer } from "./server";
+import type { Asked } from "./tests";
 import { TraceStateView } from "./traceState";
 
 const VIEW = "as2fm.counterexample";
@@ -57,6 +58,7 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
     private reason: Reason | undefined;
     private parting: PartingEntry | undefined;
     private isPartingShown = false;
+    private isWitness = false;
     private system = "";
     /** The last step of the trace that was selected. */
     private current: Turn | undefined;
@@ -100,6 +102,7 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
         this.shown = trace;
         this.turns = trace.steps.map((step) => ({ step, trace: trace.trace, side: "" }));
         this.system = system;
+        this.isWitness = witness;
         const { message, lines } = folded(`${trace.heading}.`, `${trace.summary}.`);
         this.reason = lines.length > 0 ? { reasons: lines.map((line) => ({ line })) } : undefined;
         await vscode.commands.executeCommand("setContext", "as2fm.hasCounterexample", true);
@@ -146,6 +149,11 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
         await this.select(here);
     }
 
+    /** The property whose trace is shown, and whether it supports the property. */
+    get asked(): (Asked & { readonly witness: boolean }) | undefined {
+        return this.shown && { system: this.system, property: this.shown.property, witness: this.isWitness };
+    }
+
     /** Debug a trace on the stage, from its start or after a step. */
     private async showOnStage(trace?: number, step?: number): Promise<void> {
         const system = this.server.client?.protocol2CodeConverter.asUri(this.system);
@@ -183,9 +191,9 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
     private turnItem(turn: Turn): vscode.TreeItem {
         const { Expanded, None } = vscode.TreeItemCollapsibleState;
         const { step, side } = turn;
-        if (!step) return new vscode.TreeItem(vscode.l10n.t("there: {0}", vscode.l10n.t("takes no further turn")));
-        const label = step.who === "" ? step.what : `${step.who}: ${step.what}`;
         const parting = side === "" ? undefined : this.parting?.parting;
+        if (!step) return new vscode.TreeItem(parting ? sideLabel(parting, "there") : "");
+        const label = step.who === "" ? step.what : `${step.who}: ${step.what}`;
         const item = new vscode.TreeItem(label, side === "" && step.details.length > 0 ? Expanded : None);
         if (side !== "" && parting) item.label = sideLabel(parting, side);
         item.description = [step.time, step.place].filter((text) => text !== "").join(" · ");
@@ -268,10 +276,18 @@ function partingItem({ heading }: Parting): vscode.TreeItem {
 }
 
 /** What one side does and the other does not. */
-function sideLabel({ here, there }: Parting, side: "here" | "there"): string {
+export function differing({ here, there }: Parting, side: "here" | "there"): string {
     const [one, other] = side === "here" ? [here, there] : [there, here];
     const others = other ? [other.what, ...other.details] : [];
-    const differing = one ? [one.what, ...one.details].filter((text) => !others.includes(text)) : [];
-    const text = differing.length > 0 ? differing.join(", ") : (one?.what ?? "");
+    if (!one) return vscode.l10n.t("takes no further turn");
+    const texts = [one.what, ...one.details];
+    const own = texts.filter((text) => !others.includes(text));
+    if (own.length > 0) return own.join(", ");
+    const missing = others.filter((text) => !texts.includes(text));
+    return missing.length > 0 ? vscode.l10n.t("the same without: {0}", missing.join(", ")) : one.what;
+}
+
+function sideLabel(parting: Parting, side: "here" | "there"): string {
+    const text = differing(parting, side);
     return side === "here" ? vscode.l10n.t("here: {0}", text) : vscode.l10n.t("there: {0}", text);
 }

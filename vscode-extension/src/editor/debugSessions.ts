@@ -20,6 +20,16 @@ export interface Stopped {
     readonly threadId: number;
 }
 
+/** A run whose state is shown. */
+export interface Run {
+    /** Where its adapter is asked while it has stopped. */
+    readonly current: Pick<vscode.DebugSession, "configuration" | "customRequest"> | undefined;
+    readonly onStopped: vscode.Event<unknown>;
+    readonly onEnded: vscode.Event<unknown>;
+    /** The answer to a request; errors are shown. */
+    request(command: string, options: object): Promise<unknown>;
+}
+
 /** The requests after which a run moves until it stops. */
 const MOVING = new Set(["continue", "reverseContinue", "next", "stepIn", "stepOut", "stepBack", "goToStep", "restart"]);
 
@@ -31,7 +41,7 @@ function tellFailure(reason: string): void {
     });
 }
 
-export class DebugSessions implements vscode.Disposable {
+export class DebugSessions implements Run, vscode.Disposable {
     private readonly stopped = new vscode.EventEmitter<vscode.DebugSession>();
     private readonly moving = new vscode.EventEmitter<vscode.DebugSession>();
     private readonly ended = new vscode.EventEmitter<vscode.DebugSession>();

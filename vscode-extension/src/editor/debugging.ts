@@ -15,6 +15,9 @@ export const ON_STAGE = "onStage";
 /** The attribute of a run with the step at which it is shown first. */
 export const AT_STEP = "atStep";
 
+/** The attribute of a run that is shown beside another one: a `ComparedWith`. */
+export const COMPARED_WITH = "comparedWith";
+
 /** A trace of `verify`. */
 export interface Trace {
     readonly seed: number;

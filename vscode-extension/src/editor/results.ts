@@ -6,7 +6,7 @@
 
 import * as vscode from "vscode";
 import { VERIFY, type Property, type ResultView, type VerifiableSystem } from "../protocol";
-import { SHOW_COUNTEREXAMPLE, SHOW_WITNESS } from "./client";
+import { COMPARE_RUNS, SHOW_COUNTEREXAMPLE, SHOW_WITNESS } from "./client";
 import { jump } from "./pictureSource";
 import type { Asked, PropertyTests } from "./tests";
 import { isTrusted } from "./trust";
@@ -166,6 +166,8 @@ function linesOf({ system, property }: PropertyRow, view: ResultView): Line[] {
     });
     if (view.counterexample)
         lines.push(shows(SHOW_COUNTEREXAMPLE, vscode.l10n.t("Show Counterexample"), "debug-stackframe"));
+    if (view.counterexample && view.witness)
+        lines.push(shows(COMPARE_RUNS, vscode.l10n.t("Compare with a Passing Run"), "git-compare"));
     if (view.witness) lines.push(shows(SHOW_WITNESS, vscode.l10n.t("Show Witness"), "debug-stackframe-dot"));
     return lines;
 }

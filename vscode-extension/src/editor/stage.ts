@@ -6,6 +6,7 @@ import type { Activity, PictureKind } from "../pictures/contract";
 import { about } from "../protocol";
 import {
     PICTURES,
+    type Comparison,
     type FromStage,
     type Moment,
     type MomentsRequest,
@@ -17,8 +18,9 @@ import {
     type ToStage,
     type Verdict,
 } from "../stage/contract";
-import { AT_STEP, ON_STAGE } from "./debugging";
-import type { DebugSessions } from "./debugSessions";
+import { AT_STEP, COMPARED_WITH, ON_STAGE } from "./debugging";
+import type { DebugSessions, Run } from "./debugSessions";
+import { ComparedRun } from "./comparedRun";
 import { activeNodes, type Answer } from "./pictureActivity";
 import type { PicturePanels } from "./picturePanels";
 import { jump, PictureSource, type ActiveNode } from "./pictureSource";
@@ -41,6 +43,14 @@ interface Choices {
     readonly end: string | null;
     readonly fault: string | null;
     readonly choices: readonly { readonly text: string; readonly isNext: boolean }[];
+}
+
+/** The run that is shown beside the one that is debugged; both are traces with the same seed. */
+export interface ComparedWith {
+    readonly trace: number;
+    readonly comparison: Comparison;
+    /** The picture in which the runs part. */
+    readonly picture: PicturePane;
 }
 
 export class Stage implements vscode.Disposable {
@@ -72,25 +82,59 @@ export class Stage implements vscode.Disposable {
     }
 
     private async begin(session: vscode.DebugSession): Promise<void> {
+        const compared = session.configuration[COMPARED_WITH] as ComparedWith | undefined;
+        // The timelines of two runs show them to their ends.
+        if (compared) await this.goTo(session, compared.comparison.alignment.here.end);
         await this.open();
         const step: unknown = session.configuration[AT_STEP];
         if (typeof step === "number") await session.customRequest("goToStep", { step });
+    }
+
+    /** Resolves when the run has stopped there. */
+    private async goTo(session: vscode.DebugSession, step: number): Promise<void> {
+        const stopped = new Promise<void>((resolve) => {
+            const waiting = this.sessions.onStopped(() => {
+                waiting.dispose();
+                resolve();
+            });
+        });
+        await session.customRequest("goToStep", { step });
+        await stopped;
+    }
+
+    /** The run beside the one that is debugged; undefined if there is none. */
+    private async beside({ configuration }: vscode.DebugSession): Promise<ComparedRun | undefined> {
+        const compared = configuration[COMPARED_WITH] as ComparedWith | undefined;
+        const { state } = this.server;
+        if (!compared || state.kind !== "running") return undefined;
+        const { end, step } = compared.comparison.alignment.there;
+        try {
+            const other = { ...configuration, trace: compared.trace };
+            return await ComparedRun.start(state.server, other, end, step);
+        } catch (error) {
+            void vscode.window.showErrorMessage(error instanceof Error ? error.message : String(error));
+            return undefined;
+        }
     }
 
     /** Show the run that is debugged. */
     private async open(): Promise<void> {
         const session = this.sessions.current ?? vscode.debug.activeDebugSession;
         const program: unknown = session?.configuration["program"];
-        if (typeof program !== "string") return;
+        if (!session || typeof program !== "string") return;
+        const compared = session.configuration[COMPARED_WITH] as ComparedWith | undefined;
+        const comparedIn = compared && session.id;
         const uri = vscode.Uri.file(program);
         const kinds = await this.kindsOf(uri);
-        if (this.panel?.shows(uri)) {
+        if (this.panel?.shows(uri, comparedIn)) {
             this.panel.reveal();
             return;
         }
         this.panel?.dispose();
-        await this.makeSpace();
-        const panel = new StagePanel(uri, kinds, this.context, this.sessions, this.server, this.log);
+        const beside = await this.beside(session);
+        await this.makeSpace(beside ? 0.27 : 0.34);
+        const about = { uri, kinds, compared, comparedIn };
+        const panel = new StagePanel(about, this.context, this.sessions, beside, this.server, this.log);
         this.panel = panel;
         for (const source of panel.sources) this.pictures.add(source);
         panel.onDispose(() => {
@@ -104,11 +148,11 @@ export class Stage implements vscode.Disposable {
     }
 
     /** The source on the left, the stage on the right; it has the timeline, so that the panel below is not needed. */
-    private async makeSpace(): Promise<void> {
+    private async makeSpace(size: number): Promise<void> {
         await vscode.commands.executeCommand("workbench.action.closePanel");
         await vscode.commands.executeCommand("vscode.setEditorLayout", {
             orientation: 0,
-            groups: [{ size: 0.34 }, { size: 0.66 }],
+            groups: [{ size }, { size: 1 - size }],
         });
     }
 
@@ -121,54 +165,65 @@ export class Stage implements vscode.Disposable {
     }
 }
 
+/** What a panel shows. */
+interface Shown {
+    readonly uri: vscode.Uri;
+    readonly kinds: readonly PicturePane[];
+    readonly compared: ComparedWith | undefined;
+    /** The id of the session whose run is compared; undefined if the panel follows any session. */
+    readonly comparedIn: string | undefined;
+}
+
 class StagePanel {
     private readonly panel: vscode.WebviewPanel;
-    private readonly bySource = new Map<PicturePane, PictureSource>();
-    private readonly timeline: TimelineSource;
+    private readonly runs: { readonly here: RunOnStage; readonly there?: RunOnStage };
     private readonly subscriptions: { dispose(): unknown }[];
 
     constructor(
-        private readonly uri: vscode.Uri,
-        private readonly kinds: readonly PicturePane[],
+        private readonly about: Shown,
         context: vscode.ExtensionContext,
-        private readonly sessions: DebugSessions,
+        sessions: DebugSessions,
+        beside: ComparedRun | undefined,
         server: LanguageServer,
         log: vscode.LogOutputChannel,
     ) {
         const dist = vscode.Uri.joinPath(context.extensionUri, "dist");
-        const title = vscode.l10n.t("Stage: {0}", vscode.workspace.asRelativePath(uri));
+        const title = vscode.l10n.t("Stage: {0}", vscode.workspace.asRelativePath(about.uri));
         const column = { viewColumn: vscode.ViewColumn.Two, preserveFocus: false };
         this.panel = webviewPanel(context, dist, "as2fm.stage", title, column);
         const { webview } = this.panel;
-        for (const kind of kinds) {
-            const post = (message: Parameters<PictureSource["host"]["post"]>[0]) => {
-                this.post({ to: kind, message });
+        const post = (message: ToStage) => {
+            this.post(message);
+        };
+        const { kinds } = about;
+        const shown = beside && about.compared ? [about.compared.picture, "timeline" as const] : undefined;
+        const here = new RunOnStage(kinds, sessions, moveSession(sessions), post, server, log, shown);
+        this.subscriptions = [here, webview.onDidReceiveMessage((message: FromStage) => void this.receive(message))];
+        if (beside) {
+            const postThere = (message: ToStage) => {
+                post({ to: "there", message });
             };
-            this.bySource.set(kind, new PictureSource(kind, server, log, { post, setTitle: () => undefined }));
-        }
-        this.timeline = new TimelineSource(sessions, (message) => {
-            this.post({ to: "timeline", message });
-        });
-        this.subscriptions = [
-            this.timeline,
-            sessions.onStopped(() => void this.stopped()),
-            sessions.onEnded(() => {
-                this.post({ to: "ended" });
-            }),
-            webview.onDidReceiveMessage((message: FromStage) => void this.receive(message)),
-        ];
+            const there = new RunOnStage(kinds, beside, () => Promise.resolve(), postThere, server, log, shown);
+            this.runs = { here, there };
+            const ended = sessions.onEnded(({ id }) => {
+                if (id === about.comparedIn) beside.dispose();
+            });
+            const showActivity = beside.onStopped(() => void there.showActivity());
+            this.subscriptions.push(beside, there, ended, showActivity);
+        } else this.runs = { here };
         this.panel.onDidDispose(() => {
             for (const part of this.subscriptions) part.dispose();
         });
         webview.html = webviewPage(webview, dist, "stage.js", ["view.css", "timeline.css", "stage.css"]);
     }
 
+    /** The pictures that show the run that is debugged. */
     get sources(): Iterable<PictureSource> {
-        return this.bySource.values();
+        return this.runs.here.sources;
     }
 
-    shows(uri: vscode.Uri): boolean {
-        return this.uri.toString() === uri.toString();
+    shows(uri: vscode.Uri, comparedIn: string | undefined): boolean {
+        return this.about.uri.toString() === uri.toString() && this.about.comparedIn === comparedIn;
     }
 
     reveal(): void {
@@ -184,7 +239,8 @@ class StagePanel {
     }
 
     async show(): Promise<void> {
-        for (const source of this.sources) await source.show(this.uri);
+        const { here, there } = this.runs;
+        for (const source of [...here.sources, ...(there?.sources ?? [])]) await source.show(this.about.uri);
     }
 
     private post(message: ToStage): void {
@@ -192,13 +248,72 @@ class StagePanel {
     }
 
     private async receive(message: FromStage): Promise<void> {
+        const { here, there } = this.runs;
+        const { compared } = this.about;
+        if (message.from === "there") await there?.receive(message.message);
+        else if (message.from === "ready") {
+            if (there && compared) this.post({ to: "compare", comparison: compared.comparison });
+            await here.begin();
+            await there?.begin();
+            await there?.showActivity();
+        } else await here.receive(message);
+    }
+}
+
+/** One of the runs on the stage: its pictures, its timeline, its properties. */
+class RunOnStage implements vscode.Disposable {
+    private readonly bySource = new Map<PicturePane, PictureSource>();
+    private readonly timeline: TimelineSource;
+    private readonly subscriptions: { dispose(): unknown }[];
+
+    /** `shown` are the panes that are shown first; all if undefined. */
+    constructor(
+        private readonly kinds: readonly PicturePane[],
+        private readonly run: Run,
+        private readonly move: (move: Move) => Promise<void>,
+        private readonly post: (message: ToStage) => void,
+        server: LanguageServer,
+        log: vscode.LogOutputChannel,
+        private readonly shown: readonly Pane[] | undefined,
+    ) {
+        for (const kind of kinds) {
+            const postTo = (message: Parameters<PictureSource["host"]["post"]>[0]) => {
+                post({ to: kind, message });
+            };
+            this.bySource.set(kind, new PictureSource(kind, server, log, { post: postTo, setTitle: () => undefined }));
+        }
+        this.timeline = new TimelineSource(run, (message) => {
+            post({ to: "timeline", message });
+        });
+        this.subscriptions = [
+            this.timeline,
+            run.onStopped(() => void this.stopped()),
+            run.onEnded(() => {
+                post({ to: "ended" });
+            }),
+        ];
+    }
+
+    get sources(): Iterable<PictureSource> {
+        return this.bySource.values();
+    }
+
+    dispose(): void {
+        for (const part of this.subscriptions) part.dispose();
+    }
+
+    /** Fill the page, which is ready. */
+    async begin(): Promise<void> {
+        const panes: readonly Pane[] = [...this.kinds, "timeline", "properties"];
+        const shown = panes.filter((pane) => this.shown?.includes(pane) ?? true);
+        this.post({ to: "words", words: words(), panes, shown });
+        for (const source of this.sources) await source.receive({ type: "ready" });
+        await this.timeline.receive({ type: "ready" });
+        await this.stopped();
+    }
+
+    async receive(message: FromStage): Promise<void> {
         switch (message.from) {
-            case "ready":
-                this.post({ to: "words", words: words(), panes: [...this.kinds, "timeline", "properties"] });
-                for (const source of this.sources) await source.receive({ type: "ready" });
-                await this.timeline.receive({ type: "ready" });
-                await this.stopped();
-                break;
             case "timeline":
                 await this.timeline.receive(message.message);
                 break;
@@ -215,32 +330,26 @@ class StagePanel {
             case "tree":
             case "ros":
                 await this.bySource.get(message.from)?.receive(message.message);
+                break;
+            case "ready":
+            case "there":
+                break; // for the panel
         }
     }
 
-    private async move(move: Move): Promise<void> {
-        switch (move) {
-            case "toStart":
-                await this.sessions.request("goToStep", { step: 0 });
-                break;
-            case "reverse":
-                await vscode.commands.executeCommand("workbench.action.debug.reverseContinue");
-                break;
-            case "stepBack":
-                await vscode.commands.executeCommand("workbench.action.debug.stepBack");
-                break;
-            case "stepForward":
-                await vscode.commands.executeCommand("workbench.action.debug.stepInto");
-                break;
-            case "continue":
-                await vscode.commands.executeCommand("workbench.action.debug.continue");
-                break;
+    /** Show in the pictures what is active. */
+    async showActivity(): Promise<void> {
+        try {
+            const answer = (await this.run.current?.customRequest("pictures")) as Answer | undefined;
+            if (answer) for (const source of this.sources) source.showActivity(activeNodes(answer), answer.edges);
+        } catch {
+            // The run is moving again; its activity is shown where it stops.
         }
     }
 
     /** Tell the page where the run has stopped. */
     private async stopped(): Promise<void> {
-        const session = this.sessions.current;
+        const session = this.run.current;
         if (!session) {
             this.post({ to: "ended" });
             return;
@@ -258,6 +367,7 @@ class StagePanel {
                     step: choices.step,
                     time: choices.time,
                     next: choices.fault ?? (ended === "" && next !== "" ? vscode.l10n.t("Next: {0}", next) : ended),
+                    isEnd: choices.end !== null || choices.fault !== null,
                     properties: properties.map(propertyOf),
                 },
             });
@@ -268,13 +378,39 @@ class StagePanel {
 
     private async moments(asked: MomentsRequest): Promise<readonly Moment[] | null> {
         try {
-            const answer = (await this.sessions.current?.customRequest("moments", asked)) as
+            const answer = (await this.run.current?.customRequest("moments", asked)) as
                 { readonly moments: readonly MomentAnswer[] } | undefined;
             return answer?.moments.map(momentOf) ?? null;
         } catch {
             return null;
         }
     }
+}
+
+/** Move the run that is debugged, as the buttons of VS Code do. */
+function moveSession(sessions: DebugSessions): (move: Move) => Promise<void> {
+    const run = async (command: string) => {
+        await vscode.commands.executeCommand(`workbench.action.debug.${command}`);
+    };
+    return async (move) => {
+        switch (move) {
+            case "toStart":
+                await sessions.request("goToStep", { step: 0 });
+                break;
+            case "reverse":
+                await run("reverseContinue");
+                break;
+            case "stepBack":
+                await run("stepBack");
+                break;
+            case "stepForward":
+                await run("stepInto");
+                break;
+            case "continue":
+                await run("continue");
+                break;
+        }
+    };
 }
 
 function momentOf({ step, position, time, isEnd, stop, verdicts, ...answer }: MomentAnswer): Moment {

@@ -4,7 +4,7 @@
 import * as path from "node:path";
 import * as vscode from "vscode";
 import type { FromTimeline, Tile, TileRequest, TimelineWords, ToTimeline } from "../timeline/contract";
-import type { DebugSessions } from "./debugSessions";
+import type { DebugSessions, Run } from "./debugSessions";
 import { webviewPage } from "./webviewPage";
 
 const VIEW = "as2fm.timeline";
@@ -14,7 +14,7 @@ export class TimelineSource implements vscode.Disposable {
     private readonly subscriptions: vscode.Disposable[];
 
     constructor(
-        private readonly sessions: DebugSessions,
+        private readonly sessions: Run,
         private readonly post: (message: ToTimeline) => void,
     ) {
         this.subscriptions = [

@@ -3,6 +3,7 @@
 
 import type { Activity, FromView, PictureKind, Place, ToView } from "../pictures/contract";
 import type { Axis, FromTimeline, ToTimeline } from "../timeline/contract";
+import type { Alignment, SideName } from "./alignment";
 
 /** The pictures on the stage, in their order. */
 export const PICTURES = ["system", "tree", "ros"] as const satisfies readonly PictureKind[];
@@ -25,13 +26,13 @@ export interface Moment {
     readonly verdicts: Readonly<Record<string, Verdict>>;
 }
 
-/** The states at `from`, `from + by`, …, at most `count`, of those after the step `after`. */
+/** The states at `from`, `from + by`, …, at most `count`; with `after`, those after this step. */
 export interface MomentsRequest {
     readonly axis: Axis;
     readonly from: number;
     readonly by: number;
     readonly count: number;
-    readonly after: number;
+    readonly after?: number;
 }
 
 /** A property of the run; `text` is what it requires, in a sentence, if it is written. */
@@ -48,6 +49,7 @@ export interface StageState {
     readonly time: number | null;
     /** What happens next, or why nothing does. */
     readonly next: string;
+    readonly isEnd: boolean;
     readonly properties: readonly StageProperty[];
 }
 
@@ -72,15 +74,48 @@ export interface StageWords {
     readonly nothing: string;
 }
 
+/** A run whose verdict is compared with that of another one. */
+export interface ComparedRun {
+    /** Which trace it is, and its verdict. */
+    readonly title: string;
+    /** What it does where the runs part, and the other one does not. */
+    readonly choice: string;
+}
+
+/** Two runs side by side, in the language of the user. */
+export interface Comparison {
+    readonly alignment: Alignment;
+    readonly runs: Readonly<Record<SideName, ComparedRun>>;
+    /** Up to where the runs part, there, and after it. */
+    readonly before: string;
+    readonly at: string;
+    readonly after: string;
+    /** The button that goes to where the runs part. */
+    readonly goToParting: string;
+    readonly step: string;
+}
+
 export type ToStage =
+    /** The first message, if the stage shows two runs. */
+    | { readonly to: "compare"; readonly comparison: Comparison }
+    /** For the stage of the second run. */
+    | { readonly to: "there"; readonly message: ToStage }
     | { readonly to: PicturePane; readonly message: ToView }
     | { readonly to: "timeline"; readonly message: ToTimeline }
-    | { readonly to: "words"; readonly words: StageWords; readonly panes: readonly Pane[] }
+    /** `shown` are those of the panes that are shown first. */
+    | {
+          readonly to: "words";
+          readonly words: StageWords;
+          readonly panes: readonly Pane[];
+          readonly shown: readonly Pane[];
+      }
     | { readonly to: "stopped"; readonly state: StageState }
     | { readonly to: "ended" }
     | { readonly to: "moments"; readonly asked: MomentsRequest; readonly moments: readonly Moment[] | null };
 
 export type FromStage =
+    /** From the stage of the second run. */
+    | { readonly from: "there"; readonly message: FromStage }
     | { readonly from: PicturePane; readonly message: FromView }
     | { readonly from: "timeline"; readonly message: FromTimeline }
     | { readonly from: "ready" }

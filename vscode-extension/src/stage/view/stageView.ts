@@ -3,6 +3,7 @@
 
 import type { FromView } from "../../pictures/contract";
 import { PictureView } from "../../pictures/view/pictureView";
+import type { Axis } from "../../timeline/contract";
 import { TimelineView } from "../../timeline/view/timelineView";
 import {
     MOVES,
@@ -25,7 +26,7 @@ const LEAST_SCALE = 0.6;
 const VERDICT_SIGNS = { passed: "✓", failed: "✗", undecided: "…" } as const;
 
 export class StageView {
-    private readonly bar = element("div", "bar stage-bar");
+    readonly bar = element("div", "bar stage-bar");
     private readonly caption = element("div", "caption");
     private readonly grid = element("div", "stage-grid");
     private readonly position = element("span", "position");
@@ -40,6 +41,12 @@ export class StageView {
     private state: StageState | undefined;
     private film: Film | undefined;
     private shown: Moment | undefined;
+    /** Called with each state that is shown, also while it is played. */
+    onShown: (at: StageState | Moment, isPlayed: boolean) => void = () => undefined;
+    /** The stage that the toolbar also changes. */
+    private follower: StageView | undefined;
+    /** The stage whose toolbar is used instead of that of this one. */
+    private leader: StageView | undefined;
     /** Why playing has ended. */
     private reason = "";
     private lastFrame = 0;
@@ -76,7 +83,7 @@ export class StageView {
     receive(message: ToStage): void {
         switch (message.to) {
             case "words":
-                this.begin(message.words, message.panes);
+                this.begin(message.words, message.panes, message.shown);
                 break;
             case "timeline":
                 this.timeline.receive(message.message);
@@ -98,7 +105,32 @@ export class StageView {
             case "tree":
             case "ros":
                 this.pictures.get(message.to)?.receive(message.message);
+                break;
+            case "compare":
+            case "there":
+                break; // for the page with two stages
         }
+    }
+
+    /** Let the toolbar of this stage change another one as well, which shows a second run. */
+    lead(follower: StageView): void {
+        this.follower = follower;
+        follower.leader = this;
+        this.timeline.lead(follower.timeline);
+    }
+
+    /** The axis of the timeline. */
+    get axis(): Axis {
+        return this.timeline.axis;
+    }
+
+    get isAtEnd(): boolean {
+        return this.state?.isEnd === true;
+    }
+
+    /** Mark a position of the run in the timeline. */
+    mark(step: number, time: number | null, text: string): void {
+        this.timeline.mark({ step, time }, text);
     }
 
     private addPane(pane: Pane): HTMLElement {
@@ -110,13 +142,13 @@ export class StageView {
         return content;
     }
 
-    private begin(words: StageWords, panes: readonly Pane[]): void {
+    private begin(words: StageWords, panes: readonly Pane[], shown: readonly Pane[]): void {
         this.words = words;
         for (const [pane, section] of this.panes) {
             section.setAttribute("aria-label", words.panes[pane]);
             const title = section.querySelector(".pane-title");
             if (title) title.textContent = words.panes[pane];
-            if (!panes.includes(pane)) this.hidden.add(pane);
+            if (!shown.includes(pane)) this.hidden.add(pane);
         }
         this.fillBar(words, panes);
         this.arrange();
@@ -140,6 +172,7 @@ export class StageView {
         this.reason = "";
         this.showPosition(state.step, state.time);
         this.showProperties(state.properties);
+        this.onShown(state, false);
     }
 
     private showPosition(step: number, time: number | null): void {
@@ -175,7 +208,8 @@ export class StageView {
     // ------------------------------------------------------------------- playing
 
     private toggle(): void {
-        if (this.film) this.stop(true);
+        if (this.leader) this.leader.toggle();
+        else if (this.film) this.stop(true);
         else this.play();
     }
 
@@ -211,6 +245,17 @@ export class StageView {
         else requestAnimationFrame(this.frame);
     };
 
+    /** End playing; the run stays where it is. */
+    pause(): void {
+        this.stop(false);
+    }
+
+    /** Show a state without moving the run. */
+    preview(moment: Moment): void {
+        this.timeline.play(moment);
+        this.showMoment(moment);
+    }
+
     private showMoment(moment: Moment): void {
         const before = this.shown;
         this.shown = moment;
@@ -224,6 +269,7 @@ export class StageView {
                 properties.map((one) => ({ ...one, verdict: moment.verdicts[one.name] ?? one.verdict })),
             );
         this.reason = moment.stop ?? "";
+        this.onShown(moment, true);
     }
 
     /** End playing. With `goes`, the debugger goes to what is shown, so that all other views show it, too. */
@@ -259,8 +305,25 @@ export class StageView {
     }
 
     private move(move: Move): void {
-        if (this.film) this.stop(true);
+        if (this.leader) this.leader.move(move);
+        else if (this.film) this.stop(true);
         else this.post({ from: "move", move });
+    }
+
+    /** This stage, and the one that its toolbar also changes. */
+    private get stages(): readonly StageView[] {
+        return this.follower ? [this, this.follower] : [this];
+    }
+
+    private showPane(pane: Pane, isShown: boolean): void {
+        if (isShown) this.hidden.delete(pane);
+        else this.hidden.add(pane);
+        this.arrange();
+    }
+
+    private fit(): void {
+        for (const [pane, view] of this.pictures) if (!this.hidden.has(pane)) view.fit();
+        this.timeline.fit();
     }
 
     private fillBar(words: StageWords, panes: readonly Pane[]): void {
@@ -294,9 +357,9 @@ export class StageView {
         });
         const toggles = panes.map((pane) => {
             const made = button(words.panes[pane], words.panes[pane], () => {
-                if (!this.hidden.delete(pane)) this.hidden.add(pane);
-                made.setAttribute("aria-pressed", String(!this.hidden.has(pane)));
-                this.arrange();
+                const isShown = this.hidden.has(pane);
+                for (const stage of this.stages) stage.showPane(pane, isShown);
+                made.setAttribute("aria-pressed", String(isShown));
             });
             made.setAttribute("aria-pressed", String(!this.hidden.has(pane)));
             return made;
@@ -306,11 +369,10 @@ export class StageView {
         search.placeholder = words.search;
         search.setAttribute("aria-label", words.search);
         search.addEventListener("input", () => {
-            for (const view of this.pictures.values()) view.find(search.value);
+            for (const { pictures } of this.stages) for (const view of pictures.values()) view.find(search.value);
         });
         const fit = button(words.fit, words.fit, () => {
-            for (const [pane, view] of this.pictures) if (!this.hidden.has(pane)) view.fit();
-            this.timeline.fit();
+            for (const stage of this.stages) stage.fit();
         });
         const movement = group("movement", ...moves.slice(0, 3), this.playButton, ...moves.slice(3), this.speed);
         this.bar.replaceChildren(
@@ -331,7 +393,7 @@ function group(name: string, ...parts: readonly HTMLElement[]): HTMLElement {
     return made;
 }
 
-function element<K extends keyof HTMLElementTagNameMap>(tag: K, name: string): HTMLElementTagNameMap[K] {
+export function element<K extends keyof HTMLElementTagNameMap>(tag: K, name: string): HTMLElementTagNameMap[K] {
     const made = document.createElement(tag);
     made.className = name;
     return made;

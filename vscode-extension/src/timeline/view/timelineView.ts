@@ -35,9 +35,8 @@ const CLICK = 4;
 export class TimelineView {
     readonly bar = div("bar");
     private readonly curves = new CurvesMenu((chosen) => {
-        this.curvesChosen = chosen;
-        this.hasChanged = true;
-        this.refresh();
+        this.choose(chosen);
+        this.follower?.choose(chosen);
     });
     private curvesChosen: readonly string[] = [];
     private readonly body = div("body");
@@ -47,11 +46,16 @@ export class TimelineView {
     private readonly cursor = div("cursor-line");
     private readonly selected = div("selected-stretch");
     private readonly litLane = div("lit-lane");
+    /** A position of the run that is marked. */
+    private readonly marked = div("marked-line");
+    private marking: Played | undefined;
+    /** The timeline of another run, which has the same axis and curves. */
+    private follower: TimelineView | undefined;
     private readonly notice = div("notice");
     private lanes: readonly (readonly string[])[] = [];
     private lit = "";
     private words: TimelineWords | undefined;
-    private axis: Axis = "time";
+    axis: Axis = "time";
     private visible: Stretch = { from: 0, to: 0 };
     private selection: Stretch | undefined;
     private tile: Tile | undefined;
@@ -75,7 +79,8 @@ export class TimelineView {
         this.notice.setAttribute("role", "status");
         this.rows.tabIndex = 0;
         this.rows.setAttribute("role", "application");
-        this.rows.append(this.litLane, this.drawing, this.selected, this.cursor);
+        this.marked.hidden = true;
+        this.rows.append(this.litLane, this.drawing, this.selected, this.marked, this.cursor);
         this.body.append(this.names, this.rows);
         root.append(this.bar, this.body, this.notice);
         this.listen();
@@ -118,6 +123,25 @@ export class TimelineView {
         const cursor = this.cursorAt;
         if (cursor > tile.extent && !this.pending) this.hasChanged = true;
         this.visible = reveal(this.visible, cursor, Math.max(this.extent, cursor));
+        this.refresh();
+    }
+
+    /** Let the buttons of this timeline change another one as well. */
+    lead(follower: TimelineView): void {
+        this.follower = follower;
+    }
+
+    /** Mark a position of the run, and say why. */
+    mark(position: Played, text: string): void {
+        this.marking = position;
+        this.marked.title = text;
+        this.marked.dataset["text"] = text;
+        this.place();
+    }
+
+    private choose(curves: readonly string[]): void {
+        this.curvesChosen = curves;
+        this.hasChanged = true;
         this.refresh();
     }
 
@@ -255,6 +279,10 @@ export class TimelineView {
         const stretch = (x(tile.to) - x(tile.from)) / tile.width;
         this.drawing.style.transform = `translateX(${x(tile.from)}px) scaleX(${stretch})`;
         this.cursor.style.transform = `translateX(${x(this.cursorAt)}px)`;
+        const marking = this.axis === "time" ? this.marking?.time : this.marking?.step;
+        this.marked.hidden = marking === undefined || marking === null;
+        this.marked.style.height = `${tile.height}px`;
+        this.marked.style.transform = `translateX(${x(marking ?? 0)}px)`;
         this.placeAxis();
         this.selected.hidden = !this.selection;
         if (this.selection) {
@@ -380,6 +408,7 @@ export class TimelineView {
         const axes = (["time", "steps"] as const).map((axis) => {
             const made = button(words[axis], words[axis], () => {
                 this.switchAxis(axis);
+                this.follower?.switchAxis(axis);
             });
             made.dataset["axis"] = axis;
             made.setAttribute("aria-pressed", String(axis === this.axis));
