@@ -165,6 +165,11 @@ export function debugging(stage: Stage): void {
             await choicesOf(window)
                 .getByText(`step ${step - 1},`)
                 .waitFor();
+            await rows.press("Shift+Home");
+            await choicesOf(window).getByText("step 0,").waitFor();
+            await timeline.locator(".selected-stretch").waitFor();
+            await rows.press("Escape");
+            await timeline.locator(".selected-stretch").waitFor({ state: "hidden" });
 
             // A selected stretch is exported.
             const { x, y } = await boxOf(rows);

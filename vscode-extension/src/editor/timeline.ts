@@ -129,7 +129,7 @@ function words(): TimelineWords {
         curves: vscode.l10n.t("Curves"),
         noCurves: vscode.l10n.t("No number has changed in this run."),
         help: vscode.l10n.t(
-            "A click goes to a step, left and right arrow keys move by one step, + and - zoom, 0 shows the whole run, dragging with Shift selects a part.",
+            "A click goes to a step, left and right arrow keys move by one step, Home and End to the start and the end, + and - zoom, 0 shows the whole run, dragging or keys with Shift select a part.",
         ),
         nothing: vscode.l10n.t("No run is being debugged."),
     };

@@ -58,6 +58,8 @@ export class TimelineView {
     axis: Axis = "time";
     private visible: Stretch = { from: 0, to: 0 };
     private selection: Stretch | undefined;
+    /** Where the selection with the keyboard began. */
+    private anchor: number | undefined;
     private tile: Tile | undefined;
     /** The rows that the tile has, in pixels. */
     private drawn: Rows = { top: 0, bottom: 0 };
@@ -256,6 +258,9 @@ export class TimelineView {
                 ? { from: 0, to: Math.max(tile.extent, 1e-9) }
                 : reveal(this.visible, tile.cursor, this.extent);
         }
+        const { anchor } = this;
+        if (anchor !== undefined)
+            this.selection = { from: Math.min(anchor, tile.cursor), to: Math.max(anchor, tile.cursor) };
         this.root.classList.add("shown");
         this.notice.textContent = "";
         this.drawing.innerHTML = picture(tile.scene, tile.width, tile.height);
@@ -325,6 +330,7 @@ export class TimelineView {
         // Positions in the old drawing have another unit.
         this.tile = undefined;
         this.drawing.replaceChildren();
+        this.anchor = undefined;
         this.selection = undefined;
         this.pending = false;
         this.hasChanged = true;
@@ -354,6 +360,7 @@ export class TimelineView {
         this.rows.addEventListener("pointerdown", (event) => {
             if (event.button !== 0) return;
             this.rows.setPointerCapture(event.pointerId);
+            this.anchor = undefined;
             this.drag = { x: event.clientX, at: this.at(event), selects: event.shiftKey, moved: false };
         });
         this.rows.addEventListener("pointermove", (event) => {
@@ -382,14 +389,18 @@ export class TimelineView {
     }
 
     /** Whether the view has handled the key. */
-    private key({ key, ctrlKey, metaKey }: KeyboardEvent): boolean {
+    private key({ key, ctrlKey, metaKey, shiftKey }: KeyboardEvent): boolean {
         if (ctrlKey || metaKey || !this.tile) return false;
-        if (key === "ArrowLeft") this.post({ type: "goToStep", step: Math.max(0, this.tile.step - 1) });
-        else if (key === "ArrowRight") this.post({ type: "goToStep", step: this.tile.step + 1 });
-        else if (key === "+" || key === "=") this.zoom(ZOOM, this.tile.cursor);
+        const { step, steps, cursor } = this.tile;
+        const goal = { ArrowLeft: Math.max(0, step - 1), ArrowRight: step + 1, Home: 0, End: steps }[key];
+        if (goal !== undefined) {
+            this.anchor = shiftKey ? (this.anchor ?? cursor) : undefined;
+            this.post({ type: "goToStep", step: goal });
+        } else if (key === "+" || key === "=") this.zoom(ZOOM, this.tile.cursor);
         else if (key === "-") this.zoom(1 / ZOOM, this.tile.cursor);
         else if (key === "0") this.fit();
         else if (key === "Escape") {
+            this.anchor = undefined;
             this.selection = undefined;
             this.place();
         } else return false;
