@@ -59,9 +59,7 @@ function comparisonOf({ trace, verdict }: Counterexample, parts: Parting, other:
 }
 
 function titleOf(trace: number, isFailed: boolean): string {
-    return isFailed
-        ? vscode.l10n.t("Trace {0}: the property does not hold", trace)
-        : vscode.l10n.t("Trace {0}: the property holds", trace);
+    return isFailed ? vscode.l10n.t("Trace {0}: does not hold", trace) : vscode.l10n.t("Trace {0}: holds", trace);
 }
 
 /** The picture with the turn that differs. A machine is one of those of the system. */

@@ -18,7 +18,7 @@ interface ShownState {
 }
 
 export class ComparedStages {
-    private readonly status = element("div", "compare-status");
+    private readonly status = element("div", "bar compare-status");
     private readonly sides: Readonly<Record<SideName, HTMLElement>>;
     private readonly here: StageView;
     private readonly there: StageView;
