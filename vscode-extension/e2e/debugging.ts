@@ -299,6 +299,33 @@ export function debugging(stage: Stage): void {
         await window.becomes(() => picture.locator(".node[data-look]").count(), 0);
     });
 
+    stage.test("a log point writes values, and a hit count stops at the third hit", fromStart, async (window) => {
+        const { page } = window;
+        await window.openFile("arm.ascxml");
+        await window.running();
+        const widget = page.locator(".breakpoint-widget");
+        for (const [place, title, kind, text] of [
+            ['cond="way &lt; 6"', "Debug: Add Logpoint", "Log Message", "on the way: {way}"],
+            ['expr="way + 1"', "Debug: Add Conditional Breakpoint", "Hit Count", "3"],
+        ] as const) {
+            await window.goBehind("arm.ascxml", place);
+            await window.repeat(() => window.run(title), widget);
+            await widget.locator("select").first().selectOption({ label: kind });
+            await window.type(text);
+            await widget.locator(".view-line", { hasText: text.replaceAll(" ", "\u00a0") }).waitFor();
+            await window.press("Enter");
+            await widget.waitFor({ state: "detached" });
+        }
+        await start(window, "main_with_bug.xml");
+        await page.keyboard.press("F5");
+        await page.locator(".debug-call-stack").getByText("Paused: arm.ascxml:54").first().waitFor();
+        const logged = page.locator(".repl .monaco-list-row", { hasText: "on the way: " });
+        for (const way of [0, 2, 3]) await logged.getByText(`on the way: ${way}`).first().waitFor();
+        await window.becomes(() => logged.count(), 3);
+        await window.screenshot("debugging-hits");
+        await stop(window);
+    });
+
     stage.test("a message that is published by hand is received", fromStart, async (window) => {
         await start(window, "main_with_bug.xml");
         const choices = choicesOf(window);
