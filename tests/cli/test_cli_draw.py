@@ -77,6 +77,16 @@ def test_themes_and_directions(robot: Path, capsys: pytest.CaptureFixture[str]) 
     assert down < 1 < right
 
 
+def test_an_outline_is_for_trees(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    whole, outline = (drawn(capsys, "robot/main.xml", "--tree", *form) for form in ((), ("--outline",)))
+    assert whole.count('class="node ') == outline.count('class="node ') > 1
+    assert outline != whole
+    rows = [float(y) for y in re.findall(r'class="title strong" x="[^"]*" y="([^"]*)"', outline)]
+    assert rows == sorted(set(rows))
+    assert run(["draw", "robot/arm.ascxml", "--outline"]) == 2
+    assert "only behavior trees can be drawn as an outline; draw the tree of the system" in capsys.readouterr().err
+
+
 def test_broken_models_are_drawn(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     arm = robot / "arm.ascxml"
     text = arm.read_text(encoding="utf-8")

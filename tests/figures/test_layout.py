@@ -10,7 +10,7 @@ from hypothesis import given, settings
 import kept_strategies as st
 from examples import examples
 from roaml.figures.geometry import Box, Extent, Point
-from roaml.figures.layout import Boxes, Layout, LayoutDirection, Link, layered, nested, tidy_tree
+from roaml.figures.layout import Boxes, Layout, LayoutDirection, Link, layered, nested, outline, tidy_tree
 from roaml.figures.layout.layers import assign_layers
 from roaml.figures.layout.spread import spread
 from roaml.figures.layout.tracks import assign_tracks
@@ -190,6 +190,28 @@ def test_trees(tree: tuple[dict[str, Extent], dict[str, list[str]]], direction: 
         middles = [box.x + box.width / 2 if direction is LayoutDirection.DOWN else box.y + box.height / 2 for box in
                    (layout.nodes[child] for child in group)]  # fmt: skip
         assert middles == sorted(middles)
+
+
+@settings(max_examples=examples(60), deadline=None)
+@given(trees())
+def test_outlines(tree: tuple[dict[str, Extent], dict[str, list[str]]]) -> None:
+    """Nodes are below each other, children after their parent and at the right of its left side."""
+    nodes, children = tree
+    layout = outline(nodes, children)
+    boxes = list(layout.nodes.values())
+    assert layout.nodes.keys() == nodes.keys()
+    assert not [(a, b) for a, b in pairwise(boxes) if a.bottom > b.y]
+    assert all(Box(0, 0, *layout.size).grown(NEAR).contains(box) for box in boxes)
+    assert not [(a, b) for _, a, b in segments(layout) for box in boxes if crosses(a, b, box)]
+    pairs = [(parent, child) for parent, group in children.items() for child in group]
+    for (parent, child), route in zip(pairs, layout.routes, strict=True):
+        above, below = layout.nodes[parent], layout.nodes[child]
+        assert touches(above, route.parts[0][0])
+        assert touches(below, route.parts[0][-1])
+        assert below.x > above.x
+        assert below.y > above.y
+    for group in children.values():
+        assert [layout.nodes[child].y for child in group] == sorted(layout.nodes[child].y for child in group)
 
 
 def test_lines_that_exchange_their_places() -> None:

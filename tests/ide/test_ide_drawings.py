@@ -19,7 +19,7 @@ from roaml.figures.drawing import Drawing, Group, Polyline, TextItem
 from roaml.figures.geometry import Point
 from roaml.figures.layout import LayoutDirection
 from roaml.figures.svg import svg_file
-from roaml.ide.diagrams import DiagramKind, Picture, draw, draw_for, picture_of
+from roaml.ide.diagrams import DiagramKind, Picture, draw, draw_for, draw_outline, picture_of
 from roaml.project.analysis import Analysis
 from roaml.project.settings import Settings
 from roaml.record import replace
@@ -46,6 +46,8 @@ def test_examples(folder: str) -> None:
                 assert picture is not None
                 assert problems(picture, draw(kind, picture, direction)) == [], (path, kind, direction)
                 shown += 1
+            if picture is not None and kind is DiagramKind.TREE:
+                assert problems(picture, draw_outline(picture)) == [], path
     assert shown > 0
 
 
@@ -70,7 +72,18 @@ def test_golden_pictures(name: str) -> None:
     kind, file = GOLDEN_PICTURES[name]
     picture = picture_of(kind, analysis_of(file.partition("/")[0]), str(EXAMPLES / file))
     assert picture is not None
-    svg = svg_file(draw_for(kind, picture, *PAGE), picture.title)
+    compare_golden(name, svg_file(draw_for(kind, picture, *PAGE), picture.title))
+
+
+def test_golden_outline() -> None:
+    picture = picture_of(DiagramKind.TREE, analysis_of("fetch_tree"), str(EXAMPLES / "fetch_tree/fetch.xml"))
+    assert picture is not None
+    drawing = draw_outline(picture)
+    assert drawing.size.width < 400
+    compare_golden("fetch_outline", svg_file(drawing, picture.title))
+
+
+def compare_golden(name: str, svg: str) -> None:
     golden = GOLDEN / f"{name}.svg"
     if os.environ.get("AS2FM_GOLDEN") == "write":
         golden.write_text(svg, encoding="utf-8")

@@ -98,6 +98,7 @@ async def test_pictures(tmp_path: Path) -> None:
     assert all(box["width"] > 0 for drawing in machine["drawings"] for box in drawing["nodes"])
     (tree,) = await asked(tmp_path, "as2fm/picture", "main.xml", kind="tree")
     assert [node["label"] for node in tree["nodes"]][:3] == ["ReactiveSequence", "ReactiveFallback", "BatteryAbove"]
+    assert [drawing["scene"].count("data-node=") for drawing in tree["drawings"]] == [len(tree["nodes"])] * 3
     (top,) = await asked(tmp_path, "as2fm/picture", "main.xml", kind="tree", collapsed=["1000"])
     assert [node["label"] for node in top["nodes"]] == ["ReactiveSequence"]
     ros, none = await asked(tmp_path, "as2fm/picture", "main.xml", "tree.xml", kind="ros")
@@ -145,6 +146,9 @@ async def test_picture_files(tmp_path: Path, capsys: pytest.CaptureFixture[str])
         capsys.readouterr()
         assert both["svg"] == file["svg"]
         assert b64decode(both["pdf"]) == (tmp_path / "battery.pdf").read_bytes()
+    (outline,) = await asked(tmp_path, "as2fm/pictureFile", "main.xml", kind="tree", direction="outline", theme="light")
+    draw.run((str(tmp_path / "main.xml"), "--tree", "--outline", "-o", "-"))
+    assert outline["svg"] == capsys.readouterr().out
     assert await asked(tmp_path, "as2fm/pictureFile", "main.xml", kind="machine") == [None]
 
 

@@ -82,6 +82,8 @@ export function loneTrees(stage: Stage): void {
             const view = await window.picture(".mock");
             const row = view.locator(".mock", { hasText: "CloseGripper" });
             await row.getByText("action, proposed:").waitFor();
+            // Beside the fields, the panel is too narrow for another drawing.
+            await view.getByRole("button", { name: "Outline", pressed: true }).waitFor();
             const result = (text: string | RegExp) => view.locator(".mock-head output", { hasText: text }).waitFor();
             await result("Not verified");
             await window.screenshot(`mocks-proposed-${look}`);

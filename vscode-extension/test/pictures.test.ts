@@ -192,6 +192,13 @@ test("a picture is legible at first, and drawn in the direction that suits the w
     // Neither drawing fits. The one whose width fits is used, so that it can be read from top to bottom.
     assert.equal(bestDrawing([tall, wide], 500, 500), 0);
     assert.equal(bestDrawing([tall, wide], 2000, 2000), 0);
+    // An outline is used if no other drawing is legible as a whole, or if it is the only one whose width fits.
+    const outline = { width: 340, height: 1500 };
+    assert.equal(bestDrawing([tall, wide, outline], 400, 1000), 0);
+    assert.equal(bestDrawing([wide, wide, outline], 400, 1000), 2);
+    assert.equal(bestDrawing([wide, wide, outline], 2000, 2000), 0);
+    assert.equal(bestDrawing([wide, wide, { width: 340, height: 300 }], 1000, 400), 2);
+    assert.equal(bestDrawing([wide, wide, outline], 800, 600, 0.6), 0);
     const view = fitLegibly({ width: 3000, height: 400 }, 1000, 800);
     assert.equal(view.scale, 11 / 12);
     assert.ok(view.x < 0 && view.x > -50 && view.y < -200);

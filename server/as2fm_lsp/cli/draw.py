@@ -34,6 +34,7 @@ examples:
   as2fm-lsp draw main.xml --machine Arm -o arm.svg
   as2fm-lsp draw main.xml --machines -o machines.pdf
   as2fm-lsp draw main.xml --tree --theme dark -o tree.svg
+  as2fm-lsp draw tree.xml --outline                  a row for each node, for narrow pages
   as2fm-lsp draw tree.xml --mock "*: 0.9 in 1 s"     with the mocks of the leaves
   as2fm-lsp draw tree.xml --direction down -o - | rsvg-convert -o tree.png
   as2fm-lsp draw - < tree.xml > tree.svg
@@ -61,6 +62,7 @@ def run(arguments: Sequence[str]) -> int:
             mocks=mocks,
             theme=options.theme,
             direction=options.direction,
+            outline=options.outline,
             settings=replace(settings, ament_prefixes=ament_prefixes()),
             texts=texts,
         )
@@ -134,7 +136,13 @@ def parser() -> ArgumentParser:
         "the diagram, in the folder of the input)",
     )
     result.add_argument("--theme", choices=tuple(THEMES), default="light", help="the colors (default: light)")
-    result.add_argument(
+    form = result.add_mutually_exclusive_group()
+    form.add_argument(
+        "--outline",
+        action="store_true",
+        help="draw the behavior tree in a narrow column: a row for each node, with its children indented below it",
+    )
+    form.add_argument(
         "--direction",
         choices=tuple(direction.value for direction in LayoutDirection),
         help="the direction of the edges (default: the one in which the drawing fits a page of 4:3 better)",

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from base64 import b64encode
+from collections.abc import Iterator
 from typing import Any
 
 from as2fm_lsp.context import Context
@@ -14,13 +15,25 @@ from roaml.figures.layout import LayoutDirection
 from roaml.figures.pdf import pdf_file
 from roaml.figures.svg import svg_file, svg_scene
 from roaml.figures.themes import THEMES
-from roaml.ide.diagrams import DiagramKind, Picture, around, closed_namespaces, collapsed, draw, matching, picture_of
+from roaml.ide.diagrams import (
+    DiagramKind,
+    Picture,
+    around,
+    closed_namespaces,
+    collapsed,
+    draw,
+    draw_outline,
+    matching,
+    picture_of,
+)
 from roaml.ide.picture_edits import PictureParts
 from roaml.project.analysis import Analysis
 from roaml.text import Location
 
 METHOD = "as2fm/picture"
 FILE_METHOD = "as2fm/pictureFile"
+OUTLINE = "outline"
+"""The parameter `direction` for the outline of a tree."""
 
 
 def register(context: Context) -> None:
@@ -40,9 +53,12 @@ def register(context: Context) -> None:
         if shown is None:
             return None
         _, kind, diagram = shown
-        is_wide = string(params, "direction") == LayoutDirection.RIGHT.value
-        theme = string(params, "theme")
-        drawing = draw(kind, diagram, LayoutDirection.RIGHT if is_wide else LayoutDirection.DOWN)
+        direction, theme = string(params, "direction"), string(params, "theme")
+        if direction == OUTLINE and kind is DiagramKind.TREE:
+            drawing = draw_outline(diagram)
+        else:
+            is_wide = direction == LayoutDirection.RIGHT.value
+            drawing = draw(kind, diagram, LayoutDirection.RIGHT if is_wide else LayoutDirection.DOWN)
         svg = svg_file(drawing, diagram.title, theme if theme in THEMES else "light")
         if getattr(params, "format", None) != "pdf":
             return {"svg": svg}
@@ -115,8 +131,15 @@ def _converted(session: Session, analysis: Analysis, kind: DiagramKind, picture:
             }
             for edge in picture.edges
         ],
-        "drawings": [_drawing(draw(kind, picture, direction)) for direction in LayoutDirection],
+        "drawings": [_drawing(drawing) for drawing in _drawings(kind, picture)],
     }
+
+
+def _drawings(kind: DiagramKind, picture: Picture) -> Iterator[Drawing]:
+    """The drawings in each direction, and the outline of a tree."""
+    yield from (draw(kind, picture, direction) for direction in LayoutDirection)
+    if kind is DiagramKind.TREE:
+        yield draw_outline(picture)
 
 
 def _drawing(drawing: Drawing) -> dict[str, object]:

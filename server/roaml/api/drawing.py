@@ -10,7 +10,7 @@ from roaml.api.checking import check
 from roaml.figures.layout import LayoutDirection
 from roaml.figures.pdf import pdf_file
 from roaml.figures.svg import svg_file
-from roaml.ide.diagrams import PAGE, DiagramKind, Picture, draw_for, picture_of, tree_picture
+from roaml.ide.diagrams import PAGE, DiagramKind, Picture, draw_for, draw_outline, picture_of, tree_picture
 from roaml.ide.diagrams import around as _around
 from roaml.ide.diagrams import draw as _draw
 from roaml.ide.diagrams import matching as _matching
@@ -62,6 +62,7 @@ def draw(
     mocks: Mapping[str, str] | Sequence[Mock] = (),
     theme: str = "light",
     direction: LayoutDirection | str | None = None,
+    outline: bool = False,
     ros_paths: Iterable[str] = (),
     settings: Settings | None = None,
     texts: Mapping[str, str | bytes] | None = None,
@@ -83,6 +84,7 @@ def draw(
         theme: `light`, `dark`, `high-contrast` or `high-contrast-light`.
         direction: the direction of links, `down` or `right`. By default, the one in which the drawing fits a page of
             4:3 better.
+        outline: draw a tree in a narrow column: a row for each node, with its children indented below it.
         ros_paths, settings, texts: as for `check`.
 
     Raises:
@@ -107,7 +109,12 @@ def draw(
         if kind is not DiagramKind.ROS:
             raise DrawingError("only a part of a ROS graph can be drawn; draw the ROS graph of the system")
         picture = _part(picture, around, matching, path)
-    drawing = _draw(kind, picture, LayoutDirection(direction)) if direction else draw_for(kind, picture, *PAGE)
+    if outline:
+        if kind is not DiagramKind.TREE:
+            raise DrawingError("only behavior trees can be drawn as an outline; draw the tree of the system")
+        drawing = draw_outline(picture)
+    else:
+        drawing = _draw(kind, picture, LayoutDirection(direction)) if direction else draw_for(kind, picture, *PAGE)
     size, svg = drawing.size, svg_file(drawing, picture.title, theme)
     return DrawnPicture(svg, picture.title, kind, size.width, size.height, result.files)
 

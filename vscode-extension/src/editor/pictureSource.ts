@@ -391,6 +391,8 @@ function words(): Words {
     return {
         search: vscode.l10n.t("Search"),
         onlyResults: vscode.l10n.t("Only Results"),
+        outline: vscode.l10n.t("Outline"),
+        outlineHint: vscode.l10n.t("A Row for Each Node"),
         showAll: vscode.l10n.t("Show All"),
         zoomIn: vscode.l10n.t("Zoom in"),
         zoomOut: vscode.l10n.t("Zoom out"),

@@ -134,11 +134,11 @@ export interface Picture {
     readonly title: string;
     readonly nodes: readonly PictureNode[];
     readonly edges: readonly PictureEdge[];
-    /** The drawings in the directions of `DIRECTIONS`. */
+    /** The drawings in the directions of `DIRECTIONS`. Only trees have an outline. */
     readonly drawings: readonly Drawing[];
 }
 
-export const DIRECTIONS = ["down", "right"] as const;
+export const DIRECTIONS = ["down", "right", "outline"] as const;
 export type Direction = (typeof DIRECTIONS)[number];
 
 export const THEMES = ["light", "dark", "high-contrast", "high-contrast-light"] as const;
@@ -190,6 +190,8 @@ export interface Words {
     readonly search: string;
     readonly onlyResults: string;
     readonly showAll: string;
+    readonly outline: string;
+    readonly outlineHint: string;
     readonly zoomIn: string;
     readonly zoomOut: string;
     readonly fit: string;

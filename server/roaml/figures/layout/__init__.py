@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Layouts: layered graphs with orthogonal lines, and trees.
+"""Layouts: layered graphs with orthogonal lines, trees, and outlines of trees.
 
 The layered layout has the classic steps (Sugiyama, Tagawa, Toda 1981): links that close cycles are reversed (`cycles`),
 nodes are assigned to layers (`layers`), ordered within them (`order`), placed (`positions`), and connected by
@@ -10,6 +10,7 @@ node or a label, and no label overlaps another one, by construction.
 from roaml.figures.layout.graph import Layout, LayoutDirection, Link, Route
 from roaml.figures.layout.layered import layered
 from roaml.figures.layout.nested import Boxes, nested
+from roaml.figures.layout.outline import outline
 from roaml.figures.layout.tidy import tidy_tree
 
-__all__ = ["Boxes", "Layout", "LayoutDirection", "Link", "Route", "layered", "nested", "tidy_tree"]
+__all__ = ["Boxes", "Layout", "LayoutDirection", "Link", "Route", "layered", "nested", "outline", "tidy_tree"]

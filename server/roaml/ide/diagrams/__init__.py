@@ -19,7 +19,7 @@ from roaml.ide.diagrams.diagram import (
     EdgeKind,
     Picture,
 )
-from roaml.ide.diagrams.drawings import PAGE, draw, draw_for
+from roaml.ide.diagrams.drawings import PAGE, draw, draw_for, draw_outline
 from roaml.ide.diagrams.highlight import DiagramHighlight, highlights
 from roaml.ide.diagrams.machine import machine_picture
 from roaml.ide.diagrams.namespaces import closed_namespaces
@@ -45,6 +45,7 @@ __all__ = [
     "collapsed",
     "draw",
     "draw_for",
+    "draw_outline",
     "highlights",
     "machine_picture",
     "matching",

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Navigation in a picture: by arrow keys, by search, and by zooming. */
 
-import type { Box, Drawing, DrawnNode, Picture, Point } from "../contract";
+import { DIRECTIONS, type Box, type Drawing, type DrawnNode, type Picture, type Point } from "../contract";
 
 export type Arrow = "ArrowUp" | "ArrowDown" | "ArrowLeft" | "ArrowRight";
 
@@ -80,12 +80,19 @@ function at(drawing: Area, width: number, height: number, scale: number): Sight 
     return { scale, x: start(drawing.width, width / scale), y: start(drawing.height, height / scale) };
 }
 
-/** The index of the drawing that fits a window best: it is legible as a whole, or at least in its whole width. */
-export function bestDrawing(drawings: readonly Area[], width: number, height: number): number {
+/** The index of the drawing of a tree as an outline. */
+export const OUTLINE = DIRECTIONS.indexOf("outline");
+
+/**
+ * The index of the drawing that fits a window best: it is legible as a whole, or at least in its whole width. An outline
+ * is used only if no other drawing is legible as a whole. `least` is the minimum legible scale.
+ */
+export function bestDrawing(drawings: readonly Area[], width: number, height: number, least = LEGIBLE): number {
     const rank = (drawing: Area): readonly number[] => {
         const scale = scaleOf(drawing, width, height);
-        const fitsAcross = drawing.width * LEGIBLE <= width - 2 * MARGIN;
-        return [Number(scale >= LEGIBLE), scale >= LEGIBLE ? 0 : Number(fitsAcross), scale];
+        const fitsAcross = drawing.width * least <= width - 2 * MARGIN;
+        const isFirst = drawings.indexOf(drawing) !== OUTLINE;
+        return scale >= least ? [1, Number(isFirst), scale] : [0, Number(fitsAcross), scale];
     };
     let best = 0;
     drawings.forEach((drawing, index) => {

@@ -28,6 +28,7 @@ import {
     follow,
     isArrow,
     neighbour,
+    OUTLINE,
     pan,
     reveal,
     search,
@@ -72,6 +73,9 @@ export class PictureView {
     private readonly mocksButton = document.createElement("button");
     private readonly partButton = document.createElement("button");
     private readonly coverageButton = document.createElement("button");
+    private readonly outlineButton = document.createElement("button");
+    /** Whether the user wants trees as outlines; undefined if the size of the window decides. */
+    private wantsOutline: boolean | undefined;
     private showsCoverage = false;
     private coverage: Coverage | undefined;
     private part = WHOLE;
@@ -221,6 +225,7 @@ export class PictureView {
         this.svg.append(this.scene.root);
         this.minimap.show(picture, drawing);
         this.svg.setAttribute("aria-label", `${picture.title}. ${words.help}`);
+        this.offerOutline();
         this.showCoverage(picture, drawing, words);
         this.look(this.sight);
         this.showActivity(this.activity);
@@ -230,7 +235,24 @@ export class PictureView {
 
     private best(): number {
         const { width, height } = this.svg.getBoundingClientRect();
-        return bestDrawing(this.picture?.drawings ?? [], width, height);
+        const drawings = this.picture?.drawings ?? [];
+        if (this.wantsOutline === true && drawings[OUTLINE]) return OUTLINE;
+        const candidates = this.wantsOutline === false ? drawings.slice(0, OUTLINE) : drawings;
+        return bestDrawing(candidates, width, height, this.least);
+    }
+
+    private toggleOutline(): void {
+        this.wantsOutline = this.shown !== OUTLINE;
+        this.shown = this.best();
+        this.moved = false;
+        this.drawAgain();
+        this.fitLegibly();
+        this.reveal(this.selected);
+    }
+
+    private offerOutline(): void {
+        this.outlineButton.hidden = !this.picture?.drawings[OUTLINE];
+        this.outlineButton.setAttribute("aria-pressed", String(this.shown === OUTLINE));
     }
 
     /** Adapt the drawing to a new size of the window, unless the user has changed the visible part. */
@@ -719,9 +741,17 @@ export class PictureView {
         coverageButton.addEventListener("click", () => {
             this.toggleCoverage();
         });
+        const { outlineButton } = this;
+        outlineButton.textContent = words.outline;
+        outlineButton.title = words.outlineHint;
+        outlineButton.addEventListener("click", () => {
+            this.toggleOutline();
+        });
+        this.offerOutline();
         this.bar.replaceChildren(
             this.input,
             this.partButton,
+            outlineButton,
             mocksButton,
             coverageButton,
             button("+", words.zoomIn, () => {

@@ -101,15 +101,19 @@ class Card(Record, frozen=True):
                     items.append(Polyline(rule, role="rule"))
                 y += gap
             x = box.x + self.padding + (self.side if index == 0 else 0)
-            drawn = _row(row, x, y)
-            if row.edges:
-                items.append(Group("edge", row.tone, drawn, row.kind, edges=row.edges, hint=row.hint))
-            elif row.has_bar or row.hint:
-                items.append(Group("row", row.tone, drawn, row.kind, hint=row.hint))
-            else:
-                items += drawn
+            items += row_items(row, x, y)
             y += row.size.height
         return tuple(items)
+
+
+def row_items(row: Row, x: float, y: float) -> tuple[Item, ...]:
+    """The items of a row whose upper left corner is at a place."""
+    drawn = _row(row, x, y)
+    if row.edges:
+        return (Group("edge", row.tone, drawn, row.kind, edges=row.edges, hint=row.hint),)
+    if row.has_bar or row.hint:
+        return (Group("row", row.tone, drawn, row.kind, hint=row.hint),)
+    return drawn
 
 
 def _row(row: Row, x: float, y: float) -> tuple[Item, ...]:

@@ -13,7 +13,7 @@ from roaml.figures.drawing import MAX_ROUNDING, Drawing, Group, Item, Outline, P
 from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.layout import LayoutDirection, tidy_tree
 from roaml.figures.layout.packing import shelves
-from roaml.ide.diagrams.diagram import DetailKind, DiagramNode, DiagramNodeKind, EdgeKind, Picture
+from roaml.ide.diagrams.diagram import DetailKind, DiagramNode, DiagramNodeKind, EdgeKind, Picture, TreeNodeTitle
 from roaml.ide.diagrams.drawings.cards import Card, Row, TextLine, is_shortened, paragraph, title
 from roaml.ide.diagrams.drawings.changes import is_marked, kind_of, signed, tone_of
 from roaml.ide.diagrams.drawings.glyphs import BADGE, badge
@@ -22,7 +22,7 @@ TITLE_WIDTH, PORT_WIDTH = 190.0, 210.0
 """The maximum widths of lines of text in titles, and in rows of ports, in pixels."""
 MAX_PORT_LINES = 3
 """The maximum number of lines of a port, condition or script."""
-_TONES: Mapping[DiagramNodeKind, Tone] = {
+TONES: Mapping[DiagramNodeKind, Tone] = {
     DiagramNodeKind.CONTROL: Tone.CONTROL,
     DiagramNodeKind.DECORATOR: Tone.DECORATOR,
     DiagramNodeKind.ACTION: Tone.ACTION,
@@ -30,7 +30,7 @@ _TONES: Mapping[DiagramNodeKind, Tone] = {
     DiagramNodeKind.SUBTREE: Tone.SUBTREE,
     DiagramNodeKind.VARIABLE: Tone.BLACKBOARD,
 }
-_OUTLINES: Mapping[DiagramNodeKind, Outline] = {
+OUTLINES: Mapping[DiagramNodeKind, Outline] = {
     DiagramNodeKind.CONTROL: Outline.RECTANGLE,
     DiagramNodeKind.DECORATOR: Outline.HEXAGON,
     DiagramNodeKind.CONDITION: Outline.PILL,
@@ -58,20 +58,20 @@ def draw_tree(picture: Picture, direction: LayoutDirection) -> Drawing:
     variables = [node.id for node in picture.nodes if node.kind is DiagramNodeKind.VARIABLE]
     sizes = {name: _size(cards[name], picture.nodes[index[name]].kind) for name in cards}
     tree = tidy_tree({name: sizes[name] for name in sizes if name not in variables}, children, direction)
-    boxes, size = _with_blackboard(tree.nodes, tree.size, {name: sizes[name] for name in variables})
+    boxes, size = with_blackboard(tree.nodes, tree.size, {name: sizes[name] for name in variables})
     pairs = ((parent, child) for parent, group in children.items() for child in group)
-    groups = [_link(picture, numbers[pair], route.parts[0]) for pair, route in zip(pairs, tree.routes, strict=True)]
+    groups = [link(picture, numbers[pair], route.parts[0]) for pair, route in zip(pairs, tree.routes, strict=True)]
     groups += [_node(picture.nodes[index[name]], index[name], cards[name], box) for name, box in boxes.items()]
     return Drawing(size, tuple(groups), {index[name]: box for name, box in boxes.items()})
 
 
-def _link(picture: Picture, number: int, points: tuple[Point, ...]) -> Group:
+def link(picture: Picture, number: int, points: tuple[Point, ...]) -> Group:
     change = picture.edges[number].change
     kind = kind_of(change, "child")
     return Group("link", tone_of(change, Tone.PLAIN), (Polyline(points),), kind, edges=(number,))
 
 
-def _with_blackboard(
+def with_blackboard(
     tree: Mapping[str, Box], size: Extent, variables: Mapping[str, Extent]
 ) -> tuple[dict[str, Box], Extent]:
     """The boxes of the tree's nodes and of the entries of the blackboard, which are placed in rows below the tree; and
@@ -91,7 +91,7 @@ def _with_blackboard(
 def _size(card: Card, kind: DiagramNodeKind) -> Extent:
     """The size of a card; shapes with slanted or round ends need more space at the sides."""
     width, height = card.size
-    outline = _OUTLINES.get(kind, Outline.ROUNDED)
+    outline = OUTLINES.get(kind, Outline.ROUNDED)
     extra = {Outline.HEXAGON: 12.0, Outline.PILL: min(height / 2, MAX_ROUNDING), Outline.DOUBLE: 6.0}.get(outline, 0.0)
     return Extent(width + extra, height)
 
@@ -99,18 +99,27 @@ def _size(card: Card, kind: DiagramNodeKind) -> Extent:
 def _card(picture: Picture, node: DiagramNode) -> Card:
     if node.title is None:
         return Card((Row(title(f"{{{node.label}}}", PORT_WIDTH)),))
-    name, plugin, number = node.title.name, node.title.plugin, node.title.number
-    rows = [Row(title(name, TITLE_WIDTH))]
-    subtitle = " · ".join((*([plugin] if plugin != name else ()), *([str(number)] if number is not None else ())))
-    if subtitle:
-        rows.append(Row((TextLine(subtitle, role="muted"),), is_joined=True))
-    rows += _ports(picture, node)
+    rows = [Row(title(node.title.name, TITLE_WIDTH))]
+    if subtitle(node.title):
+        rows.append(Row((TextLine(subtitle(node.title), role="muted"),), is_joined=True))
+    rows += port_rows(picture, node, PORT_WIDTH, MAX_PORT_LINES)
     return Card(tuple(rows), side=BADGE + _BADGE_DISTANCE)
 
 
-def _ports(picture: Picture, node: DiagramNode) -> Iterator[Row]:
-    """The rows of the ports, conditions, scripts and mocks. The row of a port that is bound to the blackboard
-    represents an edge."""
+def subtitle(parts: TreeNodeTitle) -> str:
+    """The plugin of a node, if its name is another one, and the number of the node, if it has one."""
+    plugin = [parts.plugin] if parts.plugin != parts.name else []
+    return " · ".join((*plugin, *([str(parts.number)] if parts.number is not None else ())))
+
+
+def port_rows(picture: Picture, node: DiagramNode, width: float, limit: int) -> Iterator[Row]:
+    """The rows of the ports, conditions, scripts and mocks, one for each detail of a node. The row of a port that is
+    bound to the blackboard represents an edge.
+
+    Args:
+        width: the maximum width of lines of text, in pixels.
+        limit: the maximum number of lines of a row.
+    """
     bound: dict[str, list[int]] = {}
     for number, edge in enumerate(picture.edges):
         if edge.kind in (EdgeKind.READS, EdgeKind.WRITES) and node.id in (edge.source, edge.target):
@@ -118,7 +127,7 @@ def _ports(picture: Picture, node: DiagramNode) -> Iterator[Row]:
     for detail in node.details:
         edges = tuple(bound.get(detail.key, ())) if detail.kind is DetailKind.REFERENCE else ()
         tone = _DETAIL_TONES.get(detail.kind)
-        lines = paragraph(detail.text, PORT_WIDTH, "muted" if tone is None else "text", limit=MAX_PORT_LINES)
+        lines = paragraph(detail.text, width, "muted" if tone is None else "text", limit=limit)
         hint = detail.text if is_shortened(lines, detail.text) else ""
         kind = " ".join(picture.edges[number].kind.value for number in edges)
         has_bar = tone is not None or is_marked(detail.change)
@@ -127,7 +136,7 @@ def _ports(picture: Picture, node: DiagramNode) -> Iterator[Row]:
 
 
 def _node(node: DiagramNode, index: int, card: Card, box: Box) -> Group:
-    items: list[Item] = [Shape(box, _OUTLINES.get(node.kind, Outline.ROUNDED), "card")]
+    items: list[Item] = [Shape(box, OUTLINES.get(node.kind, Outline.ROUNDED), "card")]
     width = card.size.width
     inner = Box(box.x + (box.width - width) / 2, box.y, width, box.height)
     rows = card.items(inner)
@@ -136,4 +145,4 @@ def _node(node: DiagramNode, index: int, card: Card, box: Box) -> Group:
     symbol = badge(node, inner.x + card.padding, getattr(first, "y", inner.y) - 13.5)
     items += symbol or ()
     kind = kind_of(node.change, f"{node.kind.value} initial" if node.initial else node.kind.value)
-    return Group("node", tone_of(node.change, _TONES.get(node.kind, Tone.PLAIN)), tuple(items), kind, node=index)
+    return Group("node", tone_of(node.change, TONES.get(node.kind, Tone.PLAIN)), tuple(items), kind, node=index)
