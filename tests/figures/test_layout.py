@@ -187,9 +187,13 @@ def test_trees(tree: tuple[dict[str, Extent], dict[str, list[str]]], direction: 
     starts = {(parent, route.parts[0][0]) for (parent, _), route in zip(pairs, layout.routes, strict=True)}
     assert len(starts) == len({parent for parent, _ in pairs})
     for group in children.values():
-        middles = [box.x + box.width / 2 if direction is LayoutDirection.DOWN else box.y + box.height / 2 for box in
-                   (layout.nodes[child] for child in group)]  # fmt: skip
-        assert middles == sorted(middles)
+        places = [layout.nodes[child] for child in group]
+        across = [box.x + box.width / 2 for box in places]
+        down = [box.y + box.height / 2 for box in places]
+        if direction is LayoutDirection.DOWN and len({box.y for box in places}) == 1:
+            assert across == sorted(across)
+        else:
+            assert down == sorted(down)
 
 
 @settings(max_examples=examples(60), deadline=None)
@@ -212,6 +216,17 @@ def test_outlines(tree: tuple[dict[str, Extent], dict[str, list[str]]]) -> None:
         assert below.y > above.y
     for group in children.values():
         assert [layout.nodes[child].y for child in group] == sorted(layout.nodes[child].y for child in group)
+
+
+def test_a_wide_tree_has_outlines_instead_of_rows() -> None:
+    """A root with 8 nodes that have 8 leaves each: 64 leaves in a row would be 50 times as wide as high."""
+    leaves = {f"{a}": [f"{a}{b}" for b in range(8)] for a in range(8)}
+    children = {"root": list(leaves), **leaves}
+    nodes = dict.fromkeys(["root", *leaves, *(leaf for group in leaves.values() for leaf in group)], Extent(100, 40))
+    width, height = tidy_tree(nodes, children, LayoutDirection.DOWN).size
+    assert width < 3 * height
+    small = tidy_tree({name: nodes[name] for name in ("root", "0", "1")}, {"root": ["0", "1"]}, LayoutDirection.DOWN)
+    assert small.nodes["0"].y == small.nodes["1"].y
 
 
 def test_lines_that_exchange_their_places() -> None:

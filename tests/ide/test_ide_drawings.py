@@ -194,3 +194,23 @@ def test_flaws_are_found(tmp_path: Path) -> None:
     lines = [group for group in drawing.groups if group.role != "link"]
     missing = [problem for problem in problems(picture, replace(drawing, groups=tuple(lines))) if "no line" in problem]
     assert len(missing) == sum(edge.source != edge.target for edge in picture.edges) - 3  # a choice is in its state
+
+
+def test_a_card_of_a_large_tree_shows_few_constants(tmp_path: Path) -> None:
+    """The hover shows the others; a small tree shows all."""
+    ports = 'a="1" b="2" c="3" d="{e}"'
+    for count, expected in ((3, ["a = 1", "b = 2", "c = 3", "d = {e}"]), (60, ["a = 1", "d = {e}", "… 2 more"])):
+        leaves = f'<Action ID="Go" {ports}/>' * count
+        text = f'<root BTCPP_format="4"><BehaviorTree ID="T"><Sequence>{leaves}</Sequence></BehaviorTree></root>'
+        (tmp_path / f"tree{count}.xml").write_text(text)
+        analysis = api.check([str(tmp_path)], settings=Settings()).snapshot.analysis
+        picture = picture_of(DiagramKind.TREE, analysis, str(tmp_path / f"tree{count}.xml"))
+        assert picture is not None
+        drawing = draw(DiagramKind.TREE, picture, LayoutDirection.DOWN)
+        assert problems(picture, drawing) == []
+        items = [
+            (groups, item) for groups, item in drawing.walk() if groups[0].node == 1 and isinstance(item, TextItem)
+        ]
+        assert [item.text for _, item in items][2:] == expected
+        hints = {group.hint for groups, _ in items for group in groups}
+        assert ("b = 2\nc = 3" in hints) == (count == 60)

@@ -1,19 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
 """Layout of trees: parents above the middle of their children, subtrees as near to each other as their outlines allow
-(Reingold, Tilford 1981, with nodes of any size)."""
+(Reingold, Tilford 1981, with nodes of any size). If a tree is too wide, some of its subtrees are outlines."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.layout.graph import Layout, LayoutDirection, Route
+from roaml.figures.layout.outline import ROW_DISTANCE, outline
 
 SIBLING_DISTANCE = 20.0
 COUSIN_DISTANCE = 30.0
 LEVEL_DISTANCE = 40.0
 NEARLY_STRAIGHT = 8.0
 """If the middles of a node and a child differ by less than this, the line between them is straight."""
+MAX_RATIO = 2.5
+"""The ratio of width to height above which subtrees are drawn as outlines."""
+GROWTH = (1.0, 1.25, 1.6, 2.0, 2.5, 3.2)
+"""The heights that are tried for a tree that is too wide, as multiples of the height without outlines."""
 
 
 def tidy_tree(nodes: Mapping[str, Extent], children: Mapping[str, Sequence[str]], direction: LayoutDirection) -> Layout:
@@ -24,9 +30,120 @@ def tidy_tree(nodes: Mapping[str, Extent], children: Mapping[str, Sequence[str]]
     """
     if direction is LayoutDirection.RIGHT:
         turned = {name: size.turned for name, size in nodes.items()}
-        return tidy_tree(turned, children, LayoutDirection.DOWN).turned
+        return _tidy(turned, children).turned
+    whole = _tidy(nodes, children)
+    if _ratio(whole) <= MAX_RATIO:
+        return whole
+    best = whole
+    for factor in GROWTH:
+        layout = _with_outlines(nodes, children, list(_low(nodes, children, whole.size.height * factor)))
+        if _excess(layout) < _excess(best):
+            best = layout
+        if _ratio(best) <= MAX_RATIO:
+            break
+    return best
+
+
+def _low(nodes: Mapping[str, Extent], children: Mapping[str, Sequence[str]], limit: float) -> Iterator[str]:
+    """The uppermost nodes with children whose subtrees, as outlines, end above a limit in pixels. The root is none of
+    them."""
+    heights: dict[str, float] = {}
+    for level in reversed(_levels(_roots(nodes, children), children)):
+        for name in level:
+            heights[name] = nodes[name].height + sum(heights[child] + ROW_DISTANCE for child in children.get(name, ()))
+    pending = [(root, 0.0) for root in reversed(_roots(nodes, children))]
+    while pending:
+        name, top = pending.pop()
+        if top and children.get(name) and top + heights[name] <= limit:
+            yield name
+            continue
+        below = top + nodes[name].height + LEVEL_DISTANCE
+        pending += [(child, below) for child in reversed(children.get(name, ()))]
+
+
+def _ratio(layout: Layout) -> float:
+    return layout.size.width / max(1.0, layout.size.height)
+
+
+def _excess(layout: Layout) -> float:
+    """The ratio of the longer to the shorter side."""
+    return max(_ratio(layout), 1 / max(0.001, _ratio(layout)))
+
+
+class _Subtree(NamedTuple):
+    """The layout of a subtree in its own rectangle; `routes` are those from each of its nodes to the children."""
+
+    size: Extent
+    nodes: Mapping[str, Box]
+    routes: Mapping[str, Sequence[Route]]
+
+    def moved(self, dx: float, dy: float) -> _Subtree:
+        boxes = {name: box.moved(dx, dy) for name, box in self.nodes.items()}
+        routes = {name: [route.moved(dx, dy) for route in group] for name, group in self.routes.items()}
+        return _Subtree(self.size, boxes, routes)
+
+
+def _with_outlines(nodes: Mapping[str, Extent], children: Mapping[str, Sequence[str]], heads: Sequence[str]) -> Layout:
+    """The layout in which the subtrees of some nodes are outlines. Other children are directly below their parent, side
+    by side, so that a high subtree does not move the levels of others."""
+    done = {name: _outlined(nodes, children, name) for name in heads}
+    hidden = {member for subtree in done.values() for member in subtree.nodes}
+    roots = _roots(nodes, children)
+    for level in reversed(_levels(roots, children)):
+        for name in level:
+            if name not in hidden:
+                below = children.get(name, ())
+                done[name] = _above(name, nodes[name], below, _side_by_side([done[child] for child in below]))
+    forest = _side_by_side([done[root] for root in roots])
+    boxes = {name: forest.nodes[name] for name in nodes}
+    return Layout(forest.size, boxes, tuple(route for name in children for route in forest.routes[name]))
+
+
+def _outlined(nodes: Mapping[str, Extent], children: Mapping[str, Sequence[str]], root: str) -> _Subtree:
+    members = [root]
+    for member in members:
+        members += children.get(member, ())
+    own = {member: children[member] for member in members if member in children}
+    layout = outline({member: nodes[member] for member in members}, own)
+    routes = iter(layout.routes)
+    return _Subtree(layout.size, layout.nodes, {name: [next(routes) for _ in group] for name, group in own.items()})
+
+
+def _side_by_side(subtrees: Sequence[_Subtree]) -> _Subtree:
+    boxes: dict[str, Box] = {}
+    routes: dict[str, Sequence[Route]] = {}
+    x = 0.0
+    for subtree in subtrees:
+        placed = subtree.moved(x, 0)
+        boxes |= placed.nodes
+        routes |= placed.routes
+        x += subtree.size.width + COUSIN_DISTANCE
+    height = max((subtree.size.height for subtree in subtrees), default=0.0)
+    return _Subtree(Extent(max(0.0, x - COUSIN_DISTANCE), height), boxes, routes)
+
+
+def _above(name: str, size: Extent, children: Sequence[str], row: _Subtree) -> _Subtree:
+    """A node above the middle of its children."""
+    if not children:
+        return _Subtree(size, {name: Box(0, 0, *size)}, {name: ()})
+    first, last = row.nodes[children[0]], row.nodes[children[-1]]
+    left = (first.x + first.width / 2 + last.x + last.width / 2 - size.width) / 2
+    placed = row.moved(max(0.0, -left), size.height + LEVEL_DISTANCE)
+    box = Box(max(0.0, left), 0, *size)
+    routes = _elbows(box, [placed.nodes[child] for child in children], size.height + LEVEL_DISTANCE / 2)
+    width = max(box.right, row.size.width + max(0.0, -left))
+    whole = Extent(width, size.height + LEVEL_DISTANCE + row.size.height)
+    return _Subtree(whole, {name: box, **placed.nodes}, {name: routes, **placed.routes})
+
+
+def _roots(nodes: Mapping[str, object], children: Mapping[str, Sequence[str]]) -> list[str]:
     inner = {child for group in children.values() for child in group}
-    roots = [name for name in nodes if name not in inner]
+    return [name for name in nodes if name not in inner]
+
+
+def _tidy(nodes: Mapping[str, Extent], children: Mapping[str, Sequence[str]]) -> Layout:
+    """The layout downwards, without outlines."""
+    roots = _roots(nodes, children)
     levels = _levels(roots, children)
     offsets: dict[str, float] = {}
     outlines: dict[str, _Outline] = {}

@@ -7,7 +7,7 @@ further lines if necessary. Constant ports are shown as far as the first line ha
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 from roaml.figures.drawing import MAX_ROUNDING, Drawing, Group, Item, Outline, Shape
 from roaml.figures.geometry import Box, Extent
@@ -18,7 +18,7 @@ from roaml.ide.diagrams.diagram import DetailKind, DiagramNode, DiagramNodeKind,
 from roaml.ide.diagrams.drawings.cards import NO_NAME, PADDING, Row, TextLine, paragraph, row_items
 from roaml.ide.diagrams.drawings.changes import kind_of, tone_of
 from roaml.ide.diagrams.drawings.glyphs import BADGE, badge
-from roaml.ide.diagrams.drawings.tree import OUTLINES, TONES, link, port_rows, subtitle, with_blackboard
+from roaml.ide.diagrams.drawings.tree import OUTLINES, TONES, hidden_row, link, port_rows, subtitle, with_blackboard
 
 WIDTH = 380.0
 """The width of the whole drawing, in pixels, if no node is too deep: it is legible in a panel of 400 pixels."""
@@ -107,26 +107,17 @@ def _texts(picture: Picture, node: DiagramNode, width: float) -> tuple[list[Row]
 def _filled(texts: Sequence[Row], constants: Sequence[Row], width: float) -> list[list[Row]]:
     """Lines of texts that are at most as wide, with the constants for which they have space."""
     lines: list[list[Row]] = [[]]
-    reserved = [_more(constants)] if constants else []
+    reserved = [hidden_row(ELLIPSIS, constants)] if constants else []
     for row in texts:
         if lines[-1] and _width([*lines[-1], row, *reserved]) > width:
             lines.append([])
         lines[-1].append(row)
     hidden = list(constants)
-    while hidden and _width([*lines[-1], hidden[0], *([_more(hidden[1:])] if hidden[1:] else [])]) <= width:
+    while hidden and _width([*lines[-1], hidden[0], *(reserved if hidden[1:] else [])]) <= width:
         lines[-1].append(hidden.pop(0))
     if hidden:
-        lines[-1].append(_more(hidden))
+        lines[-1].append(hidden_row(ELLIPSIS, hidden))
     return lines
-
-
-def _more(hidden: Sequence[Row]) -> Row:
-    """The text for constants that are not shown."""
-    return Row((TextLine(ELLIPSIS, role="muted"),), hint="\n".join(_whole(hidden)))
-
-
-def _whole(rows_: Sequence[Row]) -> Iterator[str]:
-    return (row.hint or row.lines[0].text for row in rows_)
 
 
 def _width(line: Sequence[Row]) -> float:

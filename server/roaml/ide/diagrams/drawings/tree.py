@@ -7,7 +7,7 @@ scripts and mock are further rows of the card. The entries of the blackboard are
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from roaml.figures.drawing import MAX_ROUNDING, Drawing, Group, Item, Outline, Polyline, Shape, Tone
 from roaml.figures.geometry import Box, Extent, Point
@@ -42,6 +42,9 @@ _DETAIL_TONES: Mapping[DetailKind, Tone] = {
     DetailKind.MOCK: Tone.CHANCE,
 }
 """The tones of the bars of rows. Rows of other kinds have no bar."""
+LARGE, MAX_CONSTANTS = 40, 2
+"""In a tree with more nodes than `LARGE`, a card with more constants than `MAX_CONSTANTS` shows the first one and the
+number of the others."""
 _BLACKBOARD_DISTANCE = 44.0
 _BADGE_DISTANCE = 7.0
 
@@ -102,7 +105,14 @@ def _card(picture: Picture, node: DiagramNode) -> Card:
     rows = [Row(title(node.title.name, TITLE_WIDTH))]
     if subtitle(node.title):
         rows.append(Row((TextLine(subtitle(node.title), role="muted"),), is_joined=True))
-    rows += port_rows(picture, node, PORT_WIDTH, MAX_PORT_LINES)
+    ports = list(zip(node.details, port_rows(picture, node, PORT_WIDTH, MAX_PORT_LINES), strict=True))
+    constants = [row for detail, row in ports if detail.kind is DetailKind.CONSTANT]
+    if len(picture.nodes) > LARGE and len(constants) > MAX_CONSTANTS and not any(detail.change for detail, _ in ports):
+        shown = constants[0]
+        rows += [row for detail, row in ports if detail.kind is not DetailKind.CONSTANT or row is shown]
+        rows.append(hidden_row(f"… {len(constants) - 1} more", constants[1:]))
+    else:
+        rows += [row for _, row in ports]
     return Card(tuple(rows), side=BADGE + _BADGE_DISTANCE)
 
 
@@ -110,6 +120,15 @@ def subtitle(parts: TreeNodeTitle) -> str:
     """The plugin of a node, if its name is another one, and the number of the node, if it has one."""
     plugin = [parts.plugin] if parts.plugin != parts.name else []
     return " · ".join((*plugin, *([str(parts.number)] if parts.number is not None else ())))
+
+
+def hidden_row(text: str, rows: Sequence[Row]) -> Row:
+    """A text for rows that are not shown; its hint contains theirs."""
+    return Row((TextLine(text, role="muted"),), hint="\n".join(row.hint or _written(row) for row in rows))
+
+
+def _written(row: Row) -> str:
+    return " ".join(line.text for line in row.lines)
 
 
 def port_rows(picture: Picture, node: DiagramNode, width: float, limit: int) -> Iterator[Row]:
