@@ -9,11 +9,14 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from drawing_check import problems
 from ide_models import CORNERS, ROBOT, load, system_file
 
 from fixture import split_files
+from roaml.figures.layout import LayoutDirection
 from roaml.ide.diagrams import (
     DetailKind,
+    DiagramKind,
     DiagramNode,
     DiagramNodeKind,
     EdgeKind,
@@ -21,11 +24,13 @@ from roaml.ide.diagrams import (
     around,
     closed_namespaces,
     collapsed,
+    draw,
     machine_picture,
     matching,
     ros_picture,
     system_picture,
     tree_picture,
+    with_provided_interfaces,
 )
 from roaml.ide.picture_edits import PictureAction
 from roaml.mocks.mock import read_mock
@@ -476,6 +481,51 @@ def test_closed_namespaces(tmp_path: Path) -> None:
         "/go -> c | subscribes",
         "c -> at | publishes",
     ]
+
+
+def large_graph(folder: Path, count: int) -> Picture:
+    """A client of the services of several nodes, which subscribe to its topic; two nodes publish another topic."""
+    clients = "".join(f'<ros_service_client service_name="/N{n}/{name}" type="std_srvs/Trigger"/>' for n in range(count)
+                      for name in ("go", "halt"))  # fmt: skip
+    publisher = '<ros_topic_publisher topic="/both" type="std_msgs/Bool"/>'
+    files = {
+        f"n{n}.ascxml": f'<ascxml name="N{n}" version="1.0" initial="s">'
+        f'<ros_service_server service_name="/N{n}/go" type="std_srvs/Trigger"/>'
+        f'<ros_service_server service_name="/N{n}/halt" type="std_srvs/Trigger"/>'
+        f'<ros_topic_subscriber topic="/clock" type="std_msgs/Bool"/>{publisher if n == 1 else ""}'
+        '<state id="s"/></ascxml>'
+        for n in range(count)
+    }
+    files["client.ascxml"] = (
+        f'<ascxml name="Client" version="1.0" initial="s">{clients}{publisher}'
+        '<ros_topic_publisher topic="/clock" type="std_msgs/Bool"/><state id="s"/></ascxml>'
+    )
+    inputs = "".join(f'<input type="node-ascxml" src="{file}"/>' for file in files)
+    parameters = '<parameters><max_time value="5" unit="s"/></parameters>'
+    files["main.xml"] = f"<roaml>{parameters}<node_models>{inputs}</node_models></roaml>"
+    picture = ros_picture(load(folder, files), str(folder / "main.xml"))
+    assert picture is not None
+    return picture
+
+
+def test_interfaces_of_a_large_graph_are_in_their_nodes(tmp_path: Path) -> None:
+    """A service is in the card of its server, a topic in that of its publisher, if it has only one."""
+    small = large_graph(tmp_path, 3)
+    assert with_provided_interfaces(small) == small
+    large = large_graph(tmp_path, 30)
+    picture = with_provided_interfaces(large)
+    assert [node.label for node in picture.nodes] == [*(f"N{n}" for n in range(30)), "Client", "/both"]
+    assert shown(picture)[:2] == ["node | N0 | /N0/go | /N0/halt", "node | N1 | /N1/go | /N1/halt"]
+    labels = {node.id: node.label for node in large.nodes}
+    hidden = [labels[name] for node in picture.nodes for name in node.hides]
+    assert sorted([*hidden, *(node.label for node in picture.nodes)]) == sorted(labels.values())
+    through = {(labels[e.source], labels[e.target], e.interface): e.labels for e in picture.edges}
+    assert through["Client", "N0", DiagramNodeKind.SERVICE] == ("/N0/go", "/N0/halt")
+    assert through["Client", "N0", DiagramNodeKind.TOPIC] == ("/clock",)
+    assert through["Client", "/both", None] == through["N1", "/both", None] == ()
+    assert len(through) == len(picture.edges) == 62
+    for direction in LayoutDirection:
+        assert problems(picture, draw(DiagramKind.ROS, picture, direction)) == []
 
 
 def test_a_part_of_a_ros_graph_with_namespaces(tmp_path: Path) -> None:

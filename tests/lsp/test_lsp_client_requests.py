@@ -91,6 +91,7 @@ async def test_pictures(tmp_path: Path) -> None:
         "kind": "ros",
         "labels": ["/dock", "/ docked := _msg.data"],
         "probabilistic": False,
+        "interface": "",
         "place": {"uri": uri, "range": {"start": {"line": 21, "character": 8}, "end": {"line": 23, "character": 29}}},
         "actions": ["delete"],
     }

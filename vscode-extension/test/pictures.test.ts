@@ -21,7 +21,7 @@ import {
     zoom,
 } from "../src/pictures/view/find";
 import { badgeOf, isOf, nodeCoverageWords, summaryOf } from "../src/pictures/view/coverage";
-import { shownActivity } from "../src/pictures/view/shown";
+import { shownActivity, shownId } from "../src/pictures/view/shown";
 import { edgeHint, edgeWords, legendOf, nodeWords } from "../src/pictures/view/words";
 
 const URI = "file:///m.ascxml";
@@ -40,7 +40,17 @@ function node(id: string, more: Partial<PictureNode> = {}): PictureNode {
 }
 
 function edge(source: string, target: string, more: Partial<PictureEdge> = {}): PictureEdge {
-    return { source, target, kind: "event", labels: [], probabilistic: false, place: null, actions: [], ...more };
+    return {
+        source,
+        target,
+        kind: "event",
+        labels: [],
+        probabilistic: false,
+        interface: "",
+        place: null,
+        actions: [],
+        ...more,
+    };
 }
 
 const MACHINE: Picture = {
@@ -230,6 +240,14 @@ test("the legend has one entry for each color", () => {
     assert.deepEqual(entries(MACHINE), ["event: event", "plain: eventless"]);
     assert.deepEqual(entries(TREE), ["control: control", "action: action", "blackboard: variable"]);
     assert.deepEqual(entries(ROS), ["topic: topic", "service: service", "event: event"]);
+    // Interfaces may be in the cards of nodes.
+    const [first, second] = [node("a", { kind: "node" }), node("b", { kind: "node", hides: ["service /go"] })];
+    const through = edge("a", "b", { kind: "calls", labels: ["/go"], interface: "service" });
+    const grouped: Picture = { ...ROS, nodes: [first, second], edges: [through] };
+    assert.deepEqual(entries(grouped), ["service: service"]);
+    assert.equal(edgeHint(grouped, through), "a → b\n/go");
+    assert.equal(shownId(grouped, "service /go"), "b");
+    assert.equal(shownId(grouped, "a"), "a");
 });
 
 test("a map of a drawing, and the view around a point of it", () => {

@@ -63,6 +63,7 @@ def run(arguments: Sequence[str]) -> int:
             theme=options.theme,
             direction=options.direction,
             outline=options.outline,
+            interfaces=options.interfaces,
             settings=replace(settings, ament_prefixes=ament_prefixes()),
             texts=texts,
         )
@@ -126,6 +127,12 @@ def parser() -> ArgumentParser:
         metavar="TEXT",
         help="draw only the part of the ROS graph that contains all words of TEXT in its kind, name or type, and what "
         "is connected to it",
+    )
+    result.add_argument(
+        "--interfaces",
+        action="store_true",
+        help="draw each topic, service and action of a ROS graph with more than 60 nodes on its own (default: most are "
+        "drawn in the node that publishes or serves them)",
     )
     result.add_argument(
         "-o",

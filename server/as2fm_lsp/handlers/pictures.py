@@ -25,6 +25,7 @@ from roaml.ide.diagrams import (
     draw_outline,
     matching,
     picture_of,
+    with_provided_interfaces,
 )
 from roaml.ide.picture_edits import PictureParts
 from roaml.project.analysis import Analysis
@@ -75,8 +76,10 @@ def asked_picture(session: Session, params: Any) -> tuple[Analysis, DiagramKind,
     if kind is DiagramKind.TREE and picture is not None:
         picture = collapsed(picture, hidden)
     if kind is DiagramKind.ROS and picture is not None:
-        picture = around(matching(picture, optional_string(params, "matching")), optional_string(params, "around"))
-        picture = closed_namespaces(picture, hidden)
+        text, center = optional_string(params, "matching"), optional_string(params, "around")
+        picture = closed_namespaces(around(matching(picture, text), center), hidden)
+        if not text and not center:
+            picture = with_provided_interfaces(picture)
     return (analysis, kind, picture) if kind and picture else None
 
 
@@ -126,6 +129,7 @@ def _converted(session: Session, analysis: Analysis, kind: DiagramKind, picture:
                 "kind": edge.kind.value,
                 "labels": [*edge.labels, *(f"/ {action}" for action in edge.actions)],
                 "probabilistic": edge.probabilistic,
+                "interface": edge.interface.value if edge.interface else "",
                 "place": place(edge.place),
                 "actions": [action.value for action in parts.actions(edge.place)],
             }

@@ -10,7 +10,16 @@ from roaml.api.checking import check
 from roaml.figures.layout import LayoutDirection
 from roaml.figures.pdf import pdf_file
 from roaml.figures.svg import svg_file
-from roaml.ide.diagrams import PAGE, DiagramKind, Picture, draw_for, draw_outline, picture_of, tree_picture
+from roaml.ide.diagrams import (
+    PAGE,
+    DiagramKind,
+    Picture,
+    draw_for,
+    draw_outline,
+    picture_of,
+    tree_picture,
+    with_provided_interfaces,
+)
 from roaml.ide.diagrams import around as _around
 from roaml.ide.diagrams import draw as _draw
 from roaml.ide.diagrams import matching as _matching
@@ -63,6 +72,7 @@ def draw(
     theme: str = "light",
     direction: LayoutDirection | str | None = None,
     outline: bool = False,
+    interfaces: bool = False,
     ros_paths: Iterable[str] = (),
     settings: Settings | None = None,
     texts: Mapping[str, str | bytes] | None = None,
@@ -85,6 +95,8 @@ def draw(
         direction: the direction of links, `down` or `right`. By default, the one in which the drawing fits a page of
             4:3 better.
         outline: draw a tree in a narrow column: a row for each node, with its children indented below it.
+        interfaces: draw each topic, service and action of a large ROS graph as a node. By default, if the graph has
+            more than 60 nodes, most of them are rows of the node that publishes or serves them.
         ros_paths, settings, texts: as for `check`.
 
     Raises:
@@ -109,6 +121,8 @@ def draw(
         if kind is not DiagramKind.ROS:
             raise DrawingError("only a part of a ROS graph can be drawn; draw the ROS graph of the system")
         picture = _part(picture, around, matching, path)
+    elif kind is DiagramKind.ROS and not interfaces:
+        picture = with_provided_interfaces(picture)
     if outline:
         if kind is not DiagramKind.TREE:
             raise DrawingError("only behavior trees can be drawn as an outline; draw the tree of the system")

@@ -107,7 +107,7 @@ export interface PictureNode {
     readonly label: string;
     readonly details: readonly string[];
     readonly parent: string;
-    /** The ids of the nodes that it replaces: those in a collapsed namespace. */
+    /** The ids of the nodes that it replaces: those in a collapsed namespace, or interfaces in the card of a node. */
     readonly hides: readonly string[];
     readonly initial: boolean;
     /** The place in a file that the node represents; that of a subtree is its `<BehaviorTree>`. */
@@ -125,6 +125,8 @@ export interface PictureEdge {
     readonly kind: EdgeKind;
     readonly labels: readonly string[];
     readonly probabilistic: boolean;
+    /** The kind of the interfaces through which it leads, if their nodes are not shown; their names are `labels`. */
+    readonly interface: NodeKind | "";
     readonly place: Place | null;
     readonly actions: readonly PictureAction[];
 }

@@ -24,6 +24,7 @@ from roaml.ide.diagrams.highlight import DiagramHighlight, highlights
 from roaml.ide.diagrams.machine import machine_picture
 from roaml.ide.diagrams.namespaces import closed_namespaces
 from roaml.ide.diagrams.part import around, matching
+from roaml.ide.diagrams.provided import with_provided_interfaces
 from roaml.ide.diagrams.ros import ros_picture
 from roaml.ide.diagrams.system import system_picture
 from roaml.ide.diagrams.tree import tree_picture
@@ -53,6 +54,7 @@ __all__ = [
     "ros_picture",
     "system_picture",
     "tree_picture",
+    "with_provided_interfaces",
 ]
 
 _MAKERS: Mapping[DiagramKind, Callable[[Analysis, str], Picture | None]] = {

@@ -67,7 +67,8 @@ class DetailKind(enum.Enum):
     - `CONSTANT`: a port with a constant value, or a constant that a subtree is given;
     - `REFERENCE`: a port that is bound to the blackboard, or an entry that a subtree is given;
     - `SCRIPT`: a condition or script of a node of the tree, or automatic remapping;
-    - `MOCK`: the mock of a leaf.
+    - `MOCK`: the mock of a leaf;
+    - `INTERFACE`: a topic, service or action of a node of ROS.
     """
 
     ACTIONS = "actions"
@@ -77,6 +78,7 @@ class DetailKind(enum.Enum):
     REFERENCE = "reference"
     SCRIPT = "script"
     MOCK = "mock"
+    INTERFACE = "interface"
 
 
 class Change(enum.Enum):
@@ -89,8 +91,8 @@ class Change(enum.Enum):
 
 
 class Detail(Record, frozen=True):
-    """A line below the label of a node. `key` is the name of the port that it describes; "" if it describes none.
-    `change` is `None` if the diagram compares no versions."""
+    """A line below the label of a node. `key` is the name of the port or the kind of the interface that it describes;
+    "" if it describes none. `change` is `None` if the diagram compares no versions."""
 
     kind: DetailKind
     text: str
@@ -124,7 +126,8 @@ class DiagramNode(Record, frozen=True):
         title: the parts of the label, for nodes of trees and subtrees.
         use: the place of the `<SubTree>` of a subtree; `None` for other nodes.
         change: what happened to the node; `None` if the diagram compares no versions.
-        hides: the ids of the nodes that it replaces, those in a collapsed namespace; empty for other nodes.
+        hides: the ids of the nodes that it replaces: those in a collapsed namespace, or the interfaces in the card of a
+            node of ROS; empty for other nodes.
     """
 
     id: str
@@ -145,11 +148,13 @@ class DiagramEdge(Record, frozen=True):
 
     Attributes:
         labels: lines of text. Those of a transition are the trigger, the condition in brackets, and the probability.
+            Those of an edge through interfaces that are not shown are their names.
         actions: the texts for the statements that a transition executes.
         probabilistic: whether it is one of several edges of a choice, of which one is chosen at random.
         internal: whether it represents a transition without a target, which does not leave its state.
         place: the place in a file that the edge represents; `None` if there is none.
         change: what happened to the edge; `None` if the diagram compares no versions.
+        interface: the kind of the interfaces through which it leads, if their nodes are not shown.
     """
 
     source: str
@@ -161,6 +166,7 @@ class DiagramEdge(Record, frozen=True):
     internal: bool = False
     place: Location | None = None
     change: Change | None = None
+    interface: DiagramNodeKind | None = None
 
 
 class Picture(Record, frozen=True):

@@ -43,7 +43,7 @@ import { Minimap } from "./minimap";
 import { MockPane } from "./mocks";
 import { menuOf } from "./menu";
 import { element, pngData, sceneOf, type Scene } from "./scene";
-import { shownActivity } from "./shown";
+import { shownActivity, shownId } from "./shown";
 import { legendOf, type LegendEntry } from "./words";
 import { theme } from "./theme";
 
@@ -424,7 +424,9 @@ export class PictureView {
     /** Highlight the node of the current step of a trace. */
     private highlight(id: string): void {
         this.highlighted = id;
-        const highlighted = id === "" ? -1 : (this.picture?.nodes.findIndex((node) => node.id === id) ?? -1);
+        const { picture } = this;
+        const shown = picture && id !== "" ? shownId(picture, id) : "";
+        const highlighted = picture?.nodes.findIndex((node) => node.id === shown) ?? -1;
         for (const [index, node] of this.scene?.nodes ?? [])
             node.classList.toggle("highlighted", index === highlighted);
         if (highlighted >= 0) this.reveal(highlighted);

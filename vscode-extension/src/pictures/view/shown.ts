@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/** What a run does in parts that a picture does not show: a collapsed namespace has the activity of its parts. */
+/** What a run does in parts that a picture does not show: the node that hides them has their activity. */
 
 import type { Activity, Picture } from "../contract";
 
-/** The id of the node that shows the node with an id: that of a collapsed namespace, otherwise the same id. */
-function shownId(picture: Picture, id: string): string {
+/** The id of the node that shows the node with an id: the one that hides it, otherwise the same id. */
+export function shownId(picture: Picture, id: string): string {
     return picture.nodes.find(({ hides }) => hides.includes(id))?.id ?? id;
 }
 

@@ -86,6 +86,8 @@ export function legendOf(picture: Picture, words: Words): LegendEntry[] {
             break;
         case "ros":
             for (const { kind } of picture.nodes) add(CHANNEL_TONES[kind], words.kinds[kind], true);
+            for (const { interface: kind } of picture.edges)
+                if (kind !== "") add(CHANNEL_TONES[kind], words.kinds[kind], true);
             if (picture.edges.some(({ kind }) => kind === "sends")) add("event", words.kinds.event, true);
             break;
     }

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from roaml.figures.drawing import Drawing, Group, Outline, Polyline, Shape, Tone
 from roaml.figures.geometry import Box
 from roaml.figures.layout import Boxes, LayoutDirection, Link, nested
-from roaml.ide.diagrams.diagram import DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
+from roaml.ide.diagrams.diagram import DetailKind, DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
 from roaml.ide.diagrams.drawings.cards import Card, Row, paragraph, title
 from roaml.ide.diagrams.drawings.changes import is_marked, kind_of, signed, tone_of
 
@@ -79,16 +79,22 @@ def _frame(node: DiagramNode, number: int, cards: Mapping[str, Card], places: Ma
 def _card(node: DiagramNode, width: float) -> Card:
     word = _WORDS.get(node.kind, "node")
     rows = [Row(title(node.label, width))]
-    details = [(detail.text, detail.change) for detail in node.details] or [(word, None)]
+    interfaces = [detail for detail in node.details if detail.kind is DetailKind.INTERFACE]
+    details = [(detail.text, detail.change) for detail in node.details if detail not in interfaces] or [(word, None)]
     for text, change in details:
         lines = signed(paragraph(text, width, "muted"), change)
         rows.append(Row(lines, tone_of(change, Tone.PLAIN), has_bar=is_marked(change), is_joined=True))
+    tones = {kind.value: tone for kind, tone in _CHANNELS.items()}
+    for detail in interfaces:
+        # The name of the node is that of the card.
+        name = detail.text.removeprefix(f"/{node.label}/")
+        rows.append(Row(paragraph(name, width), tones[detail.key], has_bar=True))
     return Card(tuple(rows), padding=14.0 if node.kind in _CHANNELS else 12.0)
 
 
 def _label(number: int, edge: DiagramEdge) -> Card | None:
     """The label of an edge with the names of its plain events; `None` for other edges, which have no label."""
-    if not edge.labels:
+    if edge.kind is not EdgeKind.SENDS:
         return None
     lines = tuple(line for text in edge.labels for line in paragraph(text, LABEL_WIDTH, bold=True))
     row = Row(signed(lines, edge.change), tone_of(edge.change, Tone.EVENT), edge.kind.value, (number,), has_bar=True)
@@ -98,6 +104,8 @@ def _label(number: int, edge: DiagramEdge) -> Card | None:
 def _tone(edge: DiagramEdge, source: DiagramNode, target: DiagramNode) -> Tone:
     if edge.kind is EdgeKind.SENDS:
         return tone_of(edge.change, Tone.EVENT)
+    if edge.interface is not None:
+        return tone_of(edge.change, _CHANNELS[edge.interface])
     return tone_of(edge.change, _CHANNELS.get(source.kind) or _CHANNELS.get(target.kind) or Tone.PLAIN)
 
 
