@@ -11,6 +11,7 @@ import {
     centered,
     fit,
     fitLegibly,
+    fullest,
     follow,
     mapOf,
     neighbour,
@@ -260,6 +261,18 @@ test("a map of a drawing, and the view around a point of it", () => {
         y: 100,
         scale: 0.5,
     });
+});
+
+test("a graph is shown where the most nodes are whole, first of all at its start", () => {
+    const sight = { x: -24, y: -24, scale: 1 };
+    const area = { width: 3000, height: 2000 };
+    const at = (x: number, y: number) => ({ x, y, width: 100, height: 50 });
+    const alone = [at(0, 0), at(0, 1900)];
+    const crowd = [at(1500, 800), at(1700, 800), at(1500, 900), at(1700, 1000)];
+    assert.deepEqual(fullest(sight, area, [...alone, ...crowd], 600, 400), { x: 1476, y: 776, scale: 1 });
+    assert.deepEqual(fullest(sight, area, alone, 600, 400), sight);
+    // Not beyond the end of the drawing.
+    assert.deepEqual(fullest(sight, area, crowd.slice(0, 2), 1700, 1950), { x: 1324, y: -24, scale: 1 });
 });
 
 test("a drawing that does not fit is shown around its root", () => {

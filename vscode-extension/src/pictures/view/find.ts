@@ -198,6 +198,34 @@ export function amongOthers(
     return { ...sight, x: best.x, y: best.y };
 }
 
+/** The view with as many whole boxes as possible; among equally good views, the one nearest to the start. */
+export function fullest(sight: Sight, drawing: Area, boxes: readonly Box[], width: number, height: number): Sight {
+    const [w, h] = [width / sight.scale, height / sight.scale];
+    const margin = MARGIN / sight.scale;
+    const places = (now: number, size: number, window: number, starts: readonly number[]): readonly number[] => {
+        if (size <= window) return [now];
+        return [now, ...new Set(starts.map((at) => Math.min(at - margin, size + margin - window)))].slice(
+            0,
+            MAX_PLACES,
+        );
+    };
+    const columns = places(sight.x, drawing.width, w, boxes.map(({ x }) => x).sort(ascending));
+    const rows = places(sight.y, drawing.height, h, boxes.map(({ y }) => y).sort(ascending));
+    let best = { ...sight, count: -1 };
+    for (const y of rows) {
+        const inRow = boxes.filter((box) => box.y >= y && box.y + box.height <= y + h);
+        for (const x of columns) {
+            const count = inRow.filter((box) => box.x >= x && box.x + box.width <= x + w).length;
+            if (count > best.count) best = { ...sight, x, y, count };
+        }
+    }
+    return { x: best.x, y: best.y, scale: best.scale };
+}
+
+function ascending(one: number, other: number): number {
+    return one - other;
+}
+
 /** The maximum number of places in one direction that are compared. */
 const MAX_PLACES = 100;
 /** The extent of a box in one direction. */

@@ -26,6 +26,7 @@ import {
     fit,
     fitLegibly,
     follow,
+    fullest,
     isArrow,
     neighbour,
     OUTLINE,
@@ -306,6 +307,10 @@ export class PictureView {
         if (!this.drawing) return;
         const sight = fitLegibly(this.drawing, width, height, this.least);
         const first = this.box(this.first);
+        if (!first && this.picture?.kind === "ros") {
+            this.look(fullest(sight, this.drawing, this.innermost(this.drawing), width, height));
+            return;
+        }
         this.look(first ? this.amongOthers(sight, this.drawing, first, width, height) : sight);
     }
 
@@ -314,22 +319,28 @@ export class PictureView {
         const { picture } = this;
         const id = picture?.nodes[node.index]?.id;
         const targets = new Set(picture?.edges.filter(({ source }) => source === id).map(({ target }) => target));
-        const parents = new Set(picture?.nodes.map(({ parent }) => parent));
-        const idOf = ({ index }: DrawnNode) => picture?.nodes[index]?.id ?? "";
-        const others = drawing.nodes.filter((other) => !parents.has(idOf(other)));
-        const near = others.filter((other) => targets.has(idOf(other)));
+        const others = this.innermost(drawing);
+        const near = others.filter(({ index }) => targets.has(picture?.nodes[index]?.id ?? ""));
         return amongOthers(sight, drawing, node, near, others, width, height);
     }
 
-    /** The node that is shown first: that of the caret, otherwise the initial state, otherwise the first node. */
+    /** The nodes that contain no others. */
+    private innermost(drawing: Drawing): readonly DrawnNode[] {
+        const parents = new Set(this.picture?.nodes.map(({ parent }) => parent));
+        return drawing.nodes.filter(({ index }) => !parents.has(this.picture?.nodes[index]?.id ?? ""));
+    }
+
+    /**
+     * The node that is shown first: that of the caret, otherwise the initial state, otherwise the first node; -1 if it is
+     * none in particular, in a ROS graph.
+     */
     private get first(): number {
         const { here, picture } = this;
         if (here !== null) return this.nodeOf(here);
+        if (picture?.kind === "ros") return picture.nodes.findIndex(({ id }) => id === this.part.around);
         const initial = picture?.nodes.findIndex((node) => node.initial && node.kind === "state") ?? -1;
         if (initial >= 0) return initial;
-        const parents = new Set(picture?.nodes.map(({ parent }) => parent));
-        const first = this.drawing?.nodes.find(({ index }) => !parents.has(picture?.nodes[index]?.id ?? ""));
-        return first?.index ?? -1;
+        return (this.drawing && this.innermost(this.drawing)[0]?.index) ?? -1;
     }
 
     /** The node of a part; that of a transition is its source. */

@@ -2,7 +2,8 @@
 """The drawing of a behavior tree as an outline for narrow areas: a row for each node, with its children indented below.
 
 A row has the symbol, the name, the plugin and the number of its node, then its ports, scripts and mock, continued in
-further lines if necessary. Constant ports are shown as far as the first line has space; a hover shows the others.
+further lines if necessary. Of several constant ports, those are shown for which the last line has space; a hover shows
+the others.
 """
 
 from __future__ import annotations
@@ -101,7 +102,7 @@ def _texts(picture: Picture, node: DiagramNode, width: float) -> tuple[list[Row]
         texts.append(Row(paragraph(subtitle(node.title), width, "muted", limit=1)))
     for detail, row in zip(node.details, port_rows(picture, node, width, MAX_LINES), strict=True):
         (constants if detail.kind is DetailKind.CONSTANT else texts).append(row)
-    return texts, constants
+    return (texts, constants) if len(constants) > 1 else (texts + constants, [])
 
 
 def _filled(texts: Sequence[Row], constants: Sequence[Row], width: float) -> list[list[Row]]:
