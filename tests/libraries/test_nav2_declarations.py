@@ -156,3 +156,49 @@ def test_a_node_that_calls_an_action_is_running(node: Node) -> None:
     else:
         assert not node.running
         assert node.running is False or node.name == "CheckStopStatus"
+
+
+DEFAULTS = {
+    "ComputeRoute.use_start": "false",
+    "ComputeAndTrackRoute.use_start": "false",
+    "SmoothPath.check_for_collisions": "false",
+    "ValidatePath.stop_at_first_collision": "true",
+    "ValidatePath.max_cost": "254",
+    "CheckStopStatus.duration_stopped": "1000",
+    "GetPoseFromPath.index": "0",
+    "Spin.is_recovery": "true",
+    "AssistedTeleop.is_recovery": "false",
+    "ToggleCollisionMonitor.enable": "true",
+    "DockRobot.use_dock_id": "true",
+    "DockRobot.navigate_to_staging_pose": "true",
+    "IsBatteryLow.is_voltage": "false",
+    "RecoveryNode.number_of_retries": "1",
+    "RoundRobin.wrap_around": "false",
+}
+"""Defaults of Nav2 that follow from nothing else in the declarations, stated a second time."""
+
+INPUTS = {
+    *("ComputePathToPose.viapoints", "TruncatePathLocal.pose", "PathExpiringTimer.path", "FollowObject.tracked_frame"),
+    *("DockRobot.dock_id", "DockRobot.dock_pose"),
+}
+"""Ports that a node reads, although no rule above says so."""
+
+
+def test_defaults_that_only_nav2_knows() -> None:
+    defaults = {f"{node.name}.{port.name}": port.default for node, port in PORTS}
+    assert {name: defaults[name] for name in DEFAULTS} == DEFAULTS
+
+
+def test_inputs_that_only_nav2_knows() -> None:
+    directions = {f"{node.name}.{port.name}": port.direction for node, port in PORTS}
+    assert {name for name in INPUTS if directions[name] is Direction.IN} == INPUTS
+
+
+def test_results_are_written() -> None:
+    """A node writes what it gets from its server. An entry that it changes, it also reads."""
+    directions = {(node.name, port.name): port.direction for node, port in PORTS}
+    results = {"error_code_id", "error_msg", "num_retries", "rerouted", "current_edge_id"}
+    assert {direction for (_, port), direction in directions.items() if port in results} == {Direction.OUT}
+    for node in ("ComputeRoute", "ComputeAndTrackRoute"):
+        assert {directions[node, port] for port in ("route", "path")} == {Direction.OUT}
+    assert directions["PersistentSequence", "current_child_idx"] is Direction.INOUT
