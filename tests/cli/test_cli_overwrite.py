@@ -56,8 +56,8 @@ NOTHING = {
     "--exhaustive --slopes --max-states --max-transitions "
     "--confidence --epsilon --method --max-traces --max-steps --seed --jobs --dask --format --theme --unit "
     "--max-time --reaction-time --ros-path --tree-semantics --params-file --mock --mocks --entry --tick-rate",
-    "draw": "file --machine --around --matching --tree --graph --machines --theme --direction --mock --mocks "
-    "--stdin-filename",
+    "draw": "file --machine --around --matching --tree --outline --graph --interfaces --machines --theme --direction "
+    "--mock --mocks --stdin-filename",
     "explain": "code",
     "format": "--check --diff",
     "init": "",

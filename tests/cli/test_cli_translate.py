@@ -112,14 +112,12 @@ def test_properties_by_name(command: Command, robot: Path) -> None:
 
 
 def test_parts_of_properties_without_effect(command: Command, robot: Path) -> None:
-    """Comments change nothing in a translation, wherever they are."""
+    """Comments below properties change nothing in a translation. That of a property is kept, as its sentence."""
     path = robot / "properties.jani"
     written = json.loads(path.read_text())
     plain = command("translate", "main.xml", "-o", "-").out
     for property_ in written["properties"]:
-        property_["comment"] = property_["expression"]["comment"] = property_["expression"]["values"]["comment"] = (
-            "a remark"
-        )
+        property_["expression"]["comment"] = property_["expression"]["values"]["comment"] = "a remark"
     path.write_text(json.dumps(written))
     done = command("translate", "main.xml", "-o", "-")
     assert (done.status, done.out) == (0, plain)

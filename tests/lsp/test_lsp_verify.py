@@ -212,7 +212,9 @@ async def test_counterexample_leads_to_the_models(robot: Path) -> None:
         explanation = await why(client, main, PLACED)
     assert (explanation["property"], explanation["verdict"], explanation["stale"]) == (PLACED, "failed", False)
     assert explanation["expected"] == "≥ 0.95"
-    assert explanation["heading"].startswith("by chance (0.5), Arm sends /block/dropped (data: true)")
+    assert explanation["heading"].startswith(
+        "The block reaches its place. By chance (0.5), Arm sends /block/dropped (data: "
+    )
     assert f"; {PLACED} fails at " in explanation["heading"]
     assert f". {PLACED} failed in trace {explanation['trace']} after " in explanation["heading"]
     steps = explanation["steps"]
