@@ -103,6 +103,7 @@ def _dropped(program: Program, legend: Legend, liveness: Liveness) -> tuple[Ints
 
 def _owners(program: Program, legend: Legend, liveness: Liveness) -> tuple[Ints, Ints, Ints, Ints]:
     """`owner_start`, `owner_instance`, `owner_table` and `is_dead`."""
+    storages = legend.layout.storages
     ranges = [*program.first_location, len(legend.locations)]
     owners: dict[int, list[tuple[int, int]]] = {}
     is_dead = list[int]()
@@ -110,7 +111,7 @@ def _owners(program: Program, legend: Legend, liveness: Liveness) -> tuple[Ints,
     def add(number: int, instance: int, dead: Iterable[int]) -> None:
         pair = instance, len(is_dead) - ranges[instance]
         is_dead.extend(dead)
-        for cell in _cells(legend.layout.storages[number], program):
+        for cell in _cells(storages[number], program):
             owners.setdefault(cell, []).append(pair)
 
     for number in bits(liveness.unobserved):
