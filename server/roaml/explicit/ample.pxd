@@ -14,7 +14,7 @@ cdef int SEVERAL
 cdef class AmpleSets:
     cdef Kernel kernel
     cdef int[::1] slot_start, slot_vector, hidden, dependent_start, dependent_vector, guard_start, guard_vector
-    cdef int[::1] open_guards, frozen_at, candidates, busy_with
+    cdef int[::1] open_guards, frozen_at, candidates, busy_with, kind_of
     cdef int[::1] own_start, own_slot, gates_start, gates, gate_slot_start, gate_slot, list_end, list_slot
     cdef int[::1] random_vector, members, smallest
     cdef int[::1] group_place, stirred_start, stirred, guarded_start, guarded, alarm_start, alarm
@@ -26,7 +26,7 @@ cdef class AmpleSets:
     cdef int writes_seen, is_fleeting, looks_ahead, count, handled, alone, chosen, chosen_rank
     cdef int is_early, takes_several, member_count
     cdef i64 runs, searches
-    cdef i64[::1] frozen, waits, listed, busy
+    cdef i64[::1] frozen, waits, listed, busy, kind_at
 
     @cython.locals(count=int, i=int, vector=int)
     cpdef int find(self) noexcept
@@ -40,8 +40,9 @@ cdef class AmpleSets:
     cdef void _prepare(self) noexcept
     @cython.locals(several=int)
     cdef int _has_tests(self, int vector) noexcept
-    @cython.locals(kind=int, i=int, hidden=int)
     cdef int _kind(self, int vector) noexcept
+    @cython.locals(kind=int, i=int, hidden=int)
+    cdef int _kind_here(self, int vector) noexcept
     @cython.locals(i=int, vector=int, k=int, instance=int)
     cdef void _mark_busy(self) noexcept
     @cython.locals(i=int)

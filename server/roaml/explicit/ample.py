@@ -76,6 +76,8 @@ class AmpleSets:
         self.alone = -1
         self.busy = array("q", [0] * self.kernel.instances)
         self.busy_with = array("i", [0] * self.kernel.instances)
+        self.kind_at = array("q", [0] * (len(self.kernel.enabled) + 1))
+        self.kind_of = array("i", [0] * (len(self.kernel.enabled) + 1))
         self.chosen = -1
         self.chosen_rank = 0
         self.writes_seen = 0
@@ -140,11 +142,11 @@ class AmpleSets:
         self._prepare()
         for i in range(count):
             vector = self.candidates[i]
-            if self._kind(vector) == HIDDEN and self._is_single(vector) != 0 and self._is_alone(vector) != 0:
+            if self._is_single(vector) != 0 and self._kind(vector) == HIDDEN and self._is_alone(vector) != 0:
                 return vector
         for i in range(count):
             vector = self.candidates[i]
-            if self._kind(vector) == WRITES and self._is_single(vector) != 0 and self._is_alone(vector) != 0:
+            if self._is_single(vector) != 0 and self._kind(vector) == WRITES and self._is_alone(vector) != 0:
                 self.writes_seen = 1
                 return vector
         return -1
@@ -161,8 +163,8 @@ class AmpleSets:
             if (
                 self._has_tests(vector) != 0
                 and vector < self.kernel.first_held
-                and self._kind(vector) == HIDDEN
                 and self._is_single(vector) != 0
+                and self._kind(vector) == HIDDEN
                 and self._is_alone(vector) != 0
             ):
                 break
@@ -180,7 +182,7 @@ class AmpleSets:
             return -1
         for i in range(count):
             vector = self.candidates[i]
-            if self._kind(vector) == HIDDEN and self._is_single(vector) != 0 and self._is_unreached(vector) != 0:
+            if self._is_single(vector) != 0 and self._kind(vector) == HIDDEN and self._is_unreached(vector) != 0:
                 return vector
         return -1
 
@@ -217,7 +219,13 @@ class AmpleSets:
         return 1 if several > self.kernel.active_start[vector + 1] - self.kernel.active_start[vector] else 0
 
     def _kind(self, vector: int) -> int:
-        """NEVER, HIDDEN or WRITES."""
+        """NEVER, HIDDEN or WRITES. It is determined once for each state."""
+        if self.kind_at[vector] != self.searches:
+            self.kind_at[vector] = self.searches
+            self.kind_of[vector] = self._kind_here(vector)
+        return self.kind_of[vector]
+
+    def _kind_here(self, vector: int) -> int:
         kind = HIDDEN
         for i in range(self.kernel.all_start[vector], self.kernel.all_start[vector + 1]):
             hidden = self.hidden[self._group(self.kernel.all_slot[i])]

@@ -33,7 +33,7 @@ cdef class StateSearch(PackedStates):
     cdef double[::1] chance
     cdef int[::1] edges, edge_from, slots, picks, ways, pending
     cdef AmpleSets ample
-    cdef int leaves_out, has_passed, looks_at, is_seen, layout
+    cdef int leaves_out, has_passed, looks_at, is_seen, is_ahead, layout
     cdef int[::1] trail, passed_to, passed_left
     cdef u64[::1] passed_keys
     cdef u64 passed_mask
@@ -74,7 +74,7 @@ cdef class StateSearch(PackedStates):
     cdef void _end_step(self) noexcept
     cdef void _widen_all(self) except *
     cdef void _renew_layout(self) except *
-    @cython.locals(trace=int, cell=int, i=int, _=int)
+    @cython.locals(trace=int, changed=int, cell=int, i=int, _=int)
     cdef void _learn(self) except *
     cdef int _find(self, i64 parent) except? -9
     @cython.locals(state=i64)
@@ -140,6 +140,7 @@ cdef class StateSearch(PackedStates):
     cdef void _remember(self, i64 at) noexcept
     @cython.locals(size=i64)
     cdef void _forget(self) except *
+    cdef void _turn_back(self) noexcept
     @cython.locals(j=int, way=int, k=int, cell=int, watch=int)
     cdef int _is_seen(self) noexcept
     cdef void _return(self, i64 state) noexcept

@@ -146,6 +146,7 @@ class StateSearch(PackedStates):
         self.has_passed = 0
         self.looks_at = 0
         self.is_seen = 0
+        self.is_ahead = 0
         self.layout = 0
         self.trail = array("i", [0] * MAX_PASSED)
         self.passed_mask = 0
@@ -347,9 +348,11 @@ class StateSearch(PackedStates):
         steps: list[tuple[int, list[int], list[int]]] = []
         while self._known() != successor:
             if len(steps) == MAX_PASSED or self._pass() == 0:
+                self._turn_back()
                 self._return(state)
                 return None
             steps.append((self.kernel.vector, [0] * self.kernel.parts, [0] * self.kernel.parts))
+        self._turn_back()
         return steps
 
     def fault(self) -> tuple[int, int, int, int, float]:
@@ -450,16 +453,24 @@ class StateSearch(PackedStates):
         self._forget()
 
     def _learn(self) -> None:
-        """Give all cells enough bits for the values that they have in some random traces."""
+        """Give all cells enough bits for the values that they have in some random traces. Meanwhile, `value` contains
+        the last value of each cell that has got enough bits, so that only the others are examined."""
         self._keep_layout()
         for trace in range(SAMPLED_TRACES):
             self.kernel.begin(0, trace)
             for _ in range(SAMPLED_STEPS):
                 if self.kernel.step() != UNKNOWN:
                     break
-                for cell in range(self.variables):
+                self._list_changed()
+                changed = self.changed_count
+                self.changed_count = 0
+                for i in range(changed):
+                    cell = self.changed[i]
                     if self._is_dead(cell) == 0:
                         self._admit(cell)
+                        self.changed[self.changed_count] = cell
+                        self.changed_count += 1
+                self._accept()
         self._renew_layout()
         self.kernel.root(0)
         for cell in range(self.cell_count):
@@ -1108,6 +1119,7 @@ class StateSearch(PackedStates):
             self.trail[steps] = at
             steps += 1
             successor = self._known()
+        self._turn_back()
         self.passed += steps
         if steps == MAX_PASSED:
             self.circled += steps
@@ -1165,8 +1177,13 @@ class StateSearch(PackedStates):
 
     def _pass(self) -> int:
         """Replace the key `following` of a state by that of its successor if only one step is taken there, without
-        chance. Return whether the key was replaced."""
-        self._enter()
+        chance. Return whether the key was replaced. If `is_ahead` is 1, the step has not been undone, because the path
+        may go on from there: either `_pass` or `_turn_back` must follow."""
+        if self.is_ahead != 0:
+            self.is_ahead = 0
+            self._go_on()
+        else:
+            self._enter()
         label = self._judged()
         if label & STATUS != UNKNOWN or self.kernel.fault != 0:
             return 0
@@ -1194,11 +1211,19 @@ class StateSearch(PackedStates):
         self._pack_step()
         if self.misfit >= 0:
             self._widen_all()
-        self._undo()
+            self._undo()
+        else:
+            self.is_ahead = 1
         for i in range(self.words):
             if self.following[i] != self.now[i]:
                 return 1
         return 0
+
+    def _turn_back(self) -> None:
+        """Undo the last step of a path, unless `_pass` has done so."""
+        if self.is_ahead != 0:
+            self.is_ahead = 0
+            self._undo()
 
     def _is_seen(self) -> int:
         """Whether the step that the kernel has executed has changed the value of a variable that the goal reads."""

@@ -10,7 +10,7 @@ ctypedef long long i64
 
 cdef u64 UINT64_MASK, UINT32_MASK, MAX_INT64, HASH_1, HASH_2
 cdef i64 SPARE_BITS_FROM_STATES
-cdef int MAX_SPREAD_BITS, FIRST_STATES, FIRST_TABLE_BITS
+cdef int MAX_SPREAD_BITS, FIRST_STATES, FIRST_TABLE_BITS, BLOCK
 
 cdef class PackedStates:
     cdef Kernel kernel
@@ -30,6 +30,8 @@ cdef class PackedStates:
     cdef void _start(self) except *
     cdef void _set_current(self, int cell, i64 value) noexcept
     cdef int _has_changed(self, int cell) noexcept
+    @cython.locals(changed=int, cell=int, first=int, end=int, difference=i64)
+    cdef void _list_changed(self) noexcept
     @cython.locals(i=int)
     cdef void _pack_changed(self) noexcept
     @cython.locals(cell=int)
@@ -38,9 +40,11 @@ cdef class PackedStates:
     cdef void _undo(self) noexcept
     @cython.locals(i=int)
     cdef void _accept(self) noexcept
+    @cython.locals(moved=int, i=int, cell=int, value=i64)
+    cdef void _go_on(self) noexcept
     @cython.locals(first=i64, i=int)
     cdef void _visit(self, i64 state) noexcept
-    @cython.locals(moved=int, w=int, code=u64, i=int, cell=int, value=i64, place=int, group=int)
+    @cython.locals(moved=int, w=int, code=u64, i=int, cell=int, value=i64)
     cdef void _enter(self) noexcept
     @cython.locals(code=u64)
     cdef i64 _decoded(self, i64 state, int cell) noexcept
@@ -83,4 +87,10 @@ cdef i64 _current(PackedStates states, int cell) noexcept
 cdef void _set(PackedStates states, int cell, i64 value) noexcept
 @cython.locals(code=u64, at=int, shift=int)
 cdef void _pack(PackedStates states, int cell) noexcept
+@cython.locals(i=int)
+cdef void _forget_notes(PackedStates states) noexcept
+@cython.locals(place=int, group=int)
+cdef int _replace(PackedStates states, int cell, i64 value, int moved) noexcept
+@cython.locals(i=int)
+cdef void _update(PackedStates states, int moved) noexcept
 cdef i64 _signed(u64 value) noexcept

@@ -35,6 +35,8 @@ MAX_SPREAD_BITS = 40
 FIRST_STATES = 64
 """The number of states for which memory is allocated first."""
 FIRST_TABLE_BITS = 8
+BLOCK = 16
+"""The number of variables that are compared at once."""
 
 
 def compiled() -> bool:
@@ -128,6 +130,31 @@ class PackedStates:
         """Whether the current value of a cell differs from that in `value`."""
         return 1 if _current(self, cell) != self.value[cell] else 0
 
+    def _list_changed(self) -> None:
+        """Put the cells of the kernel whose values differ from those in `value` into `changed`."""
+        changed = 0
+        for cell in range(self.places):
+            if self.kernel.place[cell] != self.value[cell]:
+                self.changed[changed] = cell
+                changed += 1
+        first = self.places
+        while first < self.first_real:
+            end = min(first + BLOCK, self.first_real)
+            difference = 0
+            for cell in range(first, end):
+                difference |= self.kernel.ints[cell - self.places] ^ self.value[cell]
+            if difference != 0:
+                for cell in range(first, end):
+                    if self.kernel.ints[cell - self.places] != self.value[cell]:
+                        self.changed[changed] = cell
+                        changed += 1
+            first = end
+        for cell in range(self.first_real, self.variables):
+            if self.real_bits[cell - self.first_real] != self.value[cell]:
+                self.changed[changed] = cell
+                changed += 1
+        self.changed_count = changed
+
     def _pack_changed(self) -> None:
         """Put the key of the current state of the kernel into `following`. It differs from `now` only in the cells in
         `changed`. If a value does not fit, its cell is put into `misfit`; then `_widen` and `_pack_all` must follow."""
@@ -146,9 +173,21 @@ class PackedStates:
         What is enabled has not been updated after the step."""
         for i in range(self.changed_count):
             _set(self, self.changed[i], self.value[self.changed[i]])
-        for i in range(self.kernel.note_count):
-            self.kernel.noted[self.kernel.notes[i]] = 0
-        self.kernel.note_count = 0
+        _forget_notes(self)
+
+    def _go_on(self) -> None:
+        """Do the same as `_enter` after a step that leads to the key `following`, and has changed only the cells in
+        `changed`, with their new values. What is enabled has not been updated after the step."""
+        _forget_notes(self)
+        moved = 0
+        for i in range(self.changed_count):
+            cell = self.changed[i]
+            value = _current(self, cell)
+            if value != self.value[cell]:
+                moved = _replace(self, cell, value, moved)
+        for i in range(self.words):
+            self.now[i] = self.following[i]
+        _update(self, moved)
 
     def _accept(self) -> None:
         """Let `value` and `now` describe the current state of the kernel. It differs from them only in the cells in
@@ -179,20 +218,9 @@ class PackedStates:
                 value = _signed((((code >> self.shift[cell]) & self.mask[cell]) + self.low[cell]) & UINT64_MASK)
                 if value == self.value[cell]:
                     continue
-                if cell < self.places:
-                    place = self.value[cell]
-                    for group in range(self.kernel.group_start[place], self.kernel.group_start[place + 1]):
-                        self.kernel._set_ready(self.kernel.group_slot[group], 0)
-                    self.moved[moved] = cell
-                    moved += 1
-                elif cell < self.variables and self.watch[cell - self.places] >= 0:
-                    self.kernel._note(self.watch[cell - self.places])
-                self.value[cell] = value
+                moved = _replace(self, cell, value, moved)
                 _set(self, cell, value)
-        for i in range(moved):
-            self.kernel._arrive(self.kernel.place[self.moved[i]])
-        if self.kernel.note_count != 0:
-            self.kernel._look_around()
+        _update(self, moved)
 
     def _decoded(self, state: int, cell: int) -> int:
         """The value of a cell in a state."""
@@ -476,6 +504,36 @@ def _pack(states: PackedStates, cell: int) -> None:
         at = states.word[cell]
         shift = states.shift[cell]
         states.following[at] = (states.following[at] & (UINT64_MASK ^ (states.mask[cell] << shift))) | (code << shift)
+
+
+def _forget_notes(states: PackedStates) -> None:
+    """Forget the variables that a step has written."""
+    for i in range(states.kernel.note_count):
+        states.kernel.noted[states.kernel.notes[i]] = 0
+    states.kernel.note_count = 0
+
+
+def _replace(states: PackedStates, cell: int, value: int, moved: int) -> int:
+    """Replace the value of a cell in `value`, and note that what it enables must be updated. Return the number of cells
+    in `moved`, which was `moved` before."""
+    if cell < states.places:
+        place = states.value[cell]
+        for group in range(states.kernel.group_start[place], states.kernel.group_start[place + 1]):
+            states.kernel._set_ready(states.kernel.group_slot[group], 0)
+        states.moved[moved] = cell
+        moved += 1
+    elif cell < states.variables and states.watch[cell - states.places] >= 0:
+        states.kernel._note(states.watch[cell - states.places])
+    states.value[cell] = value
+    return moved
+
+
+def _update(states: PackedStates, moved: int) -> None:
+    """Update what is enabled, after `moved` instances have moved and variables were noted."""
+    for i in range(moved):
+        states.kernel._arrive(states.kernel.place[states.moved[i]])
+    if states.kernel.note_count != 0:
+        states.kernel._look_around()
 
 
 def _signed(value: int) -> int:

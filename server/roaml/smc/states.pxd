@@ -16,7 +16,7 @@ cdef u64 MAX_DRAWN_COMBINATIONS
 cdef int FALSE, TRUE, UNKNOWN, FAULTY, DECIDED, CUT, GOES_ON
 cdef int SIZE, STATE, FLAGS, REWARD, HEADER_CELLS, CONDITIONS_A_CELL
 cdef int DECIDES, CAN_LEAVE, CANNOT_LEAVE, REASON_SHIFT, NEW, BY_KERNEL
-cdef int MAX_ROOTS, MAX_COMPARED, BLOCK, PULSE_TRACES
+cdef int MAX_ROOTS, MAX_COMPARED, PULSE_TRACES
 cdef i64 MEASURED_STEPS, REVIEW_STEPS, PULSE_STEPS, NUMBER_BYTES
 cdef double MAX_LOSS_S, MAX_LOSS_SHARE
 
@@ -79,7 +79,6 @@ cdef class TraceBatch(PackedStates):
     @cython.locals(status=int)
     cdef int _judged_by_kernel(self) noexcept
     cdef void _go(self, int node) noexcept
-    @cython.locals(changed=int, cell=int, first=int, end=int, difference=i64)
     cdef void _update(self) except *
     @cython.locals(kernel=Kernel, edge=int, way=int)
     cdef void _prepare(self) except *

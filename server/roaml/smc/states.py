@@ -70,8 +70,6 @@ MAX_ROOTS = 4096
 """The maximum number of initial states whose nodes are known by the numbers of the states."""
 MAX_COMPARED = 4
 """The number of probabilities up to which a random number is compared with each of them."""
-BLOCK = 16
-"""The number of variables that are compared at once."""
 MAX_BYTES = 12 << 20
 """The maximum memory for nodes, in bytes."""
 MEASURED_STEPS = 4096
@@ -579,28 +577,7 @@ class TraceBatch(PackedStates):
     def _update(self) -> None:
         """Read what the kernel has changed."""
         self.here = 0
-        changed = 0
-        for cell in range(self.places):
-            if self.kernel.place[cell] != self.value[cell]:
-                self.changed[changed] = cell
-                changed += 1
-        first = self.places
-        while first < self.first_real:
-            end = min(first + BLOCK, self.first_real)
-            difference = 0
-            for cell in range(first, end):
-                difference |= self.kernel.ints[cell - self.places] ^ self.value[cell]
-            if difference != 0:
-                for cell in range(first, end):
-                    if self.kernel.ints[cell - self.places] != self.value[cell]:
-                        self.changed[changed] = cell
-                        changed += 1
-            first = end
-        for cell in range(self.first_real, self.variables):
-            if self.real_bits[cell - self.first_real] != self.value[cell]:
-                self.changed[changed] = cell
-                changed += 1
-        self.changed_count = changed
+        self._list_changed()
         self._pack_changed()
         while self.misfit >= 0:
             if self._widen() != 0:
