@@ -17,8 +17,8 @@ cdef class PackedStates:
     cdef int[::1] watch
     cdef int places, first_real, variables, cell_count
     cdef i64[::1] real_bits, memory, low, old_low, value
-    cdef int[::1] bits, word, shift, live, live_start, old_word, old_shift, changed, moved
-    cdef u64[::1] room, mask, old_mask, now, following, keys, table
+    cdef int[::1] bits, word, shift, live, live_start, old_word, old_shift, run_cell, changed, moved
+    cdef u64[::1] room, mask, old_mask, run_mask, now, following, keys, table
     cdef public int words
     cdef int unused, changed_count, misfit, table_shift
     cdef u64 tag, table_mask
@@ -58,9 +58,11 @@ cdef class PackedStates:
     @cython.locals(least=i64, greatest=i64, span=u64, bits=int, unit=u64)
     cdef void _fit(self, int cell, i64 value) noexcept
     @cython.locals(
-        cell=int, i=int, old_words=i64, old_keys=u64[::1], state=i64, source=i64, target=i64, code=u64
+        cell=int, k=int, runs=int, old_words=i64, old_keys=u64[::1], state=i64, source=i64, target=i64, code=u64
     )
     cdef void _repack(self) except *
+    @cython.locals(runs=int, first=int, i=int, cell=int, has_moved=bint)
+    cdef int _list_runs(self) noexcept
     @cython.locals(words=int, left=int, bits=int, cell=int)
     cdef void _spread(self) except *
     @cython.locals(words=int, used=int, cell=int, bits=int)

@@ -88,6 +88,8 @@ class PackedStates:
         self.old_mask = array("Q", [0]) * self.cell_count
         self.old_word = array("i", [0]) * self.cell_count
         self.old_shift = array("i", [0]) * self.cell_count
+        self.run_cell = array("i", [0]) * self.cell_count
+        self.run_mask = array("Q", [0]) * self.cell_count
         self.value = array("q", [0]) * self.cell_count
         self.now = array("Q", [0])
         self.following = array("Q", [0])
@@ -305,15 +307,41 @@ class PackedStates:
         old_words = self.words
         old_keys = self.keys
         self._lay_out()
+        runs = self._list_runs()
         for state in range(self.count):
             source = state * old_words
             target = state * self.words
-            for i in range(self.live_start[self.words]):
-                cell = self.live[i]
-                code = (old_keys[source + self.old_word[cell]] >> self.old_shift[cell]) & self.old_mask[cell]
+            for k in range(runs):
+                cell = self.run_cell[k]
+                code = (old_keys[source + self.old_word[cell]] >> self.old_shift[cell]) & self.run_mask[k]
                 code = (code + self.old_low[cell] - self.low[cell]) & UINT64_MASK
                 self.keys[target + self.word[cell]] |= code << self.shift[cell]
         self._fill_table()
+
+    def _list_runs(self) -> int:
+        """Group the cells whose bits keep their distances within one word, so that they are moved together. Return the
+        number of the groups: `run_cell` contains the first cell of each, and `run_mask` the old bits of all."""
+        runs = 0
+        first = -1
+        for i in range(self.live_start[self.words]):
+            cell = self.live[i]
+            has_moved = self.low[cell] != self.old_low[cell]
+            if self.old_mask[cell] == 0 and not has_moved:
+                continue  # Its code is 0 in all states.
+            if (
+                first >= 0
+                and not has_moved
+                and self.word[cell] == self.word[first]
+                and self.old_word[cell] == self.old_word[first]
+                and self.shift[cell] - self.shift[first] == self.old_shift[cell] - self.old_shift[first]
+            ):
+                self.run_mask[runs - 1] |= self.old_mask[cell] << (self.old_shift[cell] - self.old_shift[first])
+                continue
+            self.run_cell[runs] = cell
+            self.run_mask[runs] = self.old_mask[cell]
+            runs += 1
+            first = -1 if has_moved else cell
+        return runs
 
     def _spread(self) -> None:
         """Give half of the bits that would be unused in the last word to variables, those with most bits first. When
