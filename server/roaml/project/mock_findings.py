@@ -16,6 +16,7 @@ from roaml.forest.forest import Forest
 from roaml.mocks.likeness import needs_likeness
 from roaml.mocks.mock import TREE_MARK, Mock, MockableWords, MockError, mock_for, mock_spans, read_mock, read_mocks
 from roaml.model.tree import TreeFile, TreeNode, nodes
+from roaml.project.paths import resolve
 from roaml.record import replace
 from roaml.rules.parser_rules import MISSING_MOCK, MOCK_SYNTAX, REPEATED_MOCK, UNMATCHED_MOCK
 from roaml.rules.rule import listing, replacements
@@ -25,15 +26,21 @@ _FOLDER = "the trees in this folder"
 
 
 def mock_findings(
-    source: SourceFile, beside: Callable[[str, str], Iterable[str]], forest: Callable[[str], Forest | None]
+    source: SourceFile,
+    beside: Callable[[str, str], Iterable[str]],
+    forest: Callable[[str], Forest | None],
+    read: Callable[[str], SourceFile | None],
 ) -> Iterator[Finding]:
     """The findings in a file of mocks. Mocks that contain parameters are not checked, because a system sets them. The
-    names of the trees of a system are not checked.
+    names of the trees of a system are not checked. Files with data are checked if there is a tree beside the mocks,
+    because their paths are relative to the tree.
 
     Args:
         beside: returns the files beside a file with an extension.
         forest: returns the trees in a file that is not in a system; `None` if it cannot be read.
+        read: returns the file with a path; `None` if it cannot be read.
     """
+    trees = forest(_tree_of(source.path))
     words = _words(source.path, beside, forest)
     first: dict[tuple[str, bool], Span] = {}
     mocks: list[Mock] = []
@@ -45,6 +52,8 @@ def mock_findings(
             continue
         try:
             mock = read_mock(line)
+            if trees is not None:
+                mock.with_data(lambda name: _text(read(resolve(source.path, name))))
         except MockError as error:
             is_right = False
             yield MOCK_SYNTAX.at(span, str(error))
@@ -65,9 +74,12 @@ def mock_findings(
             is_right = False
             yield UNMATCHED_MOCK.at(at, f"the mock `{mock.pattern}` {reason}", *fixes)
 
-    trees = forest(_tree_of(source.path))
     if is_right and trees is not None:
         yield from _missing(source, trees, mocks)
+
+
+def _text(source: SourceFile | None) -> str | None:
+    return None if source is None else source.text
 
 
 def _repeated(source: SourceFile, mock: Mock, span: Span, earlier: Span) -> Finding:

@@ -388,7 +388,8 @@ class _Reader:
     def _mock_findings(self) -> tuple[Finding, ...]:
         from roaml.project.mock_findings import mock_findings  # noqa: PLC0415 - few projects have mocks
 
-        return tuple(mock_findings(self.source, self.rooms.sources.files.beside, self.rooms.linking.forest))
+        files = self.rooms.sources.files
+        return tuple(mock_findings(self.source, files.beside, self.rooms.linking.forest, files.text))
 
     def _configuration_findings(self) -> tuple[Finding, ...]:
         configuration = self.rooms.sources.configuration(self.path)
