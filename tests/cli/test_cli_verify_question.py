@@ -14,12 +14,16 @@ from typing import Any
 
 import pytest
 from command import Command
-from smc_models import Json, automaton, document, edge, op, probability, variable, way
+from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
 from as2fm_lsp.verification.scheduler_report import note
+from roaml.explicit.space import StateLimits
 from roaml.rules import document as rule_document
 from roaml.smc.choices import Choices
 from roaml.smc.goal import Question
+from roaml.verification.small import SHARED_LIMITS, UNIFORM_LIMITS
+from roaml.verification.target import VerificationTarget, target_of
+from roaml.verification.verifier import verifier_of
 
 
 def write(folder: Path, written: Json, name: str = "model.jani") -> str:
@@ -152,9 +156,15 @@ def test_a_minimum_that_a_scheduler_is_known_to_miss_is_refuted(command: Command
     traces = ("--method", "adaptive")
     done = command("verify", write(tmp_path, starving(steps=steps)), "--expect", "p >= 0.9", *traces)
     assert done.status == 1
-    head = "\n  warning: the property asks for the minimum over all schedulers, which is "
-    known = "0 (exact, from all states)\n" if steps == 0 else "at most "
-    assert head + known in done.out
+    first, *more = done.out.splitlines()
+    assert first.startswith(f"p: minimum {'0, exact' if steps == 0 else 'not known, at most 0.'}")
+    warnings = [line for line in more if line.startswith("  warning: ")]
+    if steps == 0:
+        assert not warnings, "the first line contains the minimum"
+    else:
+        [line] = warnings
+        assert line.startswith("  warning: schedulers have different values; the bound is that of sampled scheduler ")
+        assert first.partition("at most ")[2].partition(";")[0] not in line, "the first line contains the bound"
     assert "expected ≥ 0.9: NOT MET" in done.out
     row = rows(command("verify", "model.jani", "--format", "json", *traces).out)["p"]
     assert row["probability"] == 1
@@ -757,3 +767,30 @@ def test_a_state_that_is_no_file(command: Command, tmp_path: Path) -> None:
     done = command("verify", write(tmp_path, coin()), "--resume", "state.json")
     assert done.status == 2
     assert "state.json: it is not a regular file" in done.err
+
+
+# ------------------------------------------------------------------ what the options ask for
+
+
+def test_a_requested_number_of_traces_requests_no_width(command: Command, tmp_path: Path) -> None:
+    too_wide = "the interval is wider than requested"
+    file = write(tmp_path, coin())
+    assert too_wide not in command("verify", file, "--method", "fixed", "--max-traces", 20).out
+    assert too_wide in command("verify", file, "--method", "adaptive", "--max-traces", 20).out
+    grid = ("experiment", file, "--property", "heads", "--max-traces", 20)
+    assert too_wide not in command(*grid, "--method", "fixed").out
+
+
+def test_uniform_choices_have_a_narrower_limit_unless_the_model_has_no_others() -> None:
+    nondeterministic = target_of(model(starving()))
+    deterministic = target_of(model(coin(type_="dtmc")))
+
+    def most(target: VerificationTarget, *, only_uniform: bool, limits: StateLimits | None = None) -> int | None:
+        share = verifier_of(target, only_uniform=only_uniform, limits=limits).budget.share(1)
+        assert share is not None
+        return share.transitions
+
+    assert most(nondeterministic, only_uniform=True) == UNIFORM_LIMITS.transitions
+    assert most(nondeterministic, only_uniform=False) == SHARED_LIMITS.transitions
+    assert most(deterministic, only_uniform=True) == SHARED_LIMITS.transitions
+    assert most(nondeterministic, only_uniform=True, limits=SHARED_LIMITS) == SHARED_LIMITS.transitions

@@ -33,6 +33,7 @@ from as2fm_lsp.cli.verify_arguments import (
     Scheduler,
     asks_for_traces,
     expectations_in,
+    has_state_limits,
     limits_in,
     parser,
     state_limits_in,
@@ -122,7 +123,7 @@ def _run(options: argparse.Namespace, interrupts: Interrupts) -> int:
                 only_uniform=only_uniform,
                 exact_if_small=not asks_for_traces(options),
                 example_traces=EXAMPLE_TRACES,
-                limits=state_limits_in(options),
+                limits=state_limits_in(options) if has_state_limits(options) else None,
                 uniform=options.uniform or settings.uniform,
             )
     except (api.ModelError, api.JaniError) as error:

@@ -113,7 +113,7 @@ def _add_search(parser: ArgumentParser) -> None:
         "--exhaustive: no limit). Without --exhaustive, a property with more states is estimated from traces, with it, "
         "the property is undecided")  # fmt: skip
     add("--max-transitions", type=positive, metavar="N", help="without --exhaustive: explore at most N transitions for "
-        "all properties together (8000000, which takes about 10 s)")  # fmt: skip
+        "all properties together (8000000, which takes about 10 s; with --scheduler uniform: 2000000)")  # fmt: skip
     add("--max-memory", type=size, metavar="SIZE", help="stop when the states occupy this much memory, for example 4G "
         "or 500M (1G; with --exhaustive: half of the free memory)")  # fmt: skip
     add("--no-reductions", action="store_true", help="with --exhaustive: explore all states even if there are many; "
@@ -270,6 +270,11 @@ def state_limits_in(options: argparse.Namespace) -> StateLimits:
     """The limits of searches for exact values without --exhaustive."""
     given = {"states": options.max_states, "transitions": options.max_transitions, "bytes": options.max_memory}
     return replace(SHARED_LIMITS, **{name: value for name, value in given.items() if value is not None})
+
+
+def has_state_limits(options: argparse.Namespace) -> bool:
+    """Whether the user has set a limit of searches for exact values."""
+    return any(value is not None for value in (options.max_states, options.max_transitions, options.max_memory))
 
 
 def asks_for_traces(options: argparse.Namespace) -> bool:

@@ -204,8 +204,8 @@ def _assumptions(answered: Answered) -> str:
         lines.append(f"parameters: {values}")
     if answered.target.has_intervals:
         lines.append(
-            "the minimum and maximum enclose the values for all parameters in the intervals; they also allow other "
-            "values in each step, and uniform choices draw an end of the interval in each step"
+            "the minimum and maximum enclose the values for all parameters in the intervals, and may be wider, because "
+            "a parameter may change within its interval during a run; uniform choices draw an end of it in each step"
         )
     if answered.target.drawn:
         from as2fm_lsp.verification import drawn_report  # noqa: PLC0415 - few models draw numbers

@@ -10,11 +10,17 @@ from roaml.smc.end import End
 from roaml.smc.run import Answer
 from roaml.smc.tally import Tally
 
+_UNTESTED = "these are among the passed traces, but do not test it"
+_NEVER_TESTED = "the property is vacuous, that is, met only because nothing has tested it:"
 NONE_ACCEPTED = "no trace satisfies the assumptions, so there is no value"
 
 
-def remarks(answer: Answer) -> list[str]:
-    """The remarks of a result for users, one line each."""
+def remarks(answer: Answer, *, are_examples: bool = False) -> list[str]:
+    """The remarks of a result for users, one line each.
+
+    Args:
+        are_examples: whether the traces are examples for an exact value, so that no other line states their number.
+    """
     tally = answer.tally
     lines = []
     if answer.question.is_conditional and tally.traces:
@@ -27,16 +33,15 @@ def remarks(answer: Answer) -> list[str]:
         lines.append(f"warning: {warning(answer)}")
     else:
         if tally.closed:
-            lines.append(
-                f"its scope was not evaluated in {_share(tally.closed, tally.traces)}, which satisfy it vacuously"
-            )
+            lines.append(f"its scope was not evaluated in {_share(tally.closed, tally.traces)}: {_UNTESTED}")
         if tally.idle:
-            lines.append(f"it was not triggered in {_share(tally.idle, tally.traces)}, which satisfy it vacuously")
+            lines.append(f"it was not triggered in {_share(tally.idle, tally.traces)}: {_UNTESTED}")
     if tally.late:
+        of = f" (of {tally.traces:,} random examples)" if are_examples else ""
         share = "all" if tally.late == answer.failures else f"{tally.late:,} of"
         lines.append(
-            f"{share} {answer.failures:,} failed traces fail when the time ends (max_time), because an event that the "
-            "property requires has not occurred; a longer time may satisfy them"
+            f"{share} {answer.failures:,} failed traces{of} fail when the time ends (max_time), because an event that "
+            "the property requires has not occurred; a longer time may satisfy them"
         )
     opened = open_at_end(tally)
     if opened:
@@ -61,8 +66,8 @@ def warning(answer: Answer) -> str:
     if tally.traces == 0 or tally.closed + tally.idle < tally.traces:
         return ""
     if tally.idle == 0:
-        return "the property is vacuous: its scope was not evaluated in any trace"
-    return "the property is vacuous: it was not triggered in any trace"
+        return f"{_NEVER_TESTED} its scope was not evaluated in any trace"
+    return f"{_NEVER_TESTED} it was not triggered in any trace"
 
 
 def row(answer: Answer) -> dict[str, Any]:

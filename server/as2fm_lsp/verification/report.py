@@ -213,7 +213,7 @@ def _computed_lines(result: Result, computed: Computed, *, is_whole: bool) -> li
     if sample is not None:
         remarks = _remarks if has_estimate else _example_remarks
         lines += remarks(sample.answer, is_whole=is_whole)
-        if has_estimate and not sample.answer.is_complete:
+        if has_estimate and sample.answer.is_too_wide:
             lines.append("  the interval is wider than requested (--epsilon)")
     return lines
 
@@ -237,11 +237,11 @@ def _estimated_lines(
         lines += _stuck_lines(estimated.stuck, place_of, level, shown)
     lines += _remarks(answer, is_whole=is_whole)
     if is_alone or not may_differ(choices) or answer.question.asks_for_extreme_state:
-        about = scheduler_report.remark(answer.question, choices)
+        about = scheduler_report.below_headline(answer.question, choices)
         lines += [f"  {about}"] if about else []
     if estimated.is_interrupted:
         lines.append("  interrupted; this is the result so far")
-    elif not answer.is_complete:
+    elif answer.is_too_wide:
         lines.append("  the interval is wider than requested (--epsilon)")
     return lines
 
@@ -343,7 +343,7 @@ def _example_remarks(answer: Answer, *, is_whole: bool) -> list[str]:
     answer; that some got stuck is a warning."""
     are_shown = is_whole or answer.tally.ended(End.STUCK)
     lines = [f"ends of {answer.tally.traces:,} random traces: {ends.as_line(answer.tally)}"] if are_shown else []
-    return [f"  {line}" for line in (*lines, *activity_report.remarks(answer))]
+    return [f"  {line}" for line in (*lines, *activity_report.remarks(answer, are_examples=True))]
 
 
 def as_json(

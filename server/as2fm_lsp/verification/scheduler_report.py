@@ -39,6 +39,20 @@ def remark(question: Question, choices: Choices | None) -> str:
     return f"{head}, and {asked}, which may differ; {_looked(question, choices)}"
 
 
+def below_headline(question: Question, choices: Choices | None) -> str:
+    """The text of `remark`, without what the headline above it states (`roaml.verification.headline.claim_for_all`):
+    an exact extreme, or its bound. Of a bound, what shows it remains."""
+    known = None if choices is None else choices.minimum if is_minimised(question) else choices.maximum
+    if known is None or choices is None or choices.agreement or not choices.differ or question.asks_for_extreme_state:
+        return remark(question, choices)
+    if known.is_exact:
+        return ""
+    if not bound_text(question, known):
+        return remark(question, choices)
+    by = known.scheduler if known.method is ExtremeMethod.SAMPLING else "machines that react at once"
+    return f"warning: schedulers have different values; the bound is that of {by}"
+
+
 def _known(question: Question, extreme: Extreme) -> str:
     """What is known about the extreme that a property asks for, as a phrase with a verb. The value under uniform
     choices is in the line before it."""

@@ -201,7 +201,7 @@ def estimated_point(setting: Setting, answer: Answer, stuck: int = 0) -> Experim
         notes.append(f"{stuck:,} of {tally.traces:,} traces got stuck")
     if answer.question.is_conditional and not tally.traces:
         notes.append(f"none of {tally.rejected:,} traces satisfies the condition")
-    elif not answer.is_complete:
+    elif answer.is_too_wide:
         notes.append("the interval is wider than requested")
     value = math.nan if answer.is_unknown else answer.value
     return ExperimentPoint(

@@ -125,6 +125,12 @@ class Answer(Record, frozen=True):
         return "confidence sequence" if self.is_anytime else "Clopper-Pearson"
 
     @property
+    def is_too_wide(self) -> bool:
+        """Whether the interval is wider than requested. If the user has requested a number of traces, no width was
+        requested."""
+        return not self.is_complete and self.options.method is not EstimationMethod.FIXED
+
+    @property
     def is_unknown(self) -> bool:
         """Whether there are traces and all of them are undecided, so that `value` says nothing about the model."""
         return 0 < self.tally.traces == self.tally.undecided

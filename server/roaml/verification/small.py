@@ -28,6 +28,9 @@ SHARED_LIMITS = StateLimits(
     states=2_000_000, bytes=1 << 30, combinations=4_096, transitions=8_000_000, work=100_000_000
 )
 """The limits of all properties of one verification together. A search that reaches them takes about 10 s."""
+UNIFORM_LIMITS = replace(SHARED_LIMITS, transitions=2_000_000)
+"""The same if only uniform choices are considered, and the model has other ones: traces answer the question, too, and a
+search that leaves out choices answers it only if all schedulers have the same value."""
 REDUCED_SHARE = 2
 """A search that leaves out choices may have this fraction of the transitions, each of which takes about three times as
 long."""

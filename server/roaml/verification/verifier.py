@@ -50,6 +50,7 @@ from roaml.verification.schedulers import (
 from roaml.verification.small import (
     MAX_EXAMPLE_STEPS,
     SHARED_LIMITS,
+    UNIFORM_LIMITS,
     Attempt,
     Budget,
     attempt,
@@ -127,7 +128,8 @@ def verifier_of(
         properties: the names of the properties to verify; `None` for all. Properties with expectations are added.
         only_uniform: whether only uniform choices are considered, not the minimum or maximum over all schedulers.
         exact_if_small, example_traces: see `Verifier`.
-        limits: those of all searches for exact values together; `None` for `small.SHARED_LIMITS`.
+        limits: those of all searches for exact values together; `None` for `small.SHARED_LIMITS`, or for
+            `small.UNIFORM_LIMITS` if only uniform choices are considered and the model has nondeterminism.
         uniform: what an expectation is worth that is met under uniform choices only.
 
     Raises:
@@ -152,6 +154,8 @@ def verifier_of(
         for expectation in (*expectations, *target.expectations):
             if expectation.name == property_.question.name:
                 check_range(expectation, property_.question)
+    if limits is None:
+        limits = UNIFORM_LIMITS if only_uniform and not checker.is_deterministic else SHARED_LIMITS
     return Verifier(
         target,
         checker,
@@ -161,7 +165,7 @@ def verifier_of(
         exact_if_small,
         example_traces,
         uniform=uniform,
-        budget=Budget(limits or SHARED_LIMITS),
+        budget=Budget(limits),
     )
 
 
