@@ -78,6 +78,16 @@ def test_formats(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert [picture["title"] for picture in report["pictures"]] == ["behavior tree", "state machine Arm"]
 
 
+def test_uniform_choices_have_no_unknown_minimum(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The report says that the minimum is not known only if it was asked for."""
+    asked = ("old/main.xml", "new/main.xml", "--property=block_dropped", "--method=fixed", "--max-traces=50")
+    unknown = "(the minimum and maximum over all schedulers are not known)"
+    text = called(capsys, *asked)[1]
+    assert f"estimates from traces with uniform choices {unknown}: the intervals" in text
+    text = called(capsys, *asked, "--scheduler=uniform")[1]
+    assert "estimates from traces with uniform choices: the intervals" in text
+
+
 def test_the_same(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Comments and layout are not differences."""
     change(robot / "old/arm.ascxml", "<datamodel>", "<!-- what it knows -->\n\n    <datamodel>")

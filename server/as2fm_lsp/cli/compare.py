@@ -136,6 +136,7 @@ def _run(options: argparse.Namespace) -> int:
         structure,
         values,
         computed.sampling.confidence,
+        computed.only_uniform,
     )
     _write(options, outputs, report)
     has_errors = not options.structure and _has_values(versions[1]) and after is None

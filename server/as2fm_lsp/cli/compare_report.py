@@ -45,13 +45,15 @@ class ComparedSide(Record, frozen=True):
 
 
 class ComparisonReport(Record, frozen=True):
-    """What is reported. `confidence` is that of all intervals together."""
+    """What is reported. `confidence` is that of all intervals together; `only_uniform` is whether the values under
+    uniform choices are requested, not the minimum or maximum."""
 
     old: ComparedSide
     new: ComparedSide
     structure: StructuralChanges
     values: tuple[ValueChange, ...]
     confidence: float
+    only_uniform: bool = False
 
     @property
     def title(self) -> str:
@@ -194,8 +196,9 @@ def _notes(report: ComparisonReport) -> list[str]:
         meanings = "; ".join(note for schedulers, note in EXACT_NOTES.items() if schedulers in exact)
         notes.append(f"exact values from all states: {meanings}")
     if any(point.kind is PointKind.ESTIMATE for point in points):
+        unknown = "" if report.only_uniform else UNKNOWN_EXTREME
         notes.append(
-            f"{ESTIMATE_NOTE}{UNKNOWN_EXTREME}: the intervals of all values and differences are right together with "
+            f"{ESTIMATE_NOTE}{unknown}: the intervals of all values and differences are right together with "
             f"{report.confidence:g} confidence; a change is significant if its interval does not contain 0"
         )
     limited = {f"`{point.name}`: {point.note}" for point in points if point.note}
