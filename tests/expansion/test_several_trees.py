@@ -859,3 +859,15 @@ def test_a_value_of_trees_is_renamed(attempts: Path) -> None:
         Path(changed).write_text(apply_edits(Path(changed).read_text("utf-8"), tuple(edits)), "utf-8")
     assert attempts.read_text(encoding="utf-8").count('name="trials"') == 3
     assert jani(attempts) == before
+
+
+def test_values_from_outside_replace_those_of_trees(attempts: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with_attempts(attempts, anna="2", bert="2", carl="2")
+    asked = ("--property", "anna_delivers")
+    assert exact(capsys, attempts, *asked)["anna_delivers"][0] == pytest.approx(DELIVERS["anna"], abs=1e-9)
+    once = [word for robot in DELIVERS for word in ("--set", f"{robot}.attempts=1")]
+    assert exact(capsys, attempts, *asked, *once)["anna_delivers"][0] == pytest.approx(0.9 * 0.9, abs=1e-9)
+    assert run(["verify", str(attempts), *asked, "--set", "anna.attempts=1"]) == 1, "the trees execute the same file"
+    assert "`attempts` is 1 in the tree `anna` and is 2 in the tree `bert`" in capsys.readouterr().err
+    assert run(["verify", str(attempts), *asked, "--set", "anna.attemps=1"]) == 2
+    assert "did you mean `anna.attempts`?" in capsys.readouterr().err

@@ -756,12 +756,18 @@ class _Expander:
 
     def _undeclared(self, instance: ListedInstance, scope: Scope) -> dict[str, ParameterValue]:
         """The values of the `<param>` of an input whose file cannot declare parameters: those of parameters of the
-        system with these names, and texts."""
+        system with these names, and texts. Those of trees can be given from outside."""
         problems, given = self.problems_of(self.path), dict[str, ParameterValue]()
         for param, value in instance.params:
             declared = [parameter for parameter in self.declared if parameter.name.value == param.value]
             type_ = declared[0].type if declared else "string"
             of_param = self._given_by_param(value, type_, scope, problems)
+            if instance.is_tree and instance.name is not None:
+                key = f"{instance.name.value}.{param.value}"
+                self.settable.add(key)
+                if key in self.given:
+                    of_param = Given(self.given[key], None, SETTING)
+                    self.of_instances |= {key: self.given[key]}
             if declared:
                 given |= values(tuple(declared), {param.value: of_param}, scope, problems)
             else:
