@@ -16,7 +16,7 @@ const SMALLEST_WINDOW = { width: 280, height: 220 };
 const DISTANCE = 24;
 
 export class Minimap {
-    readonly svg = element("svg", { class: "minimap", "aria-hidden": "true" });
+    readonly svg = element("svg", { class: "minimap hidden", "aria-hidden": "true" });
     private readonly frame = element("rect", { class: "minimap-frame" });
     private drawing: Drawing | undefined;
     private scale: MapScale | undefined;
