@@ -70,11 +70,29 @@ export class Window {
         return this.page.locator(".quick-input-widget :focus");
     }
 
-    /** Presses Enter if the quick input has the focus; otherwise the key would change the text of an editor. */
+    /**
+     * Presses Enter if the quick input has the focus; otherwise the key would change the text of an editor. Resolves to
+     * whether the quick input has taken the key. It takes none if another view gets the focus just before, or while its
+     * list is filled again.
+     */
     private async enter(): Promise<boolean> {
+        const { page } = this;
         if (!(await this.quickInputFocus.first().isVisible())) return false;
-        await this.page.keyboard.press("Enter");
-        return true;
+        const input = page.locator(".quick-input-widget input[type=text]").first();
+        const text = await input.inputValue();
+        const key = await page.evaluateHandle(() => {
+            const key = { isReceived: false };
+            const receive = ({ target }: Event) => {
+                key.isReceived = target instanceof Element && target.closest(".quick-input-widget") !== null;
+            };
+            window.addEventListener("keydown", receive, { capture: true, once: true });
+            return key;
+        });
+        await page.keyboard.press("Enter");
+        const isReloaded = () => true; // the key is unknown after a command that reloads the window
+        if (!(await key.evaluate(({ isReceived }) => isReceived).catch(isReloaded))) return false;
+        // It closes, or shows the next question.
+        return !(await input.isVisible()) || (await input.inputValue()) !== text;
     }
 
     /** Repeats an action that has no effect when it is lost, and the same effect when it is done twice, until its

@@ -173,8 +173,10 @@ export class Counterexamples implements vscode.Disposable, vscode.TreeDataProvid
     }
 
     private async select(turn: Turn): Promise<void> {
+        this.latest = turn;
         await this.view.reveal(turn, { focus: true, select: true });
-        await this.showTurn(turn);
+        // Meanwhile, the user may have selected another one.
+        if (this.latest === turn) await this.showTurn(turn);
     }
 
     getTreeItem(entry: Entry): vscode.TreeItem {
