@@ -2,6 +2,9 @@
 """The constants that machines send in fields of messages, requests and goals, and those with which the receivers
 compare the fields. Where the sender sends one constant that nothing expects, instead of one that is expected, it is
 probably wrong.
+
+Also the constants with a number in machines whose names contain one, such as the text `'door_2'` and the 2 that
+`CloseDoor2` sends in the field `door`. Machines that are copies of each other have them at the same places.
 """
 
 from __future__ import annotations
@@ -10,15 +13,16 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from fractions import Fraction
 from typing import NamedTuple
 
-from roaml.expr.infer import constant_fraction
+from roaml.expr.infer import constant, constant_fraction
 from roaml.expr.operators import Operator
-from roaml.expr.tree import Binary, Expr, Member, walk
+from roaml.expr.tree import Binary, Expr, Member, String, walk
 from roaml.expr.tree import Name as NameExpr
-from roaml.model.machine import Assign, Chart, Handler, If, Machine, Param, RosSend, Statement, bodies, statements
+from roaml.model.machine import Assign, Chart, Handler, If, Machine, Param, RosSend, Send, Statement, bodies, statements
 from roaml.model.syntax import Expression, PortRead
 from roaml.model.value_types import TypedMachine, TypedValue, ValueUse, find_handle
 from roaml.model.waits import fixed_variables
 from roaml.record import Record
+from roaml.regex import regex
 from roaml.roles import ProtocolPart
 
 _DATA = {ProtocolPart.MESSAGE: "_msg.", ProtocolPart.REQUEST: "_req.", ProtocolPart.GOAL: "_goal."}
@@ -259,3 +263,44 @@ def unexpected(sent: Iterable[Fraction], expected: frozenset[Fraction]) -> tuple
 def _is_regular(numbers: frozenset[Fraction]) -> bool:
     """Whether the numbers are successive."""
     return max(numbers) - min(numbers) == len(numbers) - 1
+
+
+# ---------------------------------------------------- machines with numbers
+
+_NUMBER = regex(r"\d+")
+
+
+class NumberedConstant(Record, frozen=True):
+    """A constant with a number.
+
+    Attributes:
+        field: the name of the field that gets the number; "" for a text.
+        text: the text with `#` for its number; "" for a field.
+    """
+
+    field: str
+    text: str
+    number: str
+
+
+def numbered_constants(machine: Machine, typed: TypedMachine) -> Iterator[tuple[NumberedConstant, Expr]]:
+    """The texts with one number, and the fields that get a number, in a machine whose name contains a number."""
+    if machine.name is None or not _NUMBER.search(machine.name.value):
+        return
+    for tree in (v.value.tree for v in typed.values if isinstance(v.value, Expression) and not v.value.broken):
+        for node in walk(tree):
+            if isinstance(node, String) and len(numbers := _NUMBER.findall(node.value)) == 1:
+                yield NumberedConstant("", _NUMBER.sub("#", node.value), numbers[0]), node
+    for param in _params(machine):
+        if param.name is not None and isinstance(param.value, Expression) and not param.value.broken:
+            number = constant(param.value.tree)
+            if number is not None:
+                yield NumberedConstant(param.name.value, "", str(number)), param.value.tree
+
+
+def _params(machine: Machine) -> Iterator[Param]:
+    for chart in machine.charts:
+        for statement in chart.statements:
+            match statement:
+                case Send(params=params) | RosSend(fields=params):
+                    yield from params

@@ -33,7 +33,14 @@ from roaml.model.machine import (
     Statement,
     statements,
 )
-from roaml.model.message_constants import FieldChoice, SentConstants, field_choices, sent_constants
+from roaml.model.message_constants import (
+    FieldChoice,
+    NumberedConstant,
+    SentConstants,
+    field_choices,
+    numbered_constants,
+    sent_constants,
+)
 from roaml.model.port_checks import PortChoice, PortRefusal, port_choices, port_refusals
 from roaml.model.syntax import Expression, Name, PortRead, Value
 from roaml.model.value_types import TypedMachine, ValueUse, find_handle
@@ -164,6 +171,7 @@ class MachineOutline(Record, frozen=True, dict=True):
         all_ports: whether `ports` is complete: all declarations of ports can be read.
         charts: the outline of the behaviour of each chart; it is empty for a chart that is too large to be analysed.
         choices, constants: the constants with which it compares fields, and which it sends in fields.
+        numbered: its constants with a number, if its name contains a number.
     """
 
     name: str
@@ -181,6 +189,7 @@ class MachineOutline(Record, frozen=True, dict=True):
     charts: tuple[ChartOutline, ...] = ()
     choices: tuple[FieldChoice, ...] = ()
     constants: tuple[SentConstants, ...] = ()
+    numbered: frozenset[NumberedConstant] = frozenset()
 
     @property
     def takes_part_in_tree(self) -> bool:
@@ -242,6 +251,7 @@ def outline(machine: Machine, typed: TypedMachine, gaps: Iterable[PlacedGap]) ->
         tuple(summarised(machine, chart) for chart in machine.charts),
         () if known_gaps else field_choices(machine, typed),
         sent_constants(machine),
+        frozenset(known for known, _ in numbered_constants(machine, typed)),
     )
 
 

@@ -77,16 +77,39 @@ def _connectives(trees: Sequence[Expr]) -> Iterator[Finding]:
     for alike in shapes.values():
         for operator in _LOGICAL:
             odd = [tree for tree in alike if tree.operator is not operator]
-            if len(alike) >= MIN_ALIKE and len(odd) == 1:
-                usual = next(tree for tree in alike if tree.operator is operator)
+            usual = [tree for tree in alike if tree.operator is operator]
+            if len(usual) >= MIN_ALIKE - 1 and len(odd) == 1 and _same_subject(odd[0], usual):
                 message = (
-                    f"this condition joins its parts with `{odd[0].operator.symbol}`, and the {len(alike) - 1} "
+                    f"this condition joins its parts with `{odd[0].operator.symbol}`, and the {len(usual)} "
                     f"conditions like it with `{operator.symbol}`; did you mean that?"
                 )
                 text = operator.symbol.replace("&", "&amp;")
                 fix = Fix(f"Change to `{operator.symbol}`", (TextEdit(odd[0].operator_span, text),))
-                related = [Related(usual.operator_span, f"`{operator.symbol}`")]
+                related = [Related(usual[0].operator_span, f"`{operator.symbol}`")]
                 yield RULE.at(odd[0].operator_span, message, fix, related=related)
+
+
+def _same_subject(odd: Binary, usual: Sequence[Binary]) -> bool:
+    """Whether conditions test the same place on one side, such as the `way` in `way == 1 && x < 9`, and the odd one
+    does not test it on both: `x < 0 || x > 9` and `way == 2 || way == 3` need another operator than the others."""
+    left, right = _tested(odd.left), _tested(odd.right)
+    if not left.isdisjoint(right):
+        return False
+    return any(
+        own and all(_tested(side) == own for side in sides)
+        for own, sides in ((left, [t.left for t in usual]), (right, [t.right for t in usual]))
+    )
+
+
+def _tested(tree: Expr) -> frozenset[str]:
+    """The places in a comparison or negation, or the place itself."""
+    match tree:
+        case Binary():
+            return _tested(tree.left) | _tested(tree.right)
+        case Unary():
+            return _tested(tree.operand)
+    place = place_of(tree)
+    return frozenset((place,)) if place is not None else frozenset()
 
 
 def _shape(tree: Expr) -> object:
@@ -143,9 +166,12 @@ def _limits(trees: Sequence[Expr]) -> Iterator[Finding]:
 
 
 def _is_similar(name: str, other: str) -> bool:
-    """Whether two names differ in one word and share the others, or are letters, such as `x` and `y`."""
+    """Whether two names differ in one word and share the others, or are letters, such as `x` and `y`. A height `z` has
+    other limits than the coordinates of a plane."""
     words = difference(name, other)
-    return words is not None and (len(words_of(name)) > 1 or len(words[0]) == len(words[1]) == 1)
+    if words is None or "z" in words:
+        return False
+    return len(words_of(name)) > 1 or len(words[0]) == len(words[1]) == 1
 
 
 def _limit(node: Expr) -> _Limit | None:

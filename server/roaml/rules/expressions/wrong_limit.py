@@ -156,13 +156,22 @@ def _one_beyond(chart: Chart) -> Iterator[Finding]:
         same = [(node, where) for node, other, where in others if format_expr(other) == format_expr(limit)]
         number = constant(limit)
         beyond = number is not None and any(constant(other) == number + 1 for _, other, _ in others)
-        if same and not beyond and all(where is not state for _, where in same):
+        if same and not beyond and all(where is not state for _, where in same) and not _begins_at_one(chart, place):
             message = (
                 f"`{place}` is counted beyond `{format_expr(limit)}`, although another state compares it with "
                 f"`{format_expr(limit)}`; use `<`"
             )
             fix = Fix("Change to `<`", (TextEdit(test.operator_span, "&lt;"),))
             yield RULE.at(test.operator_span, message, fix, related=[Related(same[0][0].span, "compared here")])
+
+
+def _begins_at_one(chart: Chart, name: str) -> bool:
+    """Whether a variable counts from 1, or a higher number, so that `<=` is right: the limit is the last number."""
+    values = [data.value for data in chart.data if data.id is not None and data.id.value == name]
+    values += [s.value for s in chart.statements if isinstance(s, Assign) and _assigns(s, name)]
+    trees = [value.tree for value in values if isinstance(value, Expression) and not value.broken]
+    starts = [number for tree in trees if (number := constant(tree)) is not None]
+    return bool(starts) and all(not isinstance(number, str) and number >= 1 for number in starts)
 
 
 def _conditions_in(state: State) -> Iterator[Expr]:

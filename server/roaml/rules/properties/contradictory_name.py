@@ -12,13 +12,12 @@ from roaml.jani.operators import BinaryOperator
 from roaml.jani.properties import Property, walk
 from roaml.model.property_links import LinkedFile
 from roaml.model.tree import TreeNode, nodes
-from roaml.observers.properties import Pattern
+from roaml.observers.properties import Pattern, ScopeKind
 from roaml.regex import regex
 from roaml.rules.rule import PropertiesContext, Rule, TreeContext, replacements
 from roaml.rules.support.words import words_of
 
 _SEQUENCE, _FALLBACK = "Sequence", "Fallback"
-_WORDS = {_SEQUENCE: frozenset(("sequence",)), _FALLBACK: frozenset(("fallback", "selector"))}
 
 
 def _tree(context: TreeContext) -> Iterator[Finding]:
@@ -30,9 +29,10 @@ def _tree(context: TreeContext) -> Iterator[Finding]:
             if not kind or node.name is None or not node.children:
                 continue
             other = _FALLBACK if kind == _SEQUENCE else _SEQUENCE
-            words = {*words_of(node.name.value)}
-            # A sequence that a fallback ticks last can be called its fallback.
-            if not words & _WORDS[other] or words & _WORDS[kind] or node in children_of_fallbacks:
+            words = words_of(node.name.value)
+            # The last word says what it is: a "fallback route" is a route. A sequence that a fallback ticks last can be
+            # called its fallback.
+            if words[-1:] != [other.lower()] or kind.lower() in words or node in children_of_fallbacks:
                 continue
             type_ = node.element.name
             message = f"the name `{node.name.value}` is that of a `{other}`, but this is a `{_type(node)}`"
@@ -57,10 +57,15 @@ def _kind(node: TreeNode) -> str:
 
 
 _OPPOSITES = {
-    "never": ((Pattern.EXISTENCE, Pattern.RECURRENCE), Pattern.ABSENCE),
+    "never": ((Pattern.EXISTENCE,), Pattern.ABSENCE),
     "eventually": ((Pattern.ABSENCE, Pattern.UNIVERSALITY), Pattern.EXISTENCE),
 }
 """A word in the name of a property -> the patterns that it contradicts, and the one that it names."""
+
+_NEGATIONS = frozenset(
+    ("always", "blocked", "fail", "fails", "forgets", "idle", "lost", "misses", "never", "no", "not", "stays", "stops")
+)
+"""Words with which a name says the opposite: a robot that "never fails to arrive" arrives eventually."""
 
 
 def _xml(file: LinkedFile) -> Iterator[Finding]:
@@ -69,8 +74,11 @@ def _xml(file: LinkedFile) -> Iterator[Finding]:
         if written.id is None or written.pattern is None or written.expect is not None:
             continue
         words = words_of(written.id.value)
+        is_global = all(s.type is None or s.type.value == ScopeKind.GLOBALLY.value for s in written.scopes)
         for word, (contradicted, named) in _OPPOSITES.items():
-            if word in words and written.pattern.value in {pattern.value for pattern in contradicted}:
+            if not is_global or word not in words or not _NEGATIONS.isdisjoint(w for w in words if w != word):
+                continue
+            if written.pattern.value in {pattern.value for pattern in contradicted}:
                 message = (
                     f"the name of this property says `{word}`, but its pattern is `{written.pattern.value}`; did you "
                     f"mean `{named.value}`?"
@@ -79,19 +87,20 @@ def _xml(file: LinkedFile) -> Iterator[Finding]:
 
 
 _STATUS = regex(r"bt_\d+_response__status\Z")
+_RUNNING = 3
 _STATUSES = {
     1: ("SUCCESS", frozenset(("success", "succeeds", "succeeded"))),
     2: ("FAILURE", frozenset(("failure", "fails", "failed"))),
-    3: ("RUNNING", frozenset(("running", "runs"))),
+    _RUNNING: ("RUNNING", frozenset(("running", "runs"))),
 }
 
 
 def _jani(context: PropertiesContext) -> Iterator[Finding]:
     """Report properties whose names end with a status, and which compare that of a tree with another one."""
     for property_ in context.properties:
-        last = words_of(property_.name)[-1:]
-        named = [number for number, (_, names) in _STATUSES.items() if names.intersection(last)]
-        compared = [*_compared(property_)]
+        words = words_of(property_.name)
+        named = [number for number, (_, names) in _STATUSES.items() if names.intersection(words[-1:])]
+        compared = [*_compared(property_)] if _NEGATIONS.isdisjoint(words[:-1]) else []
         if len(named) != 1 or len({number.value for _, number in compared}) != 1:
             continue
         (_, number), *_ = compared
@@ -100,7 +109,10 @@ def _jani(context: PropertiesContext) -> Iterator[Finding]:
                 f"the name `{property_.name}` says {_STATUSES[named[0]][0]}, which is {named[0]}, but {number.value} "
                 f"is {_STATUSES[number.value][0]}"
             )
-            yield RULE.at(number.origin.span, message, *replacements(number.origin.span, (f"{named[0]}",)))
+            # Each tree is RUNNING at times, so nobody names this after its end.
+            severity = Severity.WARNING if number.value == _RUNNING else None
+            fixes = replacements(number.origin.span, (f"{named[0]}",))
+            yield RULE.at(number.origin.span, message, *fixes, severity=severity)
 
 
 def _compared(property_: Property) -> Iterator[tuple[Name, Integer]]:
@@ -114,7 +126,7 @@ def _compared(property_: Property) -> Iterator[tuple[Name, Integer]]:
 
 RULE = Rule(
     "contradictory-name",
-    Severity.WARNING,
+    Severity.INFORMATION,
     "The name of a node or property contradicts what it is.",
     tree=_tree,
     properties=_jani,

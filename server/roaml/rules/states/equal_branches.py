@@ -7,7 +7,8 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence, Set
 
 from roaml.diagnostics import Finding, Related, Severity
-from roaml.expr.tree import Name
+from roaml.expr.operators import Operator
+from roaml.expr.tree import Binary, Name
 from roaml.expr.types import ScalarKind, is_kind
 from roaml.model.behavior.knowledge import variables_in
 from roaml.model.machine import (
@@ -180,9 +181,23 @@ def _last_handlers(context: MachineContext, state: State) -> Iterator[Finding]:
         last, fallback = handlers[-2:] if len(handlers) > 2 else (None, None)
         if last is None or fallback is None or last.cond is None or fallback.cond is not None:
             continue
+        if _lists_cases(handlers[:-1]):
+            continue
         if all(target.body for target in last.targets[:1]) and _does(last) == _does(fallback):
             spans = [h.targets[0].body[0].element.name_span for h in (last, fallback)]
             yield from _alike("the last transitions do the same, so the condition of the first has no effect", spans)
+
+
+def _lists_cases(handlers: Sequence[Handler]) -> bool:
+    """Whether all conditions compare the same place with a constant each: the transition without a condition then often
+    provides for values that should not occur, in the way of one that may."""
+    places: set[str | None] = set()
+    for handler in handlers:
+        tree = handler.cond.tree if handler.cond is not None and not handler.cond.broken else None
+        if not isinstance(tree, Binary) or tree.operator is not Operator.EQUAL:
+            return False
+        places.add(place_of(tree.left) or place_of(tree.right))
+    return len(places) == 1 and None not in places
 
 
 def _by_trigger(context: MachineContext, state: State) -> dict[Trigger, list[Handler]]:
@@ -208,26 +223,43 @@ def _does(handler: Handler) -> tuple[tuple[str | None, str | None, tuple[object,
 
 
 def _equal_states(chart: Chart) -> Iterator[Finding]:
-    """Report two states that answer in the same way, with constants: one of them is probably a copy of the other."""
+    """Report two states that answer in the same way, with constants: one of them is probably a copy of the other. If
+    other states give another answer, the two are often different reasons for the same answer."""
     alike: dict[object, list[State]] = {}
+    answers: set[str] = set()
     for state in chart.states:
         if _answers(state):
             alike.setdefault(_behavior(state), []).append(state)
+            answers |= _final_answers(state)
     for equal in alike.values():
-        if len(equal) == 2:
+        if len(equal) == 2 and answers == _final_answers(equal[0]) and _is_decided(chart, equal):
             names = " and ".join(f"`{state.id.value}`" for state in equal if state.id is not None)
-            yield from _alike(f"the states {names} do the same", [_answers(state)[0] for state in equal])
+            yield from _alike(f"the states {names} do the same", [_answers(state)[0][0] for state in equal])
 
 
-def _answers(state: State) -> list[Span]:
-    """The places of the statuses that a state returns, and of the constants that it sends in answers: first those in
+def _is_decided(chart: Chart, states: Sequence[State]) -> bool:
+    """Whether a state decides which one of `states` follows."""
+    names = {state.id.value for state in states if state.id is not None}
+    return any(
+        names <= {t.state.value for h in state.handlers for t in h.targets if t.state is not None}
+        for state in chart.states
+    )
+
+
+def _answers(state: State) -> list[tuple[Span, str]]:
+    """The statuses that a state returns, and the variables that it sends in answers, with their places: first those in
     fields with the names of constants, such as `SKILL_SUCCESS`."""
     own = [*(state.entry.statements if state.entry is not None else ())]
     own += [statement for handler in state.handlers for target in handler.targets for statement in target.body]
-    found = [s.status.span for s in own if isinstance(s, ReturnStatus) and s.status is not None]
+    found = [(s.status.span, s.status.value) for s in own if isinstance(s, ReturnStatus) and s.status is not None]
     sent = [s for s in own if isinstance(s, RosSend) and s.part is ProtocolPart.RESPONSE]
     values = [p.value for s in sent for p in s.fields if isinstance(p.value, Expression) and not p.value.broken]
-    return [*found, *(v.span for v in values if isinstance(v.tree, Name))]
+    return [*found, *((v.span, v.tree.name) for v in values if isinstance(v.tree, Name))]
+
+
+def _final_answers(state: State) -> frozenset[str]:
+    """The answers of a state, without that the work is still running."""
+    return frozenset(answer for _, answer in _answers(state) if "running" not in words_of(answer))
 
 
 def _behavior(state: State) -> tuple[object, ...]:

@@ -8,16 +8,17 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
-from roaml.model.property_file import Port, WrittenProperty
+from roaml.model.property_file import WrittenProperty
 from roaml.model.property_links import LinkedFile
-from roaml.model.series import Alike, KeyedText, odd_numbers
-from roaml.model.syntax import Name, name_of
+from roaml.model.property_problems import ProblemKind
+from roaml.model.series import Alike, KeyedText, OddNumber, odd_numbers
+from roaml.model.syntax import Name
 from roaml.model.tree import TreeNode, nodes
 from roaml.record import Record
 from roaml.rules.rule import Rule, SystemContext, TreeContext, listing, replacements
+from roaml.rules.support.odd_values import odd_inputs, odd_ports
 from roaml.rules.support.words import words_of
 from roaml.text import Span, TextEdit
-from roaml.xml_syntax import Element
 
 
 def _tree(context: TreeContext) -> Iterator[Finding]:
@@ -35,8 +36,10 @@ def _numbers(context: TreeContext) -> Iterator[Finding]:
         for node in reversed(ordered):  # children before their parents
             branches[node] = _branch(node, [branches[child] for child in node.children])
         for node in ordered:
-            yield from _findings(branch for child in node.children if (branch := branches[child]) is not None)
-        yield from _findings(Alike((_type(node),), tuple(_texts(node))) for node in ordered if not node.children)
+            alike = (branch for child in node.children if (branch := branches[child]) is not None)
+            yield from _findings(odd_numbers(alike))
+        leaves = (Alike((_type(node),), tuple(_texts(node))) for node in ordered if not node.children)
+        yield from _findings(odd_numbers(leaves))
 
 
 _MAX_SHAPE = 60
@@ -164,22 +167,17 @@ def _texts(node: TreeNode) -> Iterator[KeyedText]:
 
 def _system(context: SystemContext) -> Iterator[Finding]:
     # inconsistent-parameter reports parameters of instances, repeated-namespace their namespaces.
-    return _findings(_input(file.input.element) for file in context.files)
-
-
-def _input(element: Element) -> Alike:
-    texts = ((key, name_of(element.get(key))) for key in ("src", "id"))
-    return Alike((), tuple(KeyedText(key, text) for key, text in texts if text is not None))
+    return _findings(odd_inputs(context.files))
 
 
 def _properties(file: LinkedFile) -> Iterator[Finding]:
-    yield from _findings(map(_port, file.file.ports))
-    yield from _findings(map(_property, file.file.properties))
+    # Rules that know more report these.
+    known = {problem.span for problem in file.problems if problem.kind in _REPORTED}
+    findings = (*_findings(odd_ports(file)), *_findings(odd_numbers(map(_property, file.file.properties))))
+    return (finding for finding in findings if finding.span not in known)
 
 
-def _port(port: Port) -> Alike:
-    texts = [("name", port.name), *(("id", variable.id) for variable in port.variables)]
-    return Alike((port.kind.value,), tuple(KeyedText(key, name) for key, name in texts if name is not None))
+_REPORTED = (ProblemKind.REPEATED_ID, ProblemKind.MISLEADING)
 
 
 def _property(written: WrittenProperty) -> Alike:
@@ -188,8 +186,8 @@ def _property(written: WrittenProperty) -> Alike:
     return Alike((written.pattern.value if written.pattern is not None else "",), (*name, *conditions))
 
 
-def _findings(elements: Iterable[Alike]) -> Iterator[Finding]:
-    for odd in odd_numbers(elements):
+def _findings(values: Iterable[OddNumber]) -> Iterator[Finding]:
+    for odd in values:
         message = (
             f"`{odd.text.value}` does not match `{odd.other.value}` beside it, unlike in all similar elements; did you "
             f"mean `{odd.fixed}`?"

@@ -13,7 +13,9 @@ from roaml.model.system import System
 from roaml.model.system_file import TREE_ATTRIBUTE, ListedFile, SystemSection, are_named
 from roaml.roles import SymbolKind
 from roaml.rules.rule import Rule, SystemContext
+from roaml.rules.support.odd_values import odd_inputs
 from roaml.scxml.names import is_generated, sanitise
+from roaml.text import Span
 
 
 def check(context: SystemContext) -> Iterator[Finding]:
@@ -21,6 +23,7 @@ def check(context: SystemContext) -> Iterator[Finding]:
     automata."""
     outlines = dict((*context.system.nodes, *context.system.plugins))
     first: dict[tuple[SystemSection, str, str], ListedFile] = {}
+    odd: set[Span] | None = None
     generated = _generated(context.system)
     for listed in context.files:
         outline = outlines.get(listed.path) if listed.required_kind is FileKind.MACHINE else None
@@ -30,6 +33,10 @@ def check(context: SystemContext) -> Iterator[Finding]:
             continue  # the copies for trees with one name are no mistake; `input-count` reports the names
         key = (listed.input.section, outline.name)
         before = first.get((*key, "")) or first.setdefault((*key, listed.input.tree), listed)
+        if before is not listed and listed.input.section is not SystemSection.NODE_MODELS:
+            odd = {value.text.span for value in odd_inputs(context.files)} if odd is None else odd
+            if listed.input.src.span in odd:
+                continue  # the file of another plugin, which inconsistent-value reports
         if before is not listed:
             yield _finding(context, listed, before, outline.name)
         elif listed.input.section is SystemSection.NODE_MODELS and (reason := _taken(outline.name, generated)):

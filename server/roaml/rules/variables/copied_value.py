@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
 from typing import NamedTuple
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
@@ -166,6 +167,10 @@ def _equal_constants(chart: Chart) -> Iterator[Finding]:
     for data in chart.data:
         if data.id is None or not data.id.value.isupper() or data.id.value not in fixed or data.value is None:
             continue
+        if not any(
+            data.id.value in names and _is_enumeration([fixed[name] for name in names]) for names in sent.values()
+        ):
+            continue
         earlier = first.setdefault(fixed[data.id.value], data)
         if earlier is data or earlier.id is None or difference(earlier.id.value, data.id.value) is None:
             continue
@@ -176,6 +181,13 @@ def _equal_constants(chart: Chart) -> Iterator[Finding]:
             )
             for span, other in ((earlier.id.span, data.id.span), (data.id.span, earlier.id.span)):
                 yield RULE.at(span, message, related=[Related(other, "the same value")])
+
+
+def _is_enumeration(values: Sequence[object]) -> bool:
+    """Whether numbers are consecutive from 0 or 1, except that some are equal, as those of statuses and commands are.
+    Other numbers, such as durations and speeds, are equal by chance."""
+    numbers = sorted(value for value in values if isinstance(value, Fraction) and value.denominator == 1)
+    return bool(numbers) and numbers[0] in (0, 1) and numbers[-1] - numbers[0] <= len(numbers) - 1
 
 
 def _constant_fields(context: MachineContext, chart: Chart) -> Iterator[Finding]:

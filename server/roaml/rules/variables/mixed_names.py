@@ -10,7 +10,7 @@ from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.expr.format import format_expr
 from roaml.expr.infer import constant
 from roaml.expr.operators import Operator, OperatorKind, UnaryOperator
-from roaml.expr.tree import Binary, Boolean, Name, String, Unary, access_path, walk
+from roaml.expr.tree import Binary, Boolean, Name, Unary, access_path, walk
 from roaml.expr.types import Type
 from roaml.model.behavior.knowledge import variables_in
 from roaml.model.machine import (
@@ -27,6 +27,7 @@ from roaml.model.machine import (
     bodies,
     statements,
 )
+from roaml.model.message_constants import NumberedConstant, numbered_constants
 from roaml.model.syntax import Expression, Value
 from roaml.model.syntax import Name as SyntaxName
 from roaml.model.values.evaluate import place_of
@@ -424,56 +425,39 @@ it."""
 
 def _numbered(context: MachineContext) -> Iterator[Finding]:
     """Constants with another number than the name of the machine, one of several that are copies of each other: the
-    text `'door_3'`, or 3 in the field `door`, in the machine `CloseDoor2`."""
-    words = words_of(context.machine.name.value) if context.machine.name is not None else []
+    text `'door_3'`, or 3 in the field `door`, in the machine `CloseDoor2`. All copies that have the same constant, with
+    another number, must have their own one: machines that name their neighbours, or count from 0, are right."""
+    if context.system is None or context.machine.name is None:
+        return
+    name = context.machine.name
+    words = words_of(name.value)
     numbers = [place for place, word in enumerate(words) if word.isdigit()]
-    if context.system is None or len(numbers) != 1 or numbers[0] == 0:
+    if len(numbers) != 1 or numbers[0] == 0:
         return
     (at,) = numbers
-    alike = [words_of(outline.name) for _, outline in context.system.nodes]
-    alike = [other for other in alike if len(other) == len(words) and other[at].isdigit()]
-    alike = [other for other in alike if (*other[:at], *other[at + 1 :]) == (*words[:at], *words[at + 1 :])]
-    if len({tuple(other) for other in alike}) < _MIN_NUMBERED:
-        return
     kind, own = words[at - 1], words[at]
-    texts = [
-        (node, "")
-        for value in context.typed.values
-        if isinstance(value.value, Expression) and not value.value.broken
-        for node in walk(value.value.tree)
-        if isinstance(node, String)
-    ]
-    fields = [
-        (param.value.tree, param.name.value)
-        for chart in context.machine.charts
-        for statement in chart.statements
-        for param in _params(statement)
-        if param.name is not None and isinstance(param.value, Expression) and not param.value.broken
-    ]
-    for tree, field in (*texts, *fields):
-        number = constant(tree) if field else None
-        text = words_of(tree.value) if isinstance(tree, String) and not field else []
-        digits = [word for word in text if word.isdigit()]
-        if kind in text and len(digits) == 1 and digits[0] != own and text not in alike:
-            assert isinstance(tree, String)
-            quote = context.source.text[tree.span.start]
-            meant = f"{quote}{tree.value.replace(digits[0], own)}{quote}"
-        elif number is not None and kind in words_of(field) and str(number) != own:
-            meant = own
-        else:
+    numbered: dict[str, frozenset[NumberedConstant]] = {}
+    for _, outline in context.system.nodes:
+        other = words_of(outline.name)
+        if other[at : at + 1] != [own] and [*other[:at], own, *other[at + 1 :]] == words and other[at].isdigit():
+            numbered.setdefault(other[at], outline.numbered)
+    if len(numbered) < _MIN_NUMBERED - 1:
+        return
+    for known, tree in numbered_constants(context.machine, context.typed):
+        if known.number not in numbered or kind not in words_of(known.field or known.text):
             continue
+        in_copies = [(n, c.number) for n, constants in numbered.items() for c in constants if _is_copy(c, known)]
+        if len(in_copies) < _MIN_NUMBERED - 1 or any(number != of_copy for of_copy, number in in_copies):
+            continue
+        quote = context.source.text[tree.span.start] if known.text else ""
+        meant = f"{quote}{known.text.replace('#', own)}{quote}" if known.text else own
         fix = Fix(f"Change to `{meant}`", (TextEdit(tree.span, meant),))
-        assert context.machine.name is not None
-        name = context.machine.name
         message = f"the machine `{name.value}` uses the number of another one here; did you mean `{meant}`?"
         yield RULE.at(tree.span, message, fix, related=[Related(name.span, "the number of this machine")])
 
 
-def _params(statement: Statement) -> Sequence[Param]:
-    match statement:
-        case Send(params=params) | RosSend(fields=params):
-            return params
-    return ()
+def _is_copy(constant_: NumberedConstant, other: NumberedConstant) -> bool:
+    return constant_.field == other.field and constant_.text == other.text
 
 
 # --------------------------------------------------------- previous values

@@ -21,6 +21,9 @@ _RECEIVED = ("_req.", "_res.", "_goal.", "_feedback.", "_wrapped_result.")
 _PREVIOUS = frozenset(("previous", "prev", "last", "old", "former"))
 """Words in the names of variables and fields that keep an earlier value intentionally."""
 
+_ENDS = frozenset(("cancel", "clear", "release", "stop", "undo", "unlock"))
+"""Words in the names of messages and events that end what an earlier value began, before the next one begins."""
+
 
 def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
@@ -48,7 +51,7 @@ def _early(chart: Chart) -> Iterator[tuple[Param, str, Assign]]:
         for statement in body:
             if isinstance(statement, RosSend) and statement.handle is not None and statement.handle.value == own:
                 break  # then the next request or response may arrive, so late-event-data reports what is read
-            for param in _fields(statement):
+            for param in _fields(statement) if _ENDS.isdisjoint(_name_words(statement)) else ():
                 tree = param.value.tree if isinstance(param.value, Expression) and not param.value.broken else None
                 words = words_of(param.name.value) if param.name is not None else []
                 if isinstance(tree, Name) and _PREVIOUS.isdisjoint((*words, *words_of(tree.name))):
@@ -60,6 +63,14 @@ def _early(chart: Chart) -> Iterator[tuple[Param, str, Assign]]:
             early = sent.pop(name, None) if name is not None else None
             if early is not None and name is not None and value is not None and value.startswith(_RECEIVED):
                 yield early, name, statement
+
+
+def _name_words(statement: Statement) -> list[str]:
+    """The words in the name of what a statement sends."""
+    match statement:
+        case Send(event=name) | RosSend(handle=name) if name is not None:
+            return words_of(name.value)
+    return []
 
 
 def _fields(statement: Statement) -> tuple[Param, ...]:
