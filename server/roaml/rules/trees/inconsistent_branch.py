@@ -41,8 +41,14 @@ def _odd_branch(context: TreeContext, branches: Sequence[TreeNode]) -> Iterator[
         most = max(by_shape.values(), key=len)
         if len(most) >= _MIN_ALIKE and len(alike) == len(most) + 1:
             (odd,) = (branch for branch in alike if branch not in most)
-            if _are_alike([*most, odd]):
+            is_end = odd in (alike[0], alike[-1])
+            if _are_alike([*most, odd]) and not (is_end and _delays(odd) != _delays(most[0])):
                 yield from _compare(context, odd, most[0])
+
+
+def _delays(branch: TreeNode) -> int:
+    """How often a branch pauses. The first and the last one of a series often need no pause before or after them."""
+    return sum(_type(node) == "Delay" for node in _inside(branch))
 
 
 def _are_alike(branches: Sequence[TreeNode]) -> bool:
