@@ -444,7 +444,10 @@ def _numbered(context: MachineContext) -> Iterator[Finding]:
     if len(numbered) < _MIN_NUMBERED - 1:
         return
     for known, tree in numbered_constants(context.machine, context.typed):
-        if known.number not in numbered or kind not in words_of(known.field or known.text):
+        # A number in a field may have another meaning. A text may name a machine that this system does not use.
+        if known.number == own or (known.field and known.number not in numbered):
+            continue
+        if kind not in words_of(known.field or known.text):
             continue
         in_copies = [(n, c.number) for n, constants in numbered.items() for c in constants if _is_copy(c, known)]
         if len(in_copies) < _MIN_NUMBERED - 1 or any(number != of_copy for of_copy, number in in_copies):
