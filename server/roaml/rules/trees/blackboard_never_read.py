@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Severity
 from roaml.forest.entries import Use
@@ -60,6 +60,7 @@ def _in_vain(context: TreeContext) -> Iterator[Finding]:
         for bound in uses
         if bound.use.reads and not any(other.use.writes is not False for other in uses)
     }
+    missing = unwritten.keys() - forest.host_entries
     in_vain: dict[TreeNode, list[Use]] = {}
     useful: set[TreeNode] = set()
     for uses in entries.by_entry.values():
@@ -70,7 +71,7 @@ def _in_vain(context: TreeContext) -> Iterator[Finding]:
                 continue
             name = use.name.removeprefix("@")
             is_own = bound.executed and use.name not in bound.frame.remapped and name not in forest.host_entries
-            if is_used or not is_own or use.path != context.source.path or nearest_name(name, unwritten) is not None:
+            if is_used or not is_own or use.path != context.source.path or _is_misread(name, missing, use.port):
                 useful.add(use.node)
             else:
                 in_vain.setdefault(use.node, []).append(use)
@@ -78,13 +79,20 @@ def _in_vain(context: TreeContext) -> Iterator[Finding]:
         if node in useful:
             continue
         use, type_ = outputs[0], node.plugin.value if node.plugin is not None else ""
-        named = [name for name in unwritten if name == use.port and name not in forest.host_entries]
-        alike = [name for name, read_as in unwritten.items() if read_as == use.type and name not in forest.host_entries]
+        named = [use.port] if use.port in missing else []
+        alike = [name for name, read_as in unwritten.items() if read_as == use.type and name in missing]
         meant = (*(named or alike),) if named or len(alike) == 1 else ()
         if type_.endswith(_OPTIONAL) and not named:
             continue
         message = f"no node reads {described(use.name, use.name)}, and `{type_}` has no other effect"
         yield RULE.at(use.span, message + did_you_mean(meant), *replacements(use.span, [f"{{{n}}}" for n in meant]))
+
+
+def _is_misread(name: str, unwritten: Iterable[str], port: str) -> bool:
+    """Whether an entry that nothing writes has a similar name, so that blackboard-never-written reports the mistake
+    where it is read. An entry with the name of the port that writes `name` is probably the right one."""
+    others = [other for other in unwritten if other != port]
+    return nearest_name(name, unwritten) is not None or any(other in name or name in other for other in others)
 
 
 _OPTIONAL = "Selector"
