@@ -439,7 +439,9 @@ def _numbered(context: MachineContext) -> Iterator[Finding]:
     numbered: dict[str, frozenset[NumberedConstant]] = {}
     for _, outline in context.system.nodes:
         other = words_of(outline.name)
-        if other[at : at + 1] != [own] and [*other[:at], own, *other[at + 1 :]] == words and other[at].isdigit():
+        if len(other) != len(words) or other[at] == own or not other[at].isdigit():
+            continue
+        if [*other[:at], own, *other[at + 1 :]] == words:
             numbered.setdefault(other[at], outline.numbered)
     if len(numbered) < _MIN_NUMBERED - 1:
         return
