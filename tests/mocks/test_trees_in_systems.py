@@ -7,7 +7,7 @@ import itertools
 from collections import Counter
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from random_trees import ANY, ENTRIES, Drawn, as_xml, trees
 from translated_trees import observe, with_mocks
@@ -87,7 +87,7 @@ def test_a_parent_knows_the_statuses_of_its_children(drawn: Drawn) -> None:
     assert library is not None
     codes = {code.address: code for parts in library.codes.values() for code in parts}
     recorded = [child for code in codes.values() for child in code.children if child.address in codes]
-    assert recorded
+    assume(recorded)  # a tree of plugins only has no such child
     for child in recorded:
         built = node_automaton(codes[child.address]).child
         assert (built.answers, built.is_stateless) == (child.answers, child.is_stateless), as_xml(tree)
