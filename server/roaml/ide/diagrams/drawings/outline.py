@@ -15,11 +15,20 @@ from roaml.figures.geometry import Box, Extent
 from roaml.figures.layout import outline
 from roaml.figures.layout.outline import INDENT, rows
 from roaml.figures.text import ELLIPSIS, MEDIUM, wrap
-from roaml.ide.diagrams.diagram import DetailKind, DiagramNode, DiagramNodeKind, EdgeKind, Picture
+from roaml.ide.diagrams.diagram import DetailKind, DiagramNode, DiagramNodeKind, Picture
 from roaml.ide.diagrams.drawings.cards import NO_NAME, PADDING, Row, TextLine, paragraph, row_items
 from roaml.ide.diagrams.drawings.changes import kind_of, tone_of
 from roaml.ide.diagrams.drawings.glyphs import BADGE, badge
-from roaml.ide.diagrams.drawings.tree import OUTLINES, TONES, hidden_row, link, port_rows, subtitle, with_blackboard
+from roaml.ide.diagrams.drawings.tree import (
+    OUTLINES,
+    TONES,
+    children_of,
+    hidden_row,
+    links,
+    port_rows,
+    subtitle,
+    with_blackboard,
+)
 
 WIDTH = 380.0
 """The width of the whole drawing, in pixels, if no node is too deep: it is legible in a panel of 400 pixels."""
@@ -36,12 +45,7 @@ below, in pixels."""
 
 def draw_outline(picture: Picture) -> Drawing:
     index = {node.id: number for number, node in enumerate(picture.nodes)}
-    children: dict[str, list[str]] = {}
-    links: dict[tuple[str, str], int] = {}
-    for number, edge in enumerate(picture.edges):
-        if edge.kind is EdgeKind.CHILD:
-            children.setdefault(edge.source, []).append(edge.target)
-            links[edge.source, edge.target] = number
+    children = children_of(picture)
     variables = [node.id for node in picture.nodes if node.kind is DiagramNodeKind.VARIABLE]
     written = [node.id for node in picture.nodes if node.kind is not DiagramNodeKind.VARIABLE]
     depths = dict(rows(dict.fromkeys(written), children))
@@ -49,8 +53,7 @@ def draw_outline(picture: Picture) -> Drawing:
     cards |= {name: _Lines(picture, picture.nodes[index[name]], 0) for name in variables}
     layout = outline({name: cards[name].size for name in written}, children)
     boxes, size = with_blackboard(layout.nodes, layout.size, {name: cards[name].size for name in variables})
-    pairs = ((parent, child) for parent, group in children.items() for child in group)
-    groups = [link(picture, links[pair], route.parts[0]) for pair, route in zip(pairs, layout.routes, strict=True)]
+    groups = links(picture, children, layout.routes)
     groups += [cards[name].group(index[name], box) for name, box in boxes.items()]
     return Drawing(size, tuple(groups), {index[name]: box for name, box in boxes.items()})
 

@@ -7,11 +7,11 @@ scripts and mock are further rows of the card. The entries of the blackboard are
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from roaml.figures.drawing import MAX_ROUNDING, Drawing, Group, Item, Outline, Polyline, Shape, Tone
 from roaml.figures.geometry import Box, Extent, Point
-from roaml.figures.layout import LayoutDirection, tidy_tree
+from roaml.figures.layout import LayoutDirection, Route, tidy_tree
 from roaml.figures.layout.packing import shelves
 from roaml.ide.diagrams.diagram import DetailKind, DiagramNode, DiagramNodeKind, EdgeKind, Picture, TreeNodeTitle
 from roaml.ide.diagrams.drawings.cards import Card, Row, TextLine, is_shortened, paragraph, title
@@ -52,23 +52,33 @@ _BADGE_DISTANCE = 7.0
 def draw_tree(picture: Picture, direction: LayoutDirection) -> Drawing:
     index = {node.id: number for number, node in enumerate(picture.nodes)}
     cards = {node.id: _card(picture, node) for node in picture.nodes}
-    children: dict[str, list[str]] = {}
-    numbers: dict[tuple[str, str], int] = {}
-    for number, edge in enumerate(picture.edges):
-        if edge.kind is EdgeKind.CHILD:
-            children.setdefault(edge.source, []).append(edge.target)
-            numbers[edge.source, edge.target] = number
+    children = children_of(picture)
     variables = [node.id for node in picture.nodes if node.kind is DiagramNodeKind.VARIABLE]
     sizes = {name: _size(cards[name], picture.nodes[index[name]].kind) for name in cards}
     tree = tidy_tree({name: sizes[name] for name in sizes if name not in variables}, children, direction)
     boxes, size = with_blackboard(tree.nodes, tree.size, {name: sizes[name] for name in variables})
-    pairs = ((parent, child) for parent, group in children.items() for child in group)
-    groups = [link(picture, numbers[pair], route.parts[0]) for pair, route in zip(pairs, tree.routes, strict=True)]
+    groups = links(picture, children, tree.routes)
     groups += [_node(picture.nodes[index[name]], index[name], cards[name], box) for name, box in boxes.items()]
     return Drawing(size, tuple(groups), {index[name]: box for name, box in boxes.items()})
 
 
-def link(picture: Picture, number: int, points: tuple[Point, ...]) -> Group:
+def children_of(picture: Picture) -> dict[str, list[str]]:
+    """The id of a node of a tree -> those of its children, in order."""
+    children: dict[str, list[str]] = {}
+    for edge in picture.edges:
+        if edge.kind is EdgeKind.CHILD:
+            children.setdefault(edge.source, []).append(edge.target)
+    return children
+
+
+def links(picture: Picture, children: Mapping[str, Sequence[str]], routes: Iterable[Route]) -> list[Group]:
+    """The lines from the nodes of a tree to their children. `routes` are in the order of `children`."""
+    numbers = {(e.source, e.target): number for number, e in enumerate(picture.edges) if e.kind is EdgeKind.CHILD}
+    pairs = ((parent, child) for parent, group in children.items() for child in group)
+    return [_link(picture, numbers[pair], route.parts[0]) for pair, route in zip(pairs, routes, strict=True)]
+
+
+def _link(picture: Picture, number: int, points: tuple[Point, ...]) -> Group:
     change = picture.edges[number].change
     kind = kind_of(change, "child")
     return Group("link", tone_of(change, Tone.PLAIN), (Polyline(points),), kind, edges=(number,))
