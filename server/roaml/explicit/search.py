@@ -360,10 +360,6 @@ class StateSearch(PackedStates):
         problem: tuple[int, int, int, int, float] = self.kernel.problem()
         return problem
 
-    def visit(self, state: int) -> None:
-        """Restore the kernel to the state with the number `state`."""
-        self._visit(state)
-
     # ------------------------------------------------------------ initial states
 
     def _enter_roots(self, many: int) -> None:
