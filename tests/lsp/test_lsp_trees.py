@@ -76,6 +76,26 @@ async def test_a_result_is_that_of_the_mocks_and_stale_after_a_change(tree: Path
         assert result["probability"] == 1.0
 
 
+async def test_a_result_is_stale_after_a_change_of_the_data_of_a_mock(tree: Path) -> None:
+    """Verified again, the property has the value with the new data."""
+    late = '<Timeout msec="2000"><FollowPath path="{path}"/></Timeout>'
+    tree.write_text(TREE.replace('<FollowPath path="{path}"/>', late), encoding="utf-8")
+    tree.with_suffix(".mocks").write_text("FollowPath: 1 in histogram('times.csv', s)\nWait: 0\n", encoding="utf-8")
+    data = tree.parent / "times.csv"
+    data.write_text("1\n", encoding="utf-8")
+    async with connect(tree.parent, options=COMMANDS) as client:
+        client.open(tree, language="xml")
+        for probability in (1.0, 0.0):
+            (result,) = (await verify(client, tree, ["succeeds"], SILENT))["results"]
+            assert result["probability"] == probability
+            view = (await ask(client, PROPERTIES, None))[0]["properties"][0]["view"]
+            assert view["since"] == ""
+            data.write_text("3\n" if probability else "1\n", encoding="utf-8")
+            client.changed(data)
+            view = (await ask(client, PROPERTIES, None))[0]["properties"][0]["view"]
+            assert view["since"] == "stale: times.csv has changed since the verification"
+
+
 async def test_the_view_of_a_result_has_the_words_of_the_report(tree: Path) -> None:
     beside = tree.with_suffix(".mocks")
     beside.write_text("FollowPath: 0.5 in 1 s\nWait: 0.5 in 1 s\n", encoding="utf-8")

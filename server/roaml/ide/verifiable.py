@@ -13,7 +13,8 @@ from roaml.ide.navigation.document_symbols import document_symbols
 from roaml.model.kinds import FileKind, mocks_path
 from roaml.model.property_file import PropertyFile
 from roaml.project.analysis import Analysis
-from roaml.project.mock_files import executed_tree
+from roaml.project.mock_files import executed_tree, mocks_beside
+from roaml.project.paths import resolve
 from roaml.record import Record, replace
 from roaml.scxml.names import SUCCEEDS
 from roaml.text import Location, SourceFile, Span
@@ -109,11 +110,18 @@ def expected_beside(analysis: Analysis, system: str) -> dict[str, Comparison]:
 
 
 def fingerprint(analysis: Analysis, system: str) -> Texts:
-    """The digests of the files of a system. Results of a verification are valid as long as the digests are the same.
-    The digests do not depend on the expectations of properties in XML, which do not change the results."""
+    """The digests of the files of a system, with those that its distributions are read from. Results of a verification
+    are valid as long as the digests are the same. The digests do not depend on the expectations of properties in XML,
+    which do not change the results."""
     forest = analysis.forest(system) if executed_tree(analysis, system) is not None else None
-    paths = analysis.files_of(system) if forest is None else (*(path for path, _ in forest.files), mocks_path(system))
-    sources = ((path, analysis.source(path)) for path in paths)
+    if forest is None:
+        expanded = analysis.expanded(system)
+        data = [path for path, _ in expanded.expansion.data] if expanded is not None else []
+        paths = (*analysis.files_of(system), *data)
+    else:
+        data = [resolve(system, mock.data_file) for mock in mocks_beside(analysis, system) if mock.data_file]
+        paths = (*(path for path, _ in forest.files), mocks_path(system), *data)
+    sources = ((path, analysis.source(path)) for path in dict.fromkeys(paths))
     return tuple((path, _digest(analysis, path, source)) for path, source in sources if source is not None)
 
 
