@@ -81,6 +81,12 @@ def phi(x: float) -> float:
         ("normal(200 ms, 50 ms)", phi(0)),
         ("normal(150 ms, 50 ms)", phi(1)),
         ("exponential(100 ms)", -math.expm1(-2)),
+        ("bernoulli(0.3) * 300 ms", 0.7),
+        ("binomial(3, 0.5) * 100 ms", 7 / 8),
+        ("geometric(1 - loss) * 100 ms", 0.9 + 0.1 * 0.9),
+        ("poisson(1.5) * 100 ms", 3.625 * math.exp(-1.5)),
+        ("uniform_int(1, 5) * 100 ms", 0.4),
+        ("uniform_int(1, 5) * 1000 * loss ms", 0.4),
     ],
 )
 def test_delay(main: Path, delay: str, in_time: float) -> None:
@@ -216,7 +222,9 @@ def test_a_service_is_delayed_both_ways(tmp_path: Path) -> None:
         ('<channel topic="level" reliability="reliable" loss="0.1" />', "a reliable channel loses no messages"),
         ('<channel topic="level" delay="soon" />', "`soon` in `delay` is not a duration"),
         ('<channel topic="level" delay="20" />', "`20` in `delay` is not a duration"),
-        ('<channel topic="level" delay="poisson(2 ms)" />', "not a distribution of durations"),
+        ('<channel topic="level" delay="poisson(2 ms)" />', "is not a number without a unit"),
+        ('<channel topic="level" delay="poisson(2)" />', "multiply it by a duration"),
+        ('<channel topic="level" delay="poison(2)" />', "did you mean `poisson`?"),
         ('<channel topic="level" delay="normal(20 ms, 5 ms)" />', "add the step"),
         (
             '<channel topic="level" delay="histogram(\'late.csv\', ms)" />',

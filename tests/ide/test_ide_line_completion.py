@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import pytest
 
+from roaml.distributions.laws import LAWS
 from roaml.ide.completion import Completions, complete
 from roaml.project.settings import Settings
 from roaml.project.workspace import Workspace
@@ -111,7 +112,8 @@ def test_distributions_are_offered_as_durations_of_mocks() -> None:
     found, _ = completions("/models/tree.mocks", "Grasp: 0.9 in no|", tree=TREE)
     assert found is not None
     inserted = {item.label: item.snippet for item in found.items}
-    assert sorted(inserted) == ["categorical", "exponential", "histogram", "normal", "uniform"]
+    assert sorted(inserted) == sorted(LAWS)
+    assert inserted["geometric"] == "geometric(${1:p}) * ${2:100 ms}"
     assert inserted["histogram"] == "histogram('${1:times.csv}', ${2:s})"
     assert inserted["normal"] == "normal(${1:mean}, ${2:deviation})"
 

@@ -66,6 +66,33 @@ def test_the_time_of_a_leaf_is_that_of_its_distribution(
         assert quantile.value == pytest.approx(FIRST_TICK + ticks / 10)
 
 
+@pytest.mark.parametrize(
+    ("duration", "law", "unit"),
+    [
+        ("bernoulli(0.3) * 2 s", stats.bernoulli(0.3), 20),
+        ("binomial(5, 0.4) * 300 ms", stats.binom(5, 0.4), 3),
+        ("geometric(0.4) * 250 ms", stats.geom(0.4), 2.5),
+        ("poisson(2.5) * 1 s", stats.poisson(2.5), 10),
+        ("uniform_int(2, 5)*500ms", stats.randint(2, 6), 5),
+    ],
+)
+def test_numbers_are_multiplied_by_a_time(duration: str, law: stats.rv_discrete, unit: float, tmp_path: Path) -> None:
+    """Exact values and random traces. `unit` is the number of ticks of 0.1 s in a unit."""
+    model = loaded(tree(tmp_path, "<Drive/>"), f"Drive: 0.75 in {duration}")
+    outcome = exact(model)
+    assert outcome.success.value == pytest.approx(0.75, abs=1e-12)
+    mean = FIRST_TICK + math.fsum(law.pmf(n) * math.ceil(n * unit) for n in range(200)) / 10
+    assert outcome.time is not None
+    assert outcome.time.value == pytest.approx(mean, abs=1e-4)
+    for quantile in outcome.quantiles:
+        assert quantile.value == pytest.approx(FIRST_TICK + math.ceil(law.ppf(quantile.share) * unit) / 10)
+    options = Options(max_traces=2000, confidence=0.9999)
+    sampled = measure(model.mocked, model.target, options)
+    assert sampled.time is not None
+    assert within(sampled.success, 0.75)
+    assert within(sampled.time, mean)
+
+
 DATA = {
     "s": "duration,runs\n0.25,1\n0.3,1\n# a comment\n1.05,2\n",
     "ms": "250\n300\n1001\n1100\n",
@@ -185,7 +212,12 @@ def test_mocks_of_a_system_take_the_same_times(tmp_path: Path, capsys: pytest.Ca
     ("duration", "reason"),
     [
         ("exponentiel(1 s)", "did you mean `exponential`"),
-        ("poisson(3)", "not a distribution of durations; the distributions of durations are categorical, exponential"),
+        ("gamma(3)", "not a distribution; the distributions of durations are bernoulli, binomial, categorical"),
+        ("poisson(3)", r"`poisson` draws a number; multiply it by a duration, as in `poisson\(3\) \* 100 ms`"),
+        ("poisson(3) * 2", "`poisson` draws a number; multiply it by a duration"),
+        ("poisson(3 s) * 2 s", "`3 s` in .* is not a number without a unit"),
+        ("geometric(0) * 2 s", "the probability of `geometric` must be above 0"),
+        ("normal(3 s, 1 s) * 2 s", r"is already a duration; remove `\* 2 s`"),
         ("normal(3, 1)", "`3` in .* is not a duration"),
         ("normal(3 s, 0 s)", "standard deviation"),
         ("normal(3 s)", "`mean`, `deviation`"),

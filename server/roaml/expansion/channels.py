@@ -37,8 +37,9 @@ LOSS = "loss"
 """The attribute with a probability."""
 _RELIABLE, _BEST_EFFORT = "reliable", "best_effort"
 _NANOSECONDS_PER_MILLISECOND = 10**6
-_PART = regex(r"""'[^']*'|"[^"]*"|[^(),'"]+""")
-"""A part of a delay: the name of a distribution, an argument, or the name of a file in quotes."""
+_PART = regex(r"""'[^']*'|"[^"]*"|(?<=\))\s*\*|[^(),'"]+""")
+"""A part of a delay: the name of a distribution, an argument, the name of a file in quotes, or what a distribution of
+numbers is multiplied by, and the sign before it."""
 _UNIT = regex(r"\s*\b(?:ms|s|min)\s*\Z")
 
 
@@ -157,7 +158,7 @@ def delay_uses(document: Document, element: Element, scope: Scope) -> Iterator[P
 def _numbers(text: str) -> Iterator[tuple[int, int]]:
     """The places of the parts of a delay that can be numbers, without their units."""
     for match in _PART.finditer(text):
-        if match[0][0] in "'\"":
+        if match[0].strip()[:1] in ("'", '"', "*", ""):
             continue
         unit = _UNIT.search(match[0])
         number = match[0][: unit.start()] if unit else match[0].rstrip()
@@ -338,7 +339,7 @@ class _Reader:
                 'as `step="10 ms"`',
             )
             return Fraction(0)
-        times = [value for value in delay.arguments[::2] if value > 0]
+        times = [value for value in delay.parts if value > 0]
         return _common_divisor([*times, *self._periods]) if times else Fraction(0)
 
     def _delays(

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Durations as users write them in mocks and channels: `250 ms`, or drawn from a distribution, `normal(8 s, 2 s)`
-(docs/spec/mocks.md#durations, docs/spec/channels.md#delay)."""
+"""Durations as users write them in mocks and channels: `250 ms`, or drawn from a distribution, `normal(8 s, 2 s)` or
+`geometric(0.9) * 100 ms` (docs/spec/mocks.md#durations, docs/spec/channels.md#delay)."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from roaml.distributions.outcomes import Outcomes
 
 _DURATION = regex(r"(\d+(?:\.\d+)?)\s*(ms|s|min)\Z")
-_DRAWN = regex(r"([^\s(]*)\s*\((.*)\)\Z")
+_DRAWN = regex(r"([^\s(]*)\s*\((.*)\)\s*(?:\*\s*([^()*]*))?\Z")
 _MILLISECONDS = {"ms": 1, "s": 1000, "min": 60_000}
 _DATA = regex(r"""\s*(?P<quote>['"])(?P<file>[^'"]+)(?P=quote)\s*,\s*(?P<unit>[^\s,]+)\s*\Z""")
 HISTOGRAM_FORM = "histogram('times.csv', s)"
@@ -45,12 +46,14 @@ class DrawnDuration(Record, frozen=True):
         name: the name of the distribution.
         arguments: its arguments; durations in ms.
         data: the data of a histogram that has not been read yet; `None` for all others.
+        unit: the duration in ms by which a drawn number is multiplied; `None` if the distribution is one of durations.
     """
 
     text: str
     name: str
     arguments: tuple[Fraction, ...]
     data: DurationData | None = None
+    unit: Fraction | None = None
 
     def with_data(self, read: DataReader) -> DrawnDuration:
         """This distribution with its data: the distribution `categorical` of the values in the file.
@@ -81,6 +84,11 @@ class DrawnDuration(Record, frozen=True):
 
         return LAWS[self.name].is_continuous
 
+    @property
+    def parts(self) -> tuple[Fraction, ...]:
+        """Durations in ms of which each value of a distribution that is not continuous is a multiple."""
+        return self.arguments[::2] if self.unit is None else (self.unit,)
+
     def ticks(self, period: Fraction) -> Outcomes:
         """The numbers of periods that the duration takes, rounded up; 0 for a negative duration. The data of a
         histogram have been read.
@@ -94,10 +102,11 @@ class DrawnDuration(Record, frozen=True):
         from roaml.distributions.laws import LAWS  # noqa: PLC0415 - few models need it
         from roaml.distributions.outcomes import Outcomes, Rounding, outcomes  # noqa: PLC0415
 
-        drawn = outcomes(LAWS[self.name].law(self.arguments), period, Rounding.UP)
+        law = LAWS[self.name].law(self.arguments)
+        drawn = outcomes(law, period, Rounding.UP) if self.unit is None else outcomes(law)
         shares: dict[Fraction, float] = {}
         for value, share in sorted(zip(drawn.values, drawn.probabilities, strict=True)):
-            ticks = max(value / period, Fraction(0))
+            ticks = Fraction(max(math.ceil(value * (self.unit or 1) / period), 0))
             shares[ticks] = shares.get(ticks, 0.0) + share
         return Outcomes(tuple(shares), tuple(shares.values()), cut=drawn.cut)
 
@@ -127,28 +136,39 @@ def _drawn_duration(written: str, place: str) -> DrawnDuration:
     match = _DRAWN.match(written)
     if match is None:
         raise DurationError(f"`{written}`{place} is not a distribution such as `normal(8 s, 2 s)`")
-    name, arguments = match.groups()
-    if name == HISTOGRAM:
+    name, arguments, factor = match.groups()
+    if name == HISTOGRAM and factor is None:
         return DrawnDuration(written, name, (), _data(written, arguments, place))
     function = LAWS.get(name)
-    if function is None or not function.has_units:
-        known = [law.name for law in LAWS.values() if law.has_units or law.name == HISTOGRAM]
-        close = close_names(name, known)
-        hint = did_you_mean(close) if close else f"; the distributions of durations are {', '.join(known)}"
-        raise DurationError(f"`{name}`{place} is not a distribution of durations{hint}")
+    if function is None:
+        close = close_names(name, LAWS)
+        hint = did_you_mean(close) if close else f"; the distributions of durations are {', '.join(LAWS)}"
+        raise DurationError(f"`{name}`{place} is not a distribution{hint}")
+    is_time = function.has_units or name == HISTOGRAM
+    if is_time and factor is not None:
+        raise DurationError(f"`{written}`{place} is already a duration; remove `* {factor.strip()}`")
     values = []
     for position, argument in enumerate(arguments.split(",")):
-        is_share = function.parameters[position % len(function.parameters)] == "p"
-        value = exact_fraction(argument.strip()) if is_share else milliseconds(argument.strip())
+        is_number = not is_time or function.parameters[position % len(function.parameters)] == "p"
+        value = exact_fraction(argument.strip()) if is_number else milliseconds(argument.strip())
         if value is None:
-            what = "a probability such as 0.2" if is_share else "a duration such as `2 s` or `250 ms`"
+            what = "a duration such as `2 s` or `250 ms`"
+            if is_number:
+                what = "a probability such as 0.2" if is_time else "a number without a unit"
             raise DurationError(f"`{argument.strip()}`{place} is not {what}")
         values.append(value)
+    unit = None if is_time else milliseconds((factor or "").strip())
+    if unit is None and not is_time:
+        call = f"{name}({arguments.strip()})"
+        raise DurationError(
+            f"`{written}`{place} is not a duration, because `{name}` draws a number; multiply it by a duration, as in "
+            f"`{call} * 100 ms`"
+        )
     try:
         function.law(values)
     except LawError as error:
         raise DurationError(f"`{written}`{place} is not a distribution: {error}") from None
-    return DrawnDuration(written, name, tuple(values))
+    return DrawnDuration(written, name, tuple(values), unit=unit)
 
 
 def _data(written: str, arguments: str, place: str) -> DurationData:

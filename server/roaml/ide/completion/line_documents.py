@@ -150,9 +150,11 @@ def _likes(analysis: Analysis, path: str, line: str) -> Iterator[CompletionItem]
 def _durations() -> Iterator[CompletionItem]:
     """The distributions of the durations of mocks."""
     for law in LAWS.values():
-        if law.has_units:
+        if law.name != HISTOGRAM:
             stops = (f"${{{number}:{name}}}" for number, name in enumerate(law.parameters, 1))
-            yield CompletionItem(law.name, ItemKind.FUNCTION, f"{law.name}({', '.join(stops)})", law.documentation)
+            factor = "" if law.has_units else f" * ${{{len(law.parameters) + 1}:100 ms}}"
+            call = f"{law.name}({', '.join(stops)}){factor}"
+            yield CompletionItem(law.name, ItemKind.FUNCTION, call, law.documentation)
     about = "The values in a CSV file, with their unit: a column of values, and optionally one with their numbers."
     yield CompletionItem(HISTOGRAM, ItemKind.FUNCTION, f"{HISTOGRAM}('${{1:times.csv}}', ${{2:s}})", about)
 
