@@ -55,3 +55,4 @@ def test_the_figure_of_the_case_study(tmp_path: Path) -> None:
     ]
     assert described[0] == described[1]
     assert "0.9 at 0.1, 0.8 at 0.2, 0.7 at 0.3" in described[0][0]
+    assert "paper: 0.7 at 0.3." in described[0][0]

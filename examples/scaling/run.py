@@ -33,6 +33,8 @@ MAX_SIZE = 10_000
 NOTES = (
     "as2fm-lsp estimates the probability to arrive to 0.01 with 95 percent confidence",
     "NuSMV explores all states of a model without ROS and time",
+    "the abstract of the paper states, without numbers: linear growth for statistical model checking, exponential "
+    "growth for exact model checking",
 )
 
 

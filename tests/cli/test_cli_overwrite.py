@@ -53,7 +53,7 @@ NOTHING = {
     "--stdin-filename --set --params-file",
     "debug": "",
     "experiment": "main --live --set --find --meets --assume-monotone --property --scheduler "
-    "--exhaustive --slopes --max-states --max-transitions "
+    "--exhaustive --slopes --max-states --max-transitions --beside "
     "--confidence --epsilon --method --max-traces --max-steps --seed --jobs --dask --format --theme --unit "
     "--max-time --reaction-time --ros-path --tree-semantics --params-file --mock --mocks --entry --tick-rate",
     "draw": "file --machine --around --matching --tree --outline --graph --interfaces --machines --theme --direction "

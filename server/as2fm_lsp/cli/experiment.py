@@ -13,6 +13,7 @@ from concurrent.futures import Executor
 from as2fm_lsp.cli.exit_status import CLEAN, FOUND, USAGE
 from as2fm_lsp.cli.experiment_arguments import (
     TableFormat,
+    beside_in,
     computed_options,
     expectation_in,
     mocks_in,
@@ -36,6 +37,7 @@ from as2fm_lsp.kept_points import KeptPoints, KeptPointsError
 from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, OutputFiles, outputs_of
 from roaml import api
 from roaml.exhaustive import assert_never
+from roaml.experiments.beside import BesideValue
 from roaml.experiments.enough import Enough, Met
 from roaml.experiments.grid import Grid, Key
 from roaml.experiments.points import ExperimentPoint, PointKind
@@ -91,12 +93,13 @@ def _run(options: argparse.Namespace, interrupts: Interrupts) -> int:
             overrides=overrides,
             mocks=mocks_in(options),
         )
+        beside = beside_in(options, grid)
         jobs = workers or options.jobs
         if options.live:
-            return _show_live(options, grid, expectation, units, jobs, executor)
+            return _show_live(options, grid, beside, expectation, units, jobs, executor)
         outputs = outputs_of(options, grid.files)
         if expectation is not None:
-            return _find(options, grid, expectation, outputs, jobs, executor)
+            return _find(options, grid, beside, expectation, outputs, jobs, executor)
         kept = KeptPoints(options.resume, grid.digest)
         keys = grid.keys
         points = {key: kept.points[key] for key in keys if key in kept.points}
@@ -112,7 +115,7 @@ def _run(options: argparse.Namespace, interrupts: Interrupts) -> int:
             is_interrupted = True
         kept.write()
     known = tuple(points[key] for key in keys if key in points)
-    result = ExperimentResult(os.path.basename(options.main), grid.sweeps, grid.properties, known, grid.options)
+    result = ExperimentResult(os.path.basename(options.main), grid.sweeps, grid.properties, known, grid.options, beside)
     _write_table(options, outputs, _table(result, options.format))
     for path in options.plot:
         write_plots(outputs, path, result.plots(units), options.theme, result.page_title, result.to_html_table())
@@ -132,6 +135,7 @@ def _settings(options: argparse.Namespace) -> Settings:
 def _find(
     options: argparse.Namespace,
     grid: Grid,
+    beside: tuple[BesideValue, ...],
     expectation: Expectation,
     outputs: OutputFiles,
     jobs: int,
@@ -141,7 +145,7 @@ def _find(
     answers, result = api.find_enough(
         grid, options.find, expectation, is_assumed=options.assume_monotone, jobs=jobs, executor=executor
     )
-    result = replace(result, path=os.path.basename(options.main))
+    result = replace(result, path=os.path.basename(options.main), beside=beside)
     sentences = _sentences(answers, expectation, result, grid)
     table = _table(result, options.format)
     if options.format is TableFormat.TEXT:
@@ -173,6 +177,7 @@ def _sentences(answers: Sequence[Enough], expectation: Expectation, result: Expe
 def _show_live(
     options: argparse.Namespace,
     grid: Grid,
+    beside: tuple[BesideValue, ...],
     expectation: Expectation | None,
     units: Mapping[str, str],
     jobs: int,
@@ -186,7 +191,7 @@ def _show_live(
 
     def result() -> ExperimentResult:
         known = tuple(points[key] for key in keys if key in points)
-        return ExperimentResult(options.main, grid.sweeps, grid.properties, known, grid.options)
+        return ExperimentResult(options.main, grid.sweeps, grid.properties, known, grid.options, beside)
 
     def keep(point: ExperimentPoint, *_: int) -> None:
         points[point.setting, point.name] = point

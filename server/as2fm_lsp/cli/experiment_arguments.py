@@ -22,7 +22,8 @@ from as2fm_lsp.outputs import InputPath, OutputPath
 from roaml.api.parametric_mocks import MockTexts
 from roaml.disk import MEGABYTE, required
 from roaml.exhaustive import Vocabulary
-from roaml.experiments.grid import ExperimentOptions
+from roaml.experiments.beside import BesideError, BesideValue, read_beside
+from roaml.experiments.grid import ExperimentOptions, Grid
 from roaml.figures.themes import AUTOMATIC, THEMES
 from roaml.model.kinds import mocks_path
 from roaml.suggest import close_names, did_you_mean
@@ -47,8 +48,12 @@ states which.
 exit status: 0 success; 1 a point has no value, or the model has errors; 2 usage error; 3 internal error; 130
 interrupted (143 by SIGTERM)
 """
-_LISTS = ("set", "property", "plot", "unit", "ros-path", "params-file", "mock", "entry")
+_LISTS = ("set", "property", "plot", "unit", "ros-path", "params-file", "mock", "entry", "beside")
 """The options that may be repeated, and are lists or tables in a file."""
+_NAMED = ("set", "unit", "entry")
+"""The options that are named entries: one on the command line replaces the one with its name in a file."""
+_REPLACED = ("property", "plot")
+"""The options that, on the command line, replace all of their kind in a file."""
 
 
 class TableFormat(Vocabulary):
@@ -111,6 +116,9 @@ def parser() -> ArgumentParser:
     add("-o", "--output", type=OutputPath, metavar="FILE", help="write the table into a file")
     add("--plot", type=plot_file, action="append", default=[], metavar="FILE", help="draw the points, as .svg, .html "
         "or .pdf; with several plots, the names get numbers; may be repeated")  # fmt: skip
+    add("--beside", action="append", default=[], type=InputPath, metavar="FILE", help="also show the values in a "
+        "CSV file, such as measurements: columns for the parameters, `property` and `value`, optionally `low`, `high` "
+        "and `source`; may be repeated")  # fmt: skip
     add("--theme", choices=(AUTOMATIC, *THEMES), default=AUTOMATIC, help="the colors of SVG files; "
         f"{AUTOMATIC}: light, or dark if the reader prefers dark colors (default)")  # fmt: skip
     add("--live", action="store_true", help="write only JSON Lines with the points and plots to standard output while "
@@ -133,12 +141,13 @@ def parsed(arguments: Sequence[str]) -> argparse.Namespace:
     path = str(options.main)
     rest = list(arguments)
     rest.remove(path)
-    options = parser().parse_args([*_arguments_in(path), *rest])
+    options = parser().parse_args([*_arguments_in(path, options), *rest])
     options.file = InputPath(path)
     return options
 
 
-def _arguments_in(path: str) -> list[str]:
+def _arguments_in(path: str, given: argparse.Namespace) -> list[str]:
+    """The arguments in a file, without those that the options on the command line replace."""
     try:
         values = loads(required(path, MEGABYTE).decode("utf-8"))
     except (TomlError, UnicodeDecodeError) as error:
@@ -153,8 +162,13 @@ def _arguments_in(path: str) -> list[str]:
         action = actions.get(key.replace("-", "_"))
         if action is None or key == "help":
             raise UsageError(f"{path}: there is no option `{key}`{did_you_mean(close_names(key, actions))}")
+        if key in _REPLACED and (getattr(given, key) or (key == "property" and given.find is not None)):
+            continue
         option = action.option_strings[-1] if len(key) == 1 else f"--{key.replace('_', '-')}"
+        named = {_entry_name(text) for text in getattr(given, action.dest)} if key in _NAMED else set()
         for text in _texts(path, key, value):
+            if isinstance(text, str) and _entry_name(text) in named:
+                continue
             is_path = isinstance(action.type, type) and issubclass(action.type, (InputPath, OutputPath))
             is_path |= action.type is plot_file
             if text is True:
@@ -162,6 +176,11 @@ def _arguments_in(path: str) -> list[str]:
             elif text is not False:
                 arguments.append(f"{option}={os.path.join(folder, str(text)) if is_path else text}")
     return arguments
+
+
+def _entry_name(entry: str) -> str:
+    """The name in an option of the form `NAME=VALUE`."""
+    return entry.partition("=")[0].strip()
 
 
 def _texts(path: str, key: str, value: Any) -> Iterator[str | bool]:
@@ -251,6 +270,26 @@ def mocks_in(options: argparse.Namespace) -> MockTexts:
     except UnicodeDecodeError:
         raise UsageError(f"{file}: not valid UTF-8; fix the encoding") from None
     return MockTexts(declared.texts, text, declared.entries, declared.rate)
+
+
+def beside_in(options: argparse.Namespace, grid: Grid) -> tuple[BesideValue, ...]:
+    """The values in the files of `--beside`. Without a column for it, the source is the name of the file.
+
+    Raises:
+        UsageError: a file is not valid.
+        OSError: a file cannot be read.
+    """
+    values: list[BesideValue] = []
+    for path in options.beside:
+        source = os.path.splitext(os.path.basename(path))[0]
+        try:
+            text = required(path, MEGABYTE).decode("utf-8-sig")
+            values += read_beside(text, source, grid.sweeps, grid.properties)
+        except UnicodeDecodeError:
+            raise UsageError(f"{path}: not valid UTF-8; fix the encoding") from None
+        except BesideError as error:
+            raise UsageError(f"{path}: {error}") from None
+    return tuple(values)
 
 
 def units_in(options: argparse.Namespace) -> dict[str, str]:

@@ -76,9 +76,9 @@ def derivative(space: ParametricSpace, setting: Setting, names: Sequence[str]) -
     )
     if any(abs(a - b) > 1e-6 * max(1.0, abs(a)) for a, b in zip(found, other, strict=True)):
         raise NoDerivativeError("schedulers with the same value have different derivatives")
-    sign = -1.0 if is_negated else 1.0
     value = 1 - high if is_negated else high
-    return ProbabilityDerivative(value, tuple((name, sign * slope) for name, slope in zip(names, found, strict=True)))
+    slopes = [0.0 - slope for slope in found] if is_negated else found  # 0.0, not -0.0
+    return ProbabilityDerivative(value, tuple(zip(names, slopes, strict=True)))
 
 
 def _slopes(space: ParametricSpace, setting: Setting, name: str) -> dict[int, float]:

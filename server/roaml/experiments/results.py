@@ -4,10 +4,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from html import escape
 from typing import Any
 
+from roaml.exact_number import exact_fraction
+from roaml.experiments.beside import BesideValue, is_same
 from roaml.experiments.grid import ExperimentOptions
 from roaml.experiments.points import ExperimentPoint, PointKind, Schedulers, unknown_point
 from roaml.experiments.sweeps import Sweep, settings_of
@@ -35,6 +37,7 @@ class ExperimentResult(Record, frozen=True):
     Attributes:
         path: the file of the model.
         points: the points by setting, the values of the last parameter varying fastest, then by property.
+        beside: values from elsewhere, which tables and plots show beside the points.
     """
 
     path: str
@@ -42,6 +45,7 @@ class ExperimentResult(Record, frozen=True):
     properties: tuple[str, ...]
     points: tuple[ExperimentPoint, ...]
     options: ExperimentOptions
+    beside: tuple[BesideValue, ...] = ()
 
     def point(self, name: str, **setting: object) -> ExperimentPoint:
         """The point of a property with parameters.
@@ -89,14 +93,14 @@ class ExperimentResult(Record, frozen=True):
 
     def to_markdown(self) -> str:
         """The points as a table in Markdown: a row for each setting, a column for each property."""
-        head = [*(sweep.name for sweep in self.sweeps), *(f"`{name}`" for name in self.properties)]
+        head = [*(sweep.name for sweep in self.sweeps), *self._columns(lambda name: f"`{name}`")]
         rows = [[*(value for _, value in setting), *cells] for setting, cells in self._cells()]
         lines = ["| " + " | ".join(row) + " |" for row in [head, ["---"] * len(head), *rows]]
         return "\n".join([*lines, "", *(f"{note[0].upper()}{note[1:]}.  " for note in self.notes()), ""])
 
     def to_text(self) -> str:
         """The points as a table for terminals."""
-        head = [*(sweep.name for sweep in self.sweeps), *self.properties]
+        head = [*(sweep.name for sweep in self.sweeps), *self._columns()]
         rows = [head, *([*(value for _, value in setting), *cells] for setting, cells in self._cells())]
         widths = [max(len(row[column]) for row in rows) for column in range(len(head))]
         count = len(self.sweeps)
@@ -114,7 +118,24 @@ class ExperimentResult(Record, frozen=True):
         for point in self.points:
             by_setting.setdefault(point.setting, {})[point.name] = point
         for setting, points in by_setting.items():
-            yield setting, [cell(points[name]) if name in points else "" for name in self.properties]
+            cells = []
+            for name in self.properties:
+                cells.append(cell(points[name]) if name in points else "")
+                for source in self._sources(name):
+                    values = (v for v in self.beside if v.source == source and v.name == name and v.is_at(setting))
+                    cells.append(", ".join(_beside_cell(value) for value in values))
+            yield setting, cells
+
+    def _sources(self, name: str) -> tuple[str, ...]:
+        """The sources of values from elsewhere for a property."""
+        return tuple(dict.fromkeys(value.source for value in self.beside if value.name == name))
+
+    def _columns(self, written: Callable[[str], str] = str) -> Iterator[str]:
+        """The heads of the columns of all properties."""
+        for name in self.properties:
+            yield written(name)
+            for source in self._sources(name):
+                yield source if len(self.properties) == 1 else f"{written(name)}, {source}"
 
     def notes(self) -> list[str]:
         """Sentences without a full stop: what the values mean, and what limits them."""
@@ -182,11 +203,33 @@ class ExperimentResult(Record, frozen=True):
             Series(name, tuple(sorted(points, key=lambda point: point.x)), has_line=numbers is not None)
             for name, points in lines.items()
         )
+        series += tuple(self._beside_series(names, across, others, place))
         name = _with_unit(across.name, units)
         x = PlotAxis(name) if numbers is not None else PlotAxis(name, words=across.values)
         by = " and ".join(sweep.name for sweep in (across, *others))
         title = f"{', '.join(names)} by {by}"
         return LinePlot(title, x, self._axis(names), series, self._plot_notes(across))
+
+    def _beside_series(
+        self, names: Sequence[str], across: Sweep, others: Sequence[Sweep], place: Mapping[str, float]
+    ) -> Iterator[Series]:
+        """The values from elsewhere, as marks without a line. They need not have the place of a point,
+        if the values of the parameter are numbers."""
+        marks: dict[str, list[PlotPoint]] = {}
+        for value in self.beside:
+            setting = dict(value.setting)
+            x = next((at for text, at in place.items() if is_same(text, setting[across.name])), None)
+            if x is None and across.numbers is not None:
+                number = exact_fraction(setting[across.name])
+                x = float(number) if number is not None else None
+            if value.name in names and x is not None:
+                words = [value.source, *([value.name] if len(names) > 1 else [])]
+                words += [f"{other.name} = {setting[other.name]}" for other in others if other.name in setting]
+                where = ", ".join(f"{name} = {text}" for name, text in value.setting)
+                note = f"{value.source}: {value.name} {_beside_cell(value)} at {where}"
+                marks.setdefault(", ".join(words), []).append(PlotPoint(x, value.value, value.low, value.high, note))
+        for name, points in marks.items():
+            yield Series(name, tuple(sorted(points, key=lambda point: point.x)), has_line=False)
 
     def _plot_notes(self, across: Sweep) -> tuple[str, ...]:
         fixed = [f"{s.name} = {s.values[0]}" for s in self.sweeps if len(s.values) == 1 and s is not across]
@@ -195,6 +238,7 @@ class ExperimentResult(Record, frozen=True):
     def _axis(self, names: Sequence[str]) -> PlotAxis:
         """The axis of the values. It is that of probabilities if all of them are between 0 and 1."""
         values = [p.value for p in self.points if p.name in names and p.has_value]
+        values += [value.value for value in self.beside if value.name in names]
         if all(0 <= value <= 1 for value in values):
             return PlotAxis("probability", limits=(0.0, 1.0))
         return PlotAxis("value")
@@ -217,9 +261,20 @@ class ExperimentResult(Record, frozen=True):
             rows,
             tuple(tuple(point.value for point in row) for row in grid),
             self._axis((name,)).name,
-            self._plot_notes(across),
+            (*self._plot_notes(across), *self._beside_notes(name)),
             keys=tuple(tuple(point.key for point in row) for row in grid),
         )
+
+    def _beside_notes(self, name: str) -> Iterator[str]:
+        """The values from elsewhere, as sentences without a full stop, for a plot without marks."""
+        for source in self._sources(name):
+            values = [value for value in self.beside if value.name == name and value.source == source]
+            shown = (
+                f"{_beside_cell(value)} at {', '.join(f'{n} = {v}' for n, v in value.setting)}"
+                for value in values[:MAX_LINES]
+            )
+            more = f"; and {len(values) - MAX_LINES} more" if len(values) > MAX_LINES else ""
+            yield f"{source}: {'; '.join(shown)}{more}"
 
     @property
     def page_title(self) -> str:
@@ -227,7 +282,7 @@ class ExperimentResult(Record, frozen=True):
 
     def to_html_table(self) -> str:
         """The points and notes in HTML."""
-        head = [*(sweep.name for sweep in self.sweeps), *self.properties]
+        head = [*(sweep.name for sweep in self.sweeps), *self._columns()]
         rows = [[*(value for _, value in setting), *cells] for setting, cells in self._cells()]
         body = "".join(f"<tr>{''.join(f'<td>{escape(text)}</td>' for text in row)}</tr>\n" for row in rows)
         notes = "".join(f"<p>{escape(note)}.</p>\n" for note in self.notes())
@@ -243,6 +298,12 @@ class ExperimentResult(Record, frozen=True):
 
 def _with_unit(name: str, units: Mapping[str, str]) -> str:
     return f"{name} ({units[name]})" if name in units else name
+
+
+def _beside_cell(value: BesideValue) -> str:
+    """A value from elsewhere, with its interval."""
+    has_interval = value.low is not None and value.high is not None
+    return f"{value.value:g}" + (f" in [{value.low:g}, {value.high:g}]" if has_interval else "")
 
 
 def _ascending(sweep: Sweep) -> tuple[str, ...]:
