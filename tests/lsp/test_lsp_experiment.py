@@ -41,3 +41,17 @@ async def test_a_number_of_a_system_becomes_a_parameter(tmp_path: Path) -> None:
         (parameter,) = (await ask(client, EXPERIMENT, document))["parameters"]
         assert (parameter["value"], parameter["limits"]) == (number["text"], "")
         assert f"Try other values of {parameter['name']}" in await lenses(client, main)
+
+
+async def test_a_file_with_arguments_is_checked_and_run(tmp_path: Path) -> None:
+    for name in ("battery", "delivery_robot"):
+        shutil.copytree(EXAMPLES / name, tmp_path / name)
+    file = tmp_path / "battery/battery.experiment.toml"
+    text = file.read_text(encoding="utf-8")
+    async with connect(tmp_path, options={"experiment": "editor.experiment"}) as client:
+        client.open(file, text.replace("capacity", "capacty"), language="toml")
+        (found,) = await client.until_codes(file, "invalid-setting")
+        assert "did you mean `capacity`?" in found.message
+        client.replace(file, text)
+        await client.until_codes(file)
+        assert await lenses(client, file) == ["Run the experiment"]

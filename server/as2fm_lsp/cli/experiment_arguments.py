@@ -25,12 +25,12 @@ from roaml.exhaustive import Vocabulary
 from roaml.experiments.beside import BesideError, BesideValue, read_beside
 from roaml.experiments.grid import ExperimentOptions, Grid
 from roaml.figures.themes import AUTOMATIC, THEMES
-from roaml.model.kinds import mocks_path
+from roaml.model.kinds import EXPERIMENT_SUFFIX, mocks_path
+from roaml.project.experiment_file import KEYS, KeyForm, key_name
 from roaml.suggest import close_names, did_you_mean
 from roaml.toml import TomlError, loads
 from roaml.verification.expectations import Expectation
 
-SUFFIX = ".experiment.toml"
 EXAMPLES = """\
 examples:
   as2fm-lsp experiment main.xml --set capacity=20:200:20 --property delivered
@@ -48,7 +48,7 @@ states which.
 exit status: 0 success; 1 a point has no value, or the model has errors; 2 usage error; 3 internal error; 130
 interrupted (143 by SIGTERM)
 """
-_LISTS = ("set", "property", "plot", "unit", "ros-path", "params-file", "mock", "entry", "beside")
+_LISTS = tuple(name for name, key in KEYS.items() if key.form is KeyForm.ENTRIES)
 """The options that may be repeated, and are lists or tables in a file."""
 _NAMED = ("set", "unit", "entry")
 """The options that are named entries: one on the command line replaces the one with its name in a file."""
@@ -75,7 +75,7 @@ def parser() -> ArgumentParser:
     add(
         "main",
         type=InputPath,
-        metavar=f"MAIN.xml|TREE.xml|MODEL.jani|FILE{SUFFIX}",
+        metavar=f"MAIN.xml|TREE.xml|MODEL.jani|FILE{EXPERIMENT_SUFFIX}",
         help="a system; a tree, whose mocks use the parameters; a JANI model, whose constants are its parameters; or a "
         "file with all arguments",
     )
@@ -136,7 +136,7 @@ def parsed(arguments: Sequence[str]) -> argparse.Namespace:
         UsageError: the file is not valid.
     """
     options = parser().parse_args(arguments)
-    if not options.main.endswith(SUFFIX):
+    if not options.main.endswith(EXPERIMENT_SUFFIX):
         return options
     path = str(options.main)
     rest = list(arguments)
@@ -156,16 +156,21 @@ def _arguments_in(path: str, given: argparse.Namespace) -> list[str]:
     if not isinstance(model, str):
         raise UsageError(f'{path}: the file names no model; add `model = "main.xml"`')
     folder = os.path.dirname(path)
-    actions = {action.dest: action for action in parser()._actions if action.option_strings}
+    actions = {
+        option.removeprefix("--"): action
+        for action in parser()._actions
+        for option in action.option_strings
+        if option.startswith("--")
+    }
     arguments = [os.path.join(folder, model)]
     for key, value in values.items():
-        action = actions.get(key.replace("-", "_"))
+        action = actions.get(key_name(key))
         if action is None or key == "help":
             raise UsageError(f"{path}: there is no option `{key}`{did_you_mean(close_names(key, actions))}")
         if key in _REPLACED and (getattr(given, key) or (key == "property" and given.find is not None)):
             continue
-        option = action.option_strings[-1] if len(key) == 1 else f"--{key.replace('_', '-')}"
-        named = {_entry_name(text) for text in getattr(given, action.dest)} if key in _NAMED else set()
+        option = f"--{key_name(key)}"
+        named = {_entry_name(text) for text in getattr(given, action.dest)} if action.dest in _NAMED else set()
         for text in _texts(path, key, value):
             if isinstance(text, str) and _entry_name(text) in named:
                 continue

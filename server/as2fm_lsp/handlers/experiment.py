@@ -4,7 +4,7 @@ parameter; lenses that begin an experiment.
 
 The client runs `as2fm-lsp experiment --live` itself, as it runs the debug adapter. A client that can do this names its
 command in its initialization options, as `experiment`: it is called with the URI of a system, and the name of a
-parameter, which may be missing.
+parameter, which may be missing; or with the URI of a file that contains the arguments of an experiment.
 """
 
 from __future__ import annotations
@@ -22,12 +22,13 @@ from as2fm_lsp.handlers.workspace_edit import workspace_edit
 from roaml.ide.code_actions.new_parameter import actions
 from roaml.ide.experiment import numbers_of, parameters_of, properties_of
 from roaml.ide.verifiable import verifiable
+from roaml.model.kinds import EXPERIMENT_SUFFIX
 from roaml.project.paths import is_on_disk
 from roaml.text import Span
 
 EXPERIMENT = "as2fm/experiment"
 NEW_PARAMETER = "as2fm/newParameter"
-TITLE = "Experiment"
+TITLE, RUN_TITLE = "Experiment", "Run the experiment"
 
 
 class AskedParameter(TypedDict):
@@ -100,8 +101,12 @@ def register(context: Context) -> None:
 
 
 def lenses(context: Context, on: RequestedDocument, broken: Collection[str]) -> Iterator[types.CodeLens]:
-    """Lenses that begin an experiment: for a system with properties, and for each of its parameters."""
+    """Lenses that begin an experiment: for a system with properties, and for each of its parameters; for a file that
+    contains the arguments of an experiment."""
     file, command = on.analysis.system_file(on.path), context.client.experiment
+    if command and on.path.endswith(EXPERIMENT_SUFFIX) and is_on_disk(on.path):
+        run = types.Command(RUN_TITLE, command, arguments=[on.convert.uri(on.path)])
+        yield types.CodeLens(on.range(Span(0, 0)), run)
     if not command or file is None or on.path in broken or not is_on_disk(on.path):
         return
     if not verifiable(on.analysis, on.path):

@@ -24,6 +24,7 @@ class FileKind(enum.Enum):
     INTERFACE = "ROS interface definition"
     MOCKS = "mocks of a tree"
     CONFIGURATION = "configuration of as2fm"
+    EXPERIMENT = "arguments of an experiment"
     SPECIFICATION = "specification of another tool"
     UNKNOWN = "file of another kind"
 
@@ -43,7 +44,17 @@ MOCKS_EXTENSION = ".mocks"
 PROJECT_EXTENSION = ".btproj"
 """The extension of Groot2 projects, which list files of trees. A project is read if a tree in its directory is read. It
 is never changed."""
-EXTENSIONS = (*MACHINE_EXTENSIONS, ".xml", ".jani", ".json", *INTERFACE_EXTENSIONS, MOCKS_EXTENSION)
+EXPERIMENT_SUFFIX = ".experiment.toml"
+"""The end of the name of the files with the arguments of an experiment."""
+EXTENSIONS = (
+    *MACHINE_EXTENSIONS,
+    ".xml",
+    ".jani",
+    ".json",
+    *INTERFACE_EXTENSIONS,
+    MOCKS_EXTENSION,
+    EXPERIMENT_SUFFIX,
+)
 """The extensions of files that are searched for. Files with other extensions are read only if a user or a file names
 them."""
 
@@ -92,6 +103,8 @@ def kind_of(path: str, text: str) -> FileKind:
     name = path.replace("\\", "/").rpartition("/")[2]
     if name == CONFIG_FILE or (name == PROJECT_FILE and _OUR_TABLE.search(text)):
         return FileKind.CONFIGURATION
+    if name.endswith(EXPERIMENT_SUFFIX):
+        return FileKind.EXPERIMENT
     extension = f".{path.rpartition('.')[2].lower()}"
     if extension in INTERFACE_EXTENSIONS:
         return FileKind.INTERFACE

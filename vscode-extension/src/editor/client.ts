@@ -30,8 +30,8 @@ const SELECTOR: DocumentSelector = [
     { scheme: "file", pattern: "**/*.{msg,srv,action}" },
     // Results and pictures of a tree follow its mocks while they are edited.
     { scheme: "file", pattern: "**/*.mocks" },
-    // Errors in the configuration are shown while it is edited.
-    { scheme: "file", pattern: "**/{as2fm,pyproject}.toml" },
+    // Errors in the configuration, and in the arguments of an experiment, are shown while they are edited.
+    { scheme: "file", pattern: "**/{as2fm,pyproject,*.experiment}.toml" },
 ];
 
 /** The command with which lenses of the server show locations. Its arguments have the types of LSP. */

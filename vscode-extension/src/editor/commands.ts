@@ -139,7 +139,7 @@ export function registerCommands(parts: Parts): void {
             const uri = server.client?.protocol2CodeConverter.asUri(model);
             return uri && parts.debugging.start(uri, attributes);
         }),
-        // Called from a lens with a system, from the explorer with a file, and from the palette without arguments.
+        // Called from a lens with a system or file, from the explorer with a file, from the palette without arguments.
         vscode.commands.registerCommand(EXPERIMENT, (of?: string | vscode.Uri, parameter?: unknown) => {
             parts.activation.need();
             return experiment(parts, of, typeof parameter === "string" ? parameter : undefined);
@@ -288,8 +288,8 @@ async function showVersions({ context, server }: Parts): Promise<void> {
 /** Run the experiment of a file, or ask for one of a system. */
 async function experiment(parts: Parts, of: string | vscode.Uri | undefined, parameter?: string): Promise<void> {
     const document = vscode.window.activeTextEditor?.document;
-    const file = of instanceof vscode.Uri ? of : document?.uri;
-    if (typeof of !== "string" && file?.path.endsWith(EXPERIMENT_FILE)) {
+    const file = typeof of === "string" ? vscode.Uri.parse(of) : (of ?? document?.uri);
+    if (file?.path.endsWith(EXPERIMENT_FILE)) {
         await parts.experiments.openFile(file);
         return;
     }

@@ -10,12 +10,13 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Symbol
 from roaml.distributions.laws import HISTOGRAM, LAWS
+from roaml.ide.completion.experiments import experiment_keys, experiment_values
 from roaml.ide.completion.item import CompletionItem, ItemKind, Rank
 from roaml.interfaces import PRIMITIVES
 from roaml.mocks.likeness import library_parents, needs_likeness
 from roaml.mocks.mock import KEYWORD
 from roaml.model.config_files import CONFIG_FILE
-from roaml.model.kinds import MOCKS_EXTENSION, FileKind
+from roaml.model.kinds import EXPERIMENT_SUFFIX, MOCKS_EXTENSION, FileKind
 from roaml.model.tree import nodes
 from roaml.project.analysis import Analysis
 from roaml.project.paths import name_of
@@ -27,6 +28,7 @@ from roaml.text import Span
 
 _IN_SUPPRESSION = regex(r"as2fm:\s*ignore\s*\[[^\]<>]*\Z")
 _WORD_BEFORE = regex(r"[\w/-]*\Z", re.ASCII)
+_VALUE_BEFORE = regex(r"[\w/.-]*\Z", re.ASCII)
 _WORD_AFTER = regex(r"[\w/-]*", re.ASCII)
 _KEY = regex(r"\s*([\w-]*)\Z", re.ASCII)
 _VALUE = regex(r"^\s*([\w.-]+)\s*=[^=]*\Z", re.ASCII)
@@ -49,6 +51,9 @@ def in_lines(analysis: Analysis, path: str, offset: int) -> tuple[Span, list[Com
     if name_of(path) == CONFIG_FILE:
         items = list(_in_configuration(text[:offset], line))
         return (_word(text, offset), items) if items else None
+    if path.endswith(EXPERIMENT_SUFFIX):
+        items = list(_in_experiment(analysis, path, text[:offset], line))
+        return (_word(text, offset, _VALUE_BEFORE if "=" in line else _WORD_BEFORE), items) if items else None
     if path.endswith(MOCKS_EXTENSION):
         if "#" not in line and (likes := list(_likes(analysis, path, line))):
             return _word(text, offset), likes
@@ -60,8 +65,8 @@ def in_lines(analysis: Analysis, path: str, offset: int) -> tuple[Span, list[Com
     return None
 
 
-def _word(text: str, offset: int) -> Span:
-    before, after = _WORD_BEFORE.search(text, 0, offset), _WORD_AFTER.match(text, offset)
+def _word(text: str, offset: int, word: re.Pattern[str] = _WORD_BEFORE) -> Span:
+    before, after = word.search(text, 0, offset), _WORD_AFTER.match(text, offset)
     assert before is not None
     assert after is not None
     return Span(before.start(), after.end())
@@ -74,8 +79,7 @@ def _codes() -> Iterator[CompletionItem]:
 
 def _in_configuration(before: str, line: str) -> Iterator[CompletionItem]:
     """Settings at the beginning of a line; codes and other words where a setting has them as values."""
-    table = re.findall(r"^\s*\[\s*([\w.-]+)\s*\]", before, re.MULTILINE)
-    section = table[-1] if table else ""
+    section = _section(before)
     value = _VALUE.match(_statement(before))
     if value is not None:
         if value[1] in _CODE_SETTINGS:
@@ -91,6 +95,24 @@ def _in_configuration(before: str, line: str) -> Iterator[CompletionItem]:
             yield from _codes()
         for name in TABLES_OF_SETTINGS.get(section, ()):
             yield CompletionItem(name, ItemKind.ATTRIBUTE, detail=SETTING_DOCUMENTATION[_within(section, name)])
+
+
+def _in_experiment(analysis: Analysis, path: str, before: str, line: str) -> Iterator[CompletionItem]:
+    """Keys and names of parameters at the beginning of a line; values and names where a key has them."""
+    section = _section(before)
+    value = _VALUE.match(_statement(before))
+    if value is not None and not section:
+        is_quoted = line.count('"') % 2 == 1
+        for word, about in experiment_values(analysis, path, value[1]):
+            yield CompletionItem(word, ItemKind.VALUE, word if is_quoted else f'"{word}"', about)
+    elif _KEY.fullmatch(line):
+        yield from experiment_keys(analysis, path, section)
+
+
+def _section(before: str) -> str:
+    """The table that contains the end of a text; "" before the first one."""
+    table = re.findall(r"^\s*\[\s*([\w.-]+)\s*\]", before, re.MULTILINE)
+    return table[-1] if table else ""
 
 
 def _within(section: str, name: str) -> str:

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 
 from roaml.ide.describe import describe
 from roaml.ide.describe.markdown import paragraphs
+from roaml.ide.hover.experiment_key import experiment_key_at
 from roaml.ide.hover.expression import in_expression
 from roaml.ide.hover.library_node import of_library
 from roaml.ide.hover.listed_file import listed_file
@@ -24,7 +25,7 @@ from roaml.ide.hover.setting import setting_at
 from roaml.ide.hover.tree import tree_node
 from roaml.ide.hover.xml_property_file import compared_number, property_tag
 from roaml.model.config_files import CONFIG_FILES
-from roaml.model.kinds import MOCKS_EXTENSION, FileKind
+from roaml.model.kinds import EXPERIMENT_SUFFIX, MOCKS_EXTENSION, FileKind
 from roaml.project.analysis import Analysis
 from roaml.project.paths import name_of
 from roaml.record import Record
@@ -49,6 +50,10 @@ def hover(analysis: Analysis, path: str, offset: int) -> Hover | None:
         source = analysis.source(path)
         setting = None if source is None else setting_at(path, source.text, offset)
         return None if setting is None else Hover(*setting)
+    if path.endswith(EXPERIMENT_SUFFIX):
+        source = analysis.source(path)
+        key = None if source is None else experiment_key_at(analysis, source, offset)
+        return None if key is None else Hover(*key)
     if path.endswith(MOCKS_EXTENSION):
         source = analysis.source(path)
         mock = None if source is None else mock_at(source.text, offset)

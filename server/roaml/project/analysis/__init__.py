@@ -15,7 +15,8 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING
 
 from roaml.forest.settings import NEWEST, TreeSettings
 from roaml.interfaces.registry import Registry
@@ -36,6 +37,9 @@ from roaml.project.memo import Memo
 from roaml.project.ros_types import Interfaces
 
 __all__ = ["NO_STRUCTS", "Analysis", "Expanded", "Structs"]
+
+if TYPE_CHECKING:
+    from roaml.project.experiment_file import AskedModel
 
 
 class Analysis:
@@ -88,7 +92,10 @@ class Analysis:
         values = ReachedValues(sources, interfaces, self._systems, linking)
         self.arriving_at = values.arriving_at
         self.values_in = values.values_in
-        rooms = Rooms(sources, interfaces, tree_files, self._systems, families, machines, gaps, linking, values)
+        self.asked = functools.partial(_asked, self._systems, expansions.system)
+        rooms = Rooms(
+            sources, interfaces, tree_files, self._systems, families, machines, gaps, linking, values, self.asked
+        )
         subjects = Subjects(rooms, expansions.system, expansions.file)
         self.present = subjects.present
         self.checked_file = subjects.checked_file
@@ -121,6 +128,7 @@ class Analysis:
 
     def _open_systems(self, systems: Systems, machines: Machines, gaps: Gaps, linking: Linking) -> None:
         self.system_paths = systems.paths
+        self.property_names = systems.property_names
         self.listed = systems.listed
         self.kind_in = systems.kind_in
         self.tree_paths = systems.tree_paths
@@ -146,6 +154,18 @@ class Analysis:
     def memberships(self) -> Mapping[str, tuple[str, ...]]:
         """File -> its systems."""
         return self._systems.memberships
+
+
+def _asked(systems: Systems, expanded: Callable[[str], Expanded[Analysis] | None], model: str) -> AskedModel | None:
+    """The names that an experiment with a system can use; `None` if the file is not a known system."""
+    from roaml.project.experiment_file import AskedModel  # noqa: PLC0415 - few projects have experiments
+
+    if model not in systems.paths:
+        return None
+    made = expanded(model)
+    if made is None:
+        return AskedModel((), systems.property_names(model))
+    return AskedModel(tuple(sorted(made.expansion.settable)), made.analysis.property_names(model))
 
 
 def _analysed(registry: Registry, overrides: Overrides, trees: TreeSettings, made: ExpandedFiles) -> Expanded[Analysis]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
-from typing import Generic, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeAlias, TypeVar
 
 from roaml.diagnostics import Finding, Symbol
 from roaml.disk import UnreadableReason
@@ -54,6 +54,9 @@ from roaml.rules.rule import (
 )
 from roaml.text import Location, SourceFile
 from roaml.xml_syntax import Document
+
+if TYPE_CHECKING:
+    from roaml.project.experiment_file import AskedModel
 
 E = TypeVar("E")
 """The analysis of expanded texts."""
@@ -127,7 +130,8 @@ class Inspection(Record, frozen=True, eq=False):
 
 
 class Rooms(Record, frozen=True, eq=False):
-    """The parts of an analysis."""
+    """The parts of an analysis. `asked` returns the names that an experiment with a system can use; `None` if the path
+    is not that of a system."""
 
     sources: SourceFiles
     interfaces: Interfaces
@@ -138,6 +142,7 @@ class Rooms(Record, frozen=True, eq=False):
     gaps: Gaps
     linking: Linking
     values: ReachedValues
+    asked: Callable[[str], AskedModel | None]
 
 
 class Subjects(Generic[E]):
@@ -284,6 +289,8 @@ class _Reader:
                 return (*parts, self._interface_findings())
             case FileKind.MOCKS:
                 return (*parts, self._mock_findings())
+            case FileKind.EXPERIMENT:
+                return (*parts, self._experiment_findings())
         return parts
 
     # -------------------------------------------------------------- contexts
@@ -316,6 +323,8 @@ class _Reader:
                 return FileContext(self.source, self._interface_findings())
             case FileKind.MOCKS:
                 return FileContext(self.source, self._mock_findings())
+            case FileKind.EXPERIMENT:
+                return FileContext(self.source, self._experiment_findings())
             case FileKind.CONFIGURATION:
                 return FileContext(self.source, self._configuration_findings())
         document = self.rooms.sources.document(self.path)
@@ -390,6 +399,11 @@ class _Reader:
 
         files = self.rooms.sources.files
         return tuple(mock_findings(self.source, files.beside, self.rooms.linking.forest, files.text))
+
+    def _experiment_findings(self) -> tuple[Finding, ...]:
+        from roaml.project.experiment_file import experiment_findings  # noqa: PLC0415 - few projects have experiments
+
+        return tuple(experiment_findings(self.source, self.rooms.sources.files.text, self.rooms.asked))
 
     def _configuration_findings(self) -> tuple[Finding, ...]:
         configuration = self.rooms.sources.configuration(self.path)

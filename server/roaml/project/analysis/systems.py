@@ -117,6 +117,10 @@ class Systems:
                 systems_by_file.setdefault(path, []).append(system)
         return {path: tuple(systems) for path, systems in systems_by_file.items()}
 
+    def property_names(self, system: str) -> tuple[str, ...]:
+        """The names of the properties of a system that is not expanded."""
+        return tuple(name for name, _ in self.names_before("", system))
+
     def names_before(self, path: str, system: str) -> Iterator[tuple[str, str]]:
         """The names of the properties in the files that `system` lists before the file `path`, each with the name of
         its file for messages."""
