@@ -56,6 +56,19 @@ def test_a_closed_form() -> None:
     assert safe.slopes[0][1] == pytest.approx(won.slopes[0][1], abs=1e-6)
 
 
+def test_no_derivative_is_a_negative_zero() -> None:
+    """A property that holds or fails, whatever the parameter is, also if it is negated."""
+    written = gambler()
+    written["properties"] = document(properties={"low": probability(op("G", op("<", "x", 9)))})["properties"]
+    grid = Grid(
+        ParametricJani(model(written), ""),
+        sweeps_of(["p=0.2,0.3", "q=0.5"]),
+        ("low",),
+        ExperimentOptions(has_slopes=True),
+    )
+    assert [str(slope) for point in grid.points() for _, slope in point.slopes] == ["0.0", "0.0"]
+
+
 @given(networks())
 def test_differences_of_exact_values(written: Json) -> None:
     grid = Grid(
@@ -105,3 +118,9 @@ def test_points_without_derivatives_state_the_reason() -> None:
     border = points[("p", "0.2"), ("q", "0")]
     assert (border.slopes, border.value) == ((), pytest.approx(1))
     assert "a probability is 0 or 1 here" in border.note
+    grid = Grid(ParametricJani(model(gambler()), ""), sweeps_of(["p=0.2", "q=0.5"]), ("won",), options)
+    (alone,) = grid.points()
+    assert (
+        alone.note
+        == "no derivative: no parameter has several values; give the one to derive by at least two, such as 0.3,0.31"
+    )

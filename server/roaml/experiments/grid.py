@@ -152,7 +152,7 @@ class Grid(Record, frozen=True):
         for setting, name in left:
             by_setting.setdefault(setting, []).append(name)
         for point in _computed(self._tasks(by_setting), jobs, executor):
-            yield _without_slopes(point) if self.options.has_slopes else point
+            yield self._without_slopes(point) if self.options.has_slopes else point
 
     def _tasks(self, names: Mapping[Setting, Sequence[str]]) -> list[_Task]:
         """The tasks for the properties of some settings."""
@@ -183,6 +183,14 @@ class Grid(Record, frozen=True):
         fixed = tuple((sweep.name, sweep.values[0]) for sweep in self.sweeps if len(sweep.values) == 1)
         chances = self.model.chances(numeric, fixed)
         return None if chances is None else (chances, numeric, fixed)
+
+    def _without_slopes(self, point: ExperimentPoint) -> ExperimentPoint:
+        """A point that is computed alone, with the reason why it has no derivatives."""
+        if any(len(sweep.values) > 1 for sweep in self.sweeps):
+            reason = "more than probabilities depends on the parameters, or a probability is 0 or 1 here"
+        else:
+            reason = "no parameter has several values; give the one to derive by at least two, such as 0.3,0.31"
+        return replace(point, note="; ".join(part for part in (point.note, f"no derivative: {reason}") if part))
 
     def _parametric(self, name: str, settings: Sequence[Setting]) -> ParametricSpace | None:
         """The states that the points of a property share; `None` if they share none."""
@@ -234,12 +242,6 @@ def _with_slopes(space: ParametricSpace, point: ExperimentPoint) -> ExperimentPo
         return replace(point, slopes=derivative(space, point.setting, space.names).slopes)
     except NoDerivativeError as error:
         return replace(point, note="; ".join(part for part in (point.note, f"no derivative: {error}") if part))
-
-
-def _without_slopes(point: ExperimentPoint) -> ExperimentPoint:
-    """A point that is computed alone, with the reason why it has no derivatives."""
-    reason = "no derivative: more than probabilities depends on the parameters, or a probability is 0 or 1 here"
-    return replace(point, note="; ".join(part for part in (point.note, reason) if part))
 
 
 class _Compiled(Record, frozen=True):
