@@ -22,6 +22,10 @@ class OperatorKind(Vocabulary):
     ARITHMETIC = "arithmetic"
 
 
+COMPARING = (OperatorKind.ORDER, OperatorKind.EQUALITY)
+"""The kinds of comparisons."""
+
+
 class Operator(enum.Enum):
     """A binary operator: its spelling, its precedence (greater binds tighter) and its kind."""
 

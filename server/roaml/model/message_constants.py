@@ -298,6 +298,23 @@ def numbered_constants(machine: Machine, typed: TypedMachine) -> Iterator[tuple[
                 yield NumberedConstant(param.name.value, "", str(number)), param.value.tree
 
 
+# ------------------------------------------------------------ named constants
+
+
+class NamedConstant(NamedTuple):
+    """A variable in upper case that always has the same integer, such as `SKILL_SUCCESS`."""
+
+    name: str
+    number: int
+
+
+def named_constants(chart: Chart) -> Iterator[NamedConstant]:
+    if any(data.id is not None and data.id.value.isupper() for data in chart.data):
+        for name, number in fixed_variables(chart).items():
+            if name.isupper() and isinstance(number, Fraction) and number.denominator == 1:
+                yield NamedConstant(name, int(number))
+
+
 def _params(machine: Machine) -> Iterator[Param]:
     for chart in machine.charts:
         for statement in chart.statements:

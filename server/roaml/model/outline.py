@@ -35,9 +35,11 @@ from roaml.model.machine import (
 )
 from roaml.model.message_constants import (
     FieldChoice,
+    NamedConstant,
     NumberedConstant,
     SentConstants,
     field_choices,
+    named_constants,
     numbered_constants,
     sent_constants,
 )
@@ -172,6 +174,7 @@ class MachineOutline(Record, frozen=True, dict=True):
         charts: the outline of the behaviour of each chart; it is empty for a chart that is too large to be analysed.
         choices, constants: the constants with which it compares fields, and which it sends in fields.
         numbered: its constants with a number, if its name contains a number.
+        named: its variables in upper case that always have the same integer.
     """
 
     name: str
@@ -190,6 +193,7 @@ class MachineOutline(Record, frozen=True, dict=True):
     choices: tuple[FieldChoice, ...] = ()
     constants: tuple[SentConstants, ...] = ()
     numbered: frozenset[NumberedConstant] = frozenset()
+    named: frozenset[NamedConstant] = frozenset()
 
     @property
     def takes_part_in_tree(self) -> bool:
@@ -252,6 +256,7 @@ def outline(machine: Machine, typed: TypedMachine, gaps: Iterable[PlacedGap]) ->
         () if known_gaps else field_choices(machine, typed),
         sent_constants(machine),
         frozenset(known for known, _ in numbered_constants(machine, typed)),
+        frozenset(known for chart in machine.charts for known in named_constants(chart)),
     )
 
 

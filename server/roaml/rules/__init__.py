@@ -217,6 +217,7 @@ from roaml.rules.variables import (
     constant_variable,
     copied_value,
     duplicate_data,
+    inconsistent_constant,
     invalid_bounds,
     invalid_name,
     large_array_size,

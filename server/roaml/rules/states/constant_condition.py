@@ -19,6 +19,7 @@ from roaml.model.behavior.knowledge import NOTHING, ConditionFacts, variables_in
 from roaml.model.machine import Assign, Chart, Handler, If, RosSend, Send, SetOutput, State, Statement, bodies
 from roaml.model.property_links import LinkedFile
 from roaml.model.syntax import Expression
+from roaml.model.syntax import Name as SyntaxName
 from roaml.model.triggers import trigger
 from roaml.model.value_types import ValuePlace, ValueUse, find_handle
 from roaml.model.values.analyse import ChartValues, DataChannel, MachineValues, analyse, of_type
@@ -28,7 +29,7 @@ from roaml.model.values.domain import FALSE, MAX_LISTED, TRUE, Origin, ValueSet,
 from roaml.model.values.evaluate import compared, place_of
 from roaml.observers.properties import Pattern
 from roaml.roles import ProtocolPart
-from roaml.rules.rule import MachineContext, Rule, TreeContext, close_names
+from roaml.rules.rule import MachineContext, Rule, TreeContext, close_names, replacements
 from roaml.rules.support.assignments import is_unchanged
 from roaml.rules.support.entries import entries_of
 from roaml.rules.support.forest import trees_of
@@ -61,7 +62,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         causes = _causes(context, findings)
         findings = {span: finding for span, finding in findings.items() if span in causes}
     for span, finding in findings.items():
-        yield _at_step(context, span) or finding
+        yield _at_step(context, span) or _at_target(context, span) or finding
     yield from _never_sent(context, findings.keys())
     yield from _beyond_type(context, findings.keys())
     yield from _decided_values(context)
@@ -534,6 +535,65 @@ def _at_step(context: MachineContext, span: Span) -> Finding | None:
                 why = _because(_why(values, cond.tree))
                 return RULE.at(where, f"{message}{why}; change one of them", related=[Related(span, "always true")])
     return None
+
+
+def _at_target(context: MachineContext, span: Span) -> Finding | None:
+    """The finding about a condition at `span` that is constant because a handler assigns another value to a variable of
+    the condition and then does not go to its state, as another handler with such an assignment does."""
+    for chart in context.machine.charts:
+        values = context.local_values.charts.get(chart.scope)
+        known = values.conditions.get(span) if values is not None else None
+        reader = next((s for s in chart.states if s.id is not None and s.element.span.contains(span.start)), None)
+        cond = next((cond for cond, _ in _guarded(chart) if cond.span == span), None)
+        if values is None or known is None or reader is None or reader.id is None or cond is None:
+            continue
+        own = reader.id.value
+        for node in walk(cond.tree):
+            only = values.at(node) if isinstance(node, Name) else None
+            if not isinstance(node, Name) or only is None or only.value is None:
+                continue
+            for state in chart.states:
+                lost, right = _leading(values, state, node.name, only.value, own)
+                if len(lost) != 1 or not right or state is reader:
+                    continue
+                target, assigned = lost[0]
+                text = " ".join(cond.text.split())
+                how = "always" if known.alone == TRUE else "never"
+                message = (
+                    f"`{node.name}` gets a new value here, but this goes to `{target.value}` instead of `{own}`, so "
+                    f"the condition `{text}` in `{own}` is {how} true; did you mean `{own}`?"
+                )
+                related = [
+                    Related(assigned.element.name_span, "assigned here"),
+                    Related(right[0].span, f"goes to `{own}`"),
+                    Related(span, f"{how} true"),
+                ]
+                return RULE.at(target.span, message, *replacements(target.span, (own,)), related=related)
+    return None
+
+
+def _leading(
+    values: ChartValues, state: State, name: str, only: object, reader: str
+) -> tuple[list[tuple[SyntaxName, Assign]], list[SyntaxName]]:
+    """Of the handlers of a state that assign a constant to the variable `name`: the targets other than `reader` of
+    those that assign another value than `only`, with the assignments, and the targets that are `reader`. The former
+    handle something of the same interface as one of the latter."""
+    lost: list[tuple[SyntaxName, Assign, str]] = []
+    right: dict[str, SyntaxName] = {}
+    for handler in state.handlers:
+        handle = handler.handle.value if handler.handle is not None else ""
+        for target in handler.targets if handle else ():
+            for statement in target.body:
+                if not isinstance(statement, Assign) or statement.location is None or target.state is None:
+                    continue
+                value = values.at(statement.value.tree) if isinstance(statement.value, Expression) else None
+                if place_of(statement.location.tree) != name or value is None or value.value is None:
+                    continue
+                if target.state.value == reader:
+                    right.setdefault(handle, target.state)
+                elif value.value != only:
+                    lost.append((target.state, statement, handle))
+    return [(target, assigned) for target, assigned, handle in lost if handle in right], [*right.values()]
 
 
 def _begins_beyond(values: ChartValues, tree: Expr) -> bool:

@@ -7,6 +7,9 @@ from roaml.regex import regex
 
 _WORD = regex(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 
+LIMITS = frozenset(("max", "min", "maximum", "minimum", "limit", "threshold"))
+"""A word in the name of a constant with which a variable is compared."""
+
 
 def words_of(name: str) -> list[str]:
     """The words of a name such as `battery_level` or `BatteryLevel`, in lower case."""

@@ -27,6 +27,7 @@ from roaml.record import replace
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule, TreeContext, replacements
 from roaml.rules.support.forest import trees_of
+from roaml.rules.support.odd_constants import odd_constants
 from roaml.rules.support.words import difference, with_word
 from roaml.text import Span, TextEdit
 
@@ -57,7 +58,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     reported.add(finding.span)
                     yield finding
         yield from _constant_fields(context, chart)
-        yield from _equal_constants(chart)
+        yield from _equal_constants(context, chart)
 
 
 def _named(
@@ -151,7 +152,7 @@ def _equal_changes(body: Sequence[Statement]) -> Iterator[Finding]:
             yield RULE.at(tree.right.span, message, related=[Related(earlier.element.name_span, "the same change")])
 
 
-def _equal_constants(chart: Chart) -> Iterator[Finding]:
+def _equal_constants(context: MachineContext, chart: Chart) -> Iterator[Finding]:
     """Report two constants whose names differ in one word, such as `SKILL_SUCCESS` and `SKILL_FAILURE`, if they have
     the same value and are sent in the same field: its receivers cannot distinguish them."""
     fixed = fixed_variables(chart)
@@ -163,9 +164,12 @@ def _equal_constants(chart: Chart) -> Iterator[Finding]:
             tree = param.value.tree if isinstance(param.value, Expression) and not param.value.broken else None
             if isinstance(tree, NameExpr) and tree.name.isupper() and tree.name in fixed and param.name is not None:
                 sent.setdefault(f"{statement.handle.value} {param.name.value}", set()).add(tree.name)
+    odd = odd_constants(context, chart) if sent else {}  # inconsistent-constant reports these with their value
     first: dict[object, Data] = {}
     for data in chart.data:
         if data.id is None or not data.id.value.isupper() or data.id.value not in fixed or data.value is None:
+            continue
+        if data.id.value in odd:
             continue
         if not any(
             data.id.value in names and _is_enumeration([fixed[name] for name in names]) for names in sent.values()

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.expr.format import format_expr
 from roaml.expr.infer import constant
-from roaml.expr.operators import Operator, OperatorKind, UnaryOperator
+from roaml.expr.operators import COMPARING, Operator, OperatorKind, UnaryOperator
 from roaml.expr.tree import Binary, Boolean, Name, Unary, access_path, walk
 from roaml.expr.types import Type
 from roaml.model.behavior.knowledge import variables_in
@@ -34,7 +34,7 @@ from roaml.model.values.evaluate import place_of
 from roaml.model.waits import fixed_variables
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule, replacements
-from roaml.rules.support.words import difference, with_word, words_of
+from roaml.rules.support.words import LIMITS, difference, with_word, words_of
 from roaml.scxml.names import STATUSES
 from roaml.text import Span, TextEdit
 
@@ -231,14 +231,11 @@ def _forms(body: Iterable[Statement], cond: Expression | None = None) -> dict[tu
                 match node:
                     case Unary(operator=UnaryOperator.NOT, operand=Name() as operand):
                         inside[id(operand)] = "not"
-                    case Binary(operator=operator, left=left, right=right) if operator.kind in _COMPARING:
+                    case Binary(operator=operator, left=left, right=right) if operator.kind in COMPARING:
                         inside |= dict.fromkeys(map(id, (left, right)), operator.symbol)
                     case Name(name=name):
                         forms.setdefault(("cond", name), set()).add(inside.get(id(node), ""))
     return forms
-
-
-_COMPARING = (OperatorKind.ORDER, OperatorKind.EQUALITY)
 
 
 def _add(uses: dict[tuple[str, str], Span], role: str, value: Value | None) -> None:
@@ -305,7 +302,7 @@ def _pairs(context: MachineContext, chart: Chart) -> Iterator[Finding]:
         for value in context.typed.values
         if value.place.chart is chart and isinstance(value.value, Expression) and not value.value.broken
         for node in walk(value.value.tree)
-        if isinstance(node, Binary) and node.operator.kind in (OperatorKind.ORDER, OperatorKind.EQUALITY)
+        if isinstance(node, Binary) and node.operator.kind in COMPARING
         if isinstance(node.left, Name) and isinstance(node.right, Name)
     ]
     written = {(left.name, right.name, operator) for left, right, operator in comparisons}
@@ -326,15 +323,11 @@ def _pairs(context: MachineContext, chart: Chart) -> Iterator[Finding]:
         yield RULE.at(right.span, message, *replacements(right.span, (meant,)), related=related)
 
 
-_LIMITS = frozenset(("max", "min", "maximum", "minimum", "limit", "threshold"))
-"""A word in the name of a constant with which a variable is compared."""
-
-
 def _bounds(chart: Chart, types: Mapping[str, Type]) -> Iterator[Finding]:
     """Comparisons of a variable with a constant, although nothing reads a constant with the name of the variable, such
     as `max_tries` for `tries`."""
     fixed = fixed_variables(chart)
-    limits = {name: frozenset(words_of(name)) - _LIMITS for name in fixed if not _LIMITS.isdisjoint(words_of(name))}
+    limits = {name: frozenset(words_of(name)) - LIMITS for name in fixed if not LIMITS.isdisjoint(words_of(name))}
     if not limits:
         return
     expressions = [value for value in _values(chart) if not value.broken]
@@ -342,7 +335,7 @@ def _bounds(chart: Chart, types: Mapping[str, Type]) -> Iterator[Finding]:
     unread = {name: words for name, words in limits.items() if words and name not in read}
     for value in expressions if unread else ():
         for node in walk(value.tree):
-            if not isinstance(node, Binary) or node.operator.kind not in _COMPARING:
+            if not isinstance(node, Binary) or node.operator.kind not in COMPARING:
                 continue
             for variable, constant_name in ((node.left, node.right), (node.right, node.left)):
                 if not isinstance(variable, Name) or not isinstance(constant_name, Name):

@@ -7,7 +7,8 @@ import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from roaml.diagnostics import Finding, Related, Severity
+from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.edit.elements import first_in
 from roaml.expr.infer import constant
 from roaml.expr.operators import Operator
 from roaml.expr.tree import Binary, Boolean, Expr, Name
@@ -36,6 +37,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         yield from _loops(context.machine, chart, assigned)
         yield from _flags(context.machine, chart, assigned)
         yield from _latches(context, chart, assigned)
+        yield from _resets(context, chart, assigned)
 
 
 class _Assigned(NamedTuple):
@@ -255,6 +257,66 @@ def _latches(context: MachineContext, chart: Chart, assigned: Mapping[str, Seque
             )
             related = [Related(s.statement.element.name_span, "set here") for s in sets]
             yield RULE.at(handler.cond.span, message, related=related, severity=_severity(name, _RECORDS))
+
+
+# ------------------------------------------------------------------ resets
+
+_MIN_STEM = 4
+"""How many letters at the beginning words have in common that are forms of one word, such as `bump` and `bumped`."""
+
+
+def _resets(context: MachineContext, chart: Chart, assigned: Mapping[str, Sequence[_Assigned]]) -> Iterator[Finding]:
+    """Report the handler of a request or message to reset something, as its name says, that does not assign a flag or
+    counter of this name, if all assignments lead away from its initial value."""
+    for state in chart.states:
+        for handler in state.handlers:
+            words = words_of(handler.handle.value if handler.handle is not None else "")
+            asked = [word for number, word in enumerate(words) if number and words[number - 1] == "reset"]
+            if handler.handle is None or handler.trigger not in _ASKING or len(asked) != 1:
+                continue
+            named = [data for data in chart.data if data.id is not None and _is_about(asked[0], data.id.value)]
+            kept = [data for data in named if _never_back(data, assigned)]
+            resets = any(s.handler is handler for d in named if d.id for s in assigned.get(d.id.value, ()))
+            if not asked[0].endswith("s") and (resets or len(kept) != 1):
+                continue  # `reset_bump` is about one variable, `reset_counters` about all counters
+            for data in kept:
+                name = data.id.value if data.id is not None else ""
+                message = f"this does not reset `{name}`, and nothing else does; assign the initial value"
+                related = [Related(step.statement.element.name_span, "changes") for step in assigned[name]]
+                yield RULE.at(handler.handle.span, message, *_assigning(context, handler, data), related=related)
+
+
+def _assigning(context: MachineContext, handler: Handler, data: Data) -> Iterator[Fix]:
+    """A fix that assigns the initial value of a variable at the beginning of a handler."""
+    if data.id is None or not isinstance(data.value, Expression) or handler.element.find("target") is not None:
+        return
+    line = f'<assign location="{data.id.value}" expr="{data.value.text.strip()}" />'
+    yield Fix(f"Reset `{data.id.value}`", (first_in(context.document, handler.element, line),))
+
+
+_ASKING = (ProtocolPart.REQUEST, ProtocolPart.MESSAGE, ProtocolPart.EVENT)
+
+
+def _is_about(word: str, name: str) -> bool:
+    """Whether a name contains a form of `word`, such as `bumped` of `bump`, or `counter` of `counters`."""
+    pairs = ((word, other) if len(word) < len(other) else (other, word) for other in words_of(name))
+    return any(len(short) >= _MIN_STEM and long.startswith(short) for short, long in pairs)
+
+
+def _never_back(data: Data, assigned: Mapping[str, Sequence[_Assigned]]) -> bool:
+    """Whether all assignments to a variable are steps in one direction from a constant, or the opposite of its initial
+    Boolean."""
+    name = data.id.value if data.id is not None else ""
+    steps = assigned.get(name, ())
+    begin = data.value.tree if isinstance(data.value, Expression) and not data.value.broken else None
+    if not steps:
+        return False
+    if isinstance(begin, Boolean):
+        return all(isinstance(s.value, Boolean) and s.value.value is not begin.value for s in steps)
+    if begin is None or constant(begin) is None:
+        return False
+    signs = {step_of(s.value, name) if s.value is not None else 0 for s in steps}
+    return len(signs) == 1 and 0 not in signs
 
 
 def _only(known: ValueSet | None) -> object:

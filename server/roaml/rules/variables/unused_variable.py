@@ -7,14 +7,18 @@ from collections.abc import Iterator, Mapping, Sequence, Set
 
 from roaml.diagnostics import Finding, Fix, Related, Severity, Tag
 from roaml.edit.elements import removal, remove
+from roaml.expr.operators import COMPARING
 from roaml.expr.tree import Binary, Call, Expr, Name, access_path, walk
+from roaml.expr.types import Type
 from roaml.model.behavior.knowledge import variables_in
 from roaml.model.machine import Assign, CallChild, Chart, Data, Param, ReturnStatus, RosSend, Send, Statement
 from roaml.model.syntax import Expression, Value
+from roaml.model.syntax import Name as SyntaxName
 from roaml.model.value_types import ValueUse
 from roaml.model.values.evaluate import place_of
+from roaml.model.waits import fixed_variables
 from roaml.rules.rule import MachineContext, Rule, replacements
-from roaml.rules.support.words import difference, with_word, words_of
+from roaml.rules.support.words import LIMITS, difference, with_word, words_of
 from roaml.text import Span
 
 
@@ -36,7 +40,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 spans, computed = written[data.id.value]
                 related = [Related(span, "assigned here") for span in spans]
                 twin = _twin(context, chart, data.id.value, spans)
-                meant = list(_meant(chart, data.id.value))
+                types = context.typed.variables.get(chart.scope, {})
+                meant = list({n.span: n for n in _meant(chart, data.id.value, values, types, computed)}.values())
                 if len(meant) == 1:
                     message = f"{message}; did you mean it here instead of `{meant[0].name}`?"
                     fixes = replacements(meant[0].span, (data.id.value,))
@@ -111,10 +116,16 @@ def _twin(context: MachineContext, chart: Chart, name: str, spans: Sequence[Span
     return None
 
 
-def _meant(chart: Chart, name: str) -> Iterator[Name]:
+def _meant(
+    chart: Chart, name: str, values: Sequence[Value], types: Mapping[str, Type], computed: bool
+) -> Iterator[Name]:
     """Where another variable is read, but the unread variable `name` is probably meant: twice in one operation, as in
-    `temp_a + temp_a`, or in a field beside others that get the variables with their names."""
+    `temp_a + temp_a`, in a field beside others that get the variables with their names, or beside the words of the
+    unread variable. `computed`: whether an assignment computes its value, as that of a counter."""
     sources = _sources(chart)
+    beside = (*_receivers(chart), *(_limits(chart, values) if computed else ()))
+    named = (read for other, read in beside if _is_named(name, other, read.name))
+    yield from (read for read in named if types.get(read.name) == types.get(name))
     for statement in chart.statements:
         if isinstance(statement, RosSend | Send):
             yield from _fields(statement.fields if isinstance(statement, RosSend) else statement.params, name, sources)
@@ -124,6 +135,42 @@ def _meant(chart: Chart, name: str) -> Iterator[Name]:
                     case Binary(left=Name(name=left), right=Name(name=right) as operand) if left == right:
                         if len(words_of(name)) > 1 and difference(name, right) is not None:
                             yield operand
+
+
+def _receivers(chart: Chart) -> Iterator[tuple[str, Name]]:
+    """Variables that are assigned or sent as they are, each with the name of the variable, or of the message with one
+    field, that gets the value."""
+    for statement in chart.statements:
+        match statement:
+            case Assign(location=Expression(tree=Name(name=name)), value=Expression(tree=Name() as read)):
+                yield name, read
+            case (
+                RosSend(handle=SyntaxName(value=name), fields=(Param(value=Expression(tree=Name() as read)),))
+                | Send(event=SyntaxName(value=name), params=(Param(value=Expression(tree=Name() as read)),))
+            ):
+                yield name, read
+
+
+def _limits(chart: Chart, values: Sequence[Value]) -> Iterator[tuple[str, Name]]:
+    """Variables that are compared with a constant which is named as a limit, each with the name of the constant."""
+    fixed = fixed_variables(chart)
+    for node in (node for value in values if isinstance(value, Expression) for node in walk(value.tree)):
+        match node:
+            case Binary(operator=operator, left=Name() as left, right=Name() as right) if operator.kind in COMPARING:
+                for read, limit in ((left, right), (right, left)):
+                    if limit.name in fixed and not LIMITS.isdisjoint(words_of(limit.name)):
+                        yield limit.name, read
+
+
+def _is_named(name: str, beside: str, read: str) -> bool:
+    """Whether the words beside a variable `read` are those of the unread variable `name`, and none is its own:
+    `robot_loc` for `req_loc` instead of `req_obj`, `charging` for `is_charging`, `max_turns` for `turns`."""
+    own, used = {*words_of(name)} - LIMITS, {*words_of(read)} - LIMITS
+    about = {*words_of(beside)} - LIMITS
+    pair = difference(name, read)
+    if pair is not None:
+        return pair[0] in about and pair[1] not in about
+    return bool(about) and about <= own and about.isdisjoint(used)
 
 
 def _sent_or_assigned(statement: Statement) -> Iterator[Expression]:
@@ -147,6 +194,9 @@ def _fields(fields: Sequence[Param], name: str, sources: Mapping[str, Set[str]])
     own = [value for key, value in plain if value.name == key or key in sources.get(value.name, ())]
     for key, value in plain:
         named = any(value is not other for other in own) and value not in own
+        if key == name and value.name != key and len(words_of(key)) > 1:
+            yield value
+            continue
         if named and (key == name or key in sources.get(name, ())):
             yield value
             continue
