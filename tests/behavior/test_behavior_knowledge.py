@@ -145,3 +145,11 @@ def test_stored_conditions_are_remembered() -> None:
     for known in FACTS.assign(NOTHING, tree("b"), tree("n > 2")):
         for both in FACTS.assume(known, tree("b")):
             assert not FACTS.assume(both, tree("n <= 2"))
+
+
+@pytest.mark.parametrize(("array", "index"), [("a", "b"), ("b", "a")])
+def test_an_assignment_to_an_element_keeps_what_is_known_about_its_index(array: str, index: str) -> None:
+    facts = ConditionFacts(frozenset((index,)))
+    (below,) = facts.assume(NOTHING, tree(f"{index} < 2"))
+    (known,) = facts.assume(below, tree(f"{array}[{index}] == 1"))
+    assert facts.assign(known, tree(f"{array}[{index}]"), tree("3")) == (below,)

@@ -1021,6 +1021,6 @@ class _Explorer(Record, eq=False, dict=True):
             below = min(numbers, default=0) < 0 and not self.counts_down
             wrong = below or max(numbers, default=0) >= count
         else:
-            wrong = values.high != float("inf") and values.high >= count
-            wrong = wrong or values.low >= count
+            is_high = values.high > count if values.high_open else values.high >= count
+            wrong = (is_high and values.high != float("inf")) or values.low >= count
         return path.wrong(FaultKind.THREAD, Duty(DutyKind.THREAD, handle), statement) if wrong else path

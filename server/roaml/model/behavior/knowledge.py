@@ -27,6 +27,7 @@ from roaml.expr.tree import (
     Name,
     String,
     Unary,
+    access_path,
     is_draw,
     walk,
 )
@@ -313,7 +314,7 @@ class ConditionFacts(PartlyCompared, frozen=True):
     def assign(self, knowledge: Knowledge, location: Expr, value: Expr | None) -> tuple[Knowledge, ...]:
         """The knowledge after an assignment. The result is a disjunction: the assignment of a condition gives separate
         results for true and false."""
-        root = next(iter(self.term(location).roots), "")
+        root = (access_path(location) or ("",))[0]  # in `free[id]`, `id` is only read
         if value is None or not isinstance(location, Name):
             return (knowledge.without(root),)
         if location.name in self.logical or isinstance(value, Boolean):
