@@ -82,6 +82,7 @@ from roaml.rules.expressions import (
     length_of_struct,
     misplaced_random,
     real_equality,
+    repeated_comparison,
     type_mismatch,
     unknown_function,
     unknown_member,

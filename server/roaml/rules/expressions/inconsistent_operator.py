@@ -10,11 +10,12 @@ from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.expr.format import format_expr
 from roaml.expr.operators import MIRRORED, Operator, OperatorKind
 from roaml.expr.tree import Binary, Expr, Unary, walk
-from roaml.model.machine import Handler, If, State
+from roaml.model.machine import Assign, Chart, If, Statement
 from roaml.model.syntax import Expression
-from roaml.model.triggers import Trigger, trigger
 from roaml.model.values.evaluate import place_of
 from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.alternatives import alternatives, handlers_by_trigger, joined
+from roaml.rules.support.steps import step_of
 from roaml.rules.support.words import difference, words_of
 from roaml.text import Span, TextEdit
 
@@ -30,39 +31,15 @@ MAX_ALIKE = 100
 def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
         reported: set[Span] = set()
-        groups: list[list[Expr]] = []
-        for state in chart.states:
-            groups += [_trees([handler.cond for handler in group]) for group in _handlers(context, state)]
-        for statement in chart.statements:
-            if isinstance(statement, If):
-                groups.append(_trees([branch.cond for branch in statement.branches]))
-        for group in groups:
-            parts = [_joined(tree, operator) for tree in group for operator in _LOGICAL]
-            for alike in (group, *(part for part in parts if len(part) > 1)):
-                for finding in (*_connectives(alike[:MAX_ALIKE]), *_limits(alike[:MAX_ALIKE])):
-                    if finding.span not in reported:
-                        reported.add(finding.span)
-                        yield finding
-
-
-def _handlers(context: MachineContext, state: State) -> Iterator[Sequence[Handler]]:
-    groups: dict[Trigger, list[Handler]] = {}
-    for handler in state.handlers:
-        key = trigger(context.machine, handler) if handler.effective else None
-        if key is not None:
-            groups.setdefault(key, []).append(handler)
-    yield from groups.values()
-
-
-def _trees(conditions: Sequence[Expression | None]) -> list[Expr]:
-    return [cond.tree for cond in conditions if cond is not None and not cond.broken]
-
-
-def _joined(tree: Expr, operator: Operator) -> list[Expr]:
-    """What `tree` joins with `operator`, without what parentheses join."""
-    if isinstance(tree, Binary) and tree.operator is operator:
-        return [*_joined(tree.left, operator), tree.right]
-    return [tree]
+        findings = (
+            finding
+            for alike in alternatives(context.machine, chart)
+            for finding in (*_connectives(alike[:MAX_ALIKE]), *_limits(alike[:MAX_ALIKE]))
+        )
+        for finding in (*findings, *_directions(context, chart)):
+            if finding.span not in reported:
+                reported.add(finding.span)
+                yield finding
 
 
 # ------------------------------------------------------------- && and ||
@@ -181,6 +158,55 @@ def _limit(node: Expr) -> _Limit | None:
     if left is not None:
         return _Limit(node, left, node.operator, format_expr(node.right))
     return _Limit(node, right, MIRRORED[node.operator], format_expr(node.left)) if right is not None else None
+
+
+# ------------------------------------------------------------- directions
+
+
+def _directions(context: MachineContext, chart: Chart) -> Iterator[Finding]:
+    """Report the only one of several conditions that allows a step of a variable away from the limit with which it
+    compares the variable, as `x > 9` before `x + 1`."""
+    groups = [
+        [(handler.cond, handler.targets[0].body) for handler in group if len(handler.targets) == 1]
+        for state in chart.states
+        for group in handlers_by_trigger(context.machine, state)
+    ]
+    groups += [[(b.cond, b.body) for b in s.branches] for s in chart.statements if isinstance(s, If)]
+    for group in groups:
+        steps = [step for cond, body in group if cond is not None and (step := _step(cond, body)) is not None]
+        away = [limit for limit, towards in steps if not towards]
+        if len(away) == 1 and len(steps) > MIN_ALIKE:
+            operator = MIRRORED[away[0].node.operator]
+            message = (
+                f"what this condition allows leads `{away[0].place}` away from the limit `{away[0].limit}`, unlike the "
+                f"{len(steps) - 1} conditions like it; did you mean `{operator.symbol}`?"
+            )
+            fix = Fix(
+                f"Change to `{operator.symbol}`",
+                (TextEdit(away[0].node.operator_span, operator.symbol.replace("<", "&lt;")),),
+            )
+            right = next(limit for limit, towards in steps if towards)
+            related = [Related(right.node.span, "a similar condition")]
+            yield RULE.at(away[0].node.operator_span, message, fix, related=related)
+
+
+def _step(cond: Expression, body: Sequence[Statement]) -> tuple[_Limit, bool] | None:
+    """The limit of the only variable that `cond` compares and `body` steps, and whether the step leads to the limit."""
+    found = []
+    for node in _joined_comparisons(cond):
+        limit = _limit(node)
+        for statement in body if limit is not None else ():
+            place = place_of(statement.location.tree) if isinstance(statement, Assign) and statement.location else None
+            value = statement.value if isinstance(statement, Assign) else None
+            if limit is not None and place == limit.place and isinstance(value, Expression):
+                sign = step_of(value.tree, place)
+                if sign:
+                    found.append((limit, (sign > 0) == (limit.operator in (Operator.LESS, Operator.LESS_EQUAL))))
+    return found[0] if len(found) == 1 else None
+
+
+def _joined_comparisons(cond: Expression) -> Sequence[Expr]:
+    return () if cond.broken else joined(cond.tree, Operator.AND)
 
 
 RULE = Rule(
