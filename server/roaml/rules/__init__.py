@@ -18,6 +18,7 @@ from roaml.rules.answers import (
     answer_needs_time,
     answer_never_requested,
     cancel_without_goal,
+    contradictory_outcome,
     discarded_answer,
     early_status,
     endless_node,

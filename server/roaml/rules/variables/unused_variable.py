@@ -123,7 +123,7 @@ def _meant(
     `temp_a + temp_a`, in a field beside others that get the variables with their names, or beside the words of the
     unread variable. `computed`: whether an assignment computes its value, as that of a counter."""
     sources = _sources(chart)
-    beside = (*_receivers(chart), *(_limits(chart, values) if computed else ()))
+    beside = (*_receivers(chart, name), *(_limits(chart, values) if computed else ()))
     named = (read for other, read in beside if _is_named(name, other, read.name))
     yield from (read for read in named if types.get(read.name) == types.get(name))
     for statement in chart.statements:
@@ -137,13 +137,14 @@ def _meant(
                             yield operand
 
 
-def _receivers(chart: Chart) -> Iterator[tuple[str, Name]]:
-    """Variables that are assigned or sent as they are, each with the name of the variable, or of the message with one
-    field, that gets the value."""
+def _receivers(chart: Chart, unread: str) -> Iterator[tuple[str, Name]]:
+    """Variables that are assigned or sent as they are, each with the name of the variable other than `unread`, or of the
+    message with one field, that gets the value."""
     for statement in chart.statements:
         match statement:
             case Assign(location=Expression(tree=Name(name=name)), value=Expression(tree=Name() as read)):
-                yield name, read
+                if name != unread:
+                    yield name, read
             case (
                 RosSend(handle=SyntaxName(value=name), fields=(Param(value=Expression(tree=Name() as read)),))
                 | Send(event=SyntaxName(value=name), params=(Param(value=Expression(tree=Name() as read)),))
