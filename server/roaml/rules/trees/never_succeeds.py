@@ -6,14 +6,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
+from roaml.edit.elements import rename_tag
 from roaml.forest.forest import CPP, Forest
 from roaml.forest.ports import ports_of
 from roaml.forest.statuses import statuses_of
 from roaml.libraries.programs.statuses import FAILURE, SUCCESS
+from roaml.model.machine import CallChild, ReturnStatus, RosSend
 from roaml.model.tree import PortSetting, TreeNode
-from roaml.rules.rule import Rule, TreeContext
+from roaml.roles import ProtocolPart
+from roaml.rules.rule import MachineContext, Rule, TreeContext, replacements
+from roaml.rules.support.answers import plugins
 from roaml.rules.support.forest import trees_of
 from roaml.rules.support.settings import integer_of
+from roaml.rules.support.words import words_of
 
 _FAILING = ("AlwaysFailure", "ForceFailure")
 _SEQUENCES = ("Sequence", "AsyncSequence", "SequenceWithMemory")
@@ -36,6 +41,38 @@ def check(context: TreeContext) -> Iterator[Finding]:
         name = tree.id.value if tree.id else ""
         if name in forest.executed and len(tree.roots) == 1 and not _is_intended(forest, name, tree.roots[0]):
             yield from _of_tree(forest, tree.roots[0])
+
+
+_FAILED = frozenset(("error", "fail", "failing", "fails", "failure", "never", "reject"))
+"""Words in the name of a machine that fails intentionally."""
+
+
+def check_machine(context: MachineContext) -> Iterator[Finding]:
+    """Report a plugin of the tree that returns FAILURE in one place and SUCCESS in none, and a server that ends the
+    goals of an action in one place, as aborted."""
+    words = words_of(context.machine.name.value) if context.machine.name is not None else []
+    if context.system is None or not context.automata or context.gaps or not _FAILED.isdisjoint(words):
+        return
+    statements = [statement for chart in context.machine.charts for statement in chart.statements]
+    returned = [s.status for s in statements if isinstance(s, ReturnStatus) and s.status is not None]
+    failing = [status for status in returned if status.value == "FAILURE"]
+    calls = any(isinstance(statement, CallChild) for statement in statements)
+    is_known = all(status.value in ("FAILURE", "RUNNING") for status in returned)
+    if plugins(context) and not calls and len(failing) == 1 and is_known:
+        message = "the plugin returns FAILURE here and SUCCESS nowhere; did you mean `SUCCESS`?"
+        yield RULE.at(failing[0].span, message, *replacements(failing[0].span, ("SUCCESS",)))
+    results: dict[str, list[RosSend]] = {}
+    for statement in statements:
+        if isinstance(statement, RosSend) and statement.part is ProtocolPart.RESULT and statement.handle is not None:
+            results.setdefault(statement.handle.value, []).append(statement)
+    for handle, sent in results.items():
+        aborting = [statement for statement in sent if statement.element.name == _ABORT]
+        if len(aborting) == 1 and not any(statement.element.name == _SUCCEED for statement in sent):
+            message = f"the goals of `{handle}` are aborted here, and none succeeds; did you mean `<{_SUCCEED}>`?"
+            yield RULE.at(aborting[0].element.name_span, message, rename_tag(aborting[0].element, _SUCCEED))
+
+
+_SUCCEED, _ABORT = "ros_action_succeed", "ros_action_aborted"
 
 
 def _is_intended(forest: Forest, name: str, root: TreeNode) -> bool:
@@ -95,6 +132,8 @@ def _name(node: TreeNode) -> str:
 RULE = Rule(
     "never-succeeds",
     Severity.WARNING,
-    "A tree or a `Parallel` never returns SUCCESS.",
+    "A tree, a `Parallel`, a plugin or an action never succeeds.",
+    machine=check_machine,
     tree=check,
+    whole=True,
 )

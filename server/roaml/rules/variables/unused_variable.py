@@ -138,8 +138,8 @@ def _meant(
 
 
 def _receivers(chart: Chart, unread: str) -> Iterator[tuple[str, Name]]:
-    """Variables that are assigned or sent as they are, each with the name of the variable other than `unread`, or of the
-    message with one field, that gets the value."""
+    """Variables that are assigned or sent as they are, each with the name of the variable other than `unread`, or of
+    the message with one field, that gets the value."""
     for statement in chart.statements:
         match statement:
             case Assign(location=Expression(tree=Name(name=name)), value=Expression(tree=Name() as read)):
