@@ -27,14 +27,14 @@ from roaml.rules.support.timing import (
 from roaml.text import Span
 
 SHORT_RUN = 10**10
-"""The `max_time`, in ns, from which on it is probably right if no timer ticks before it: 10 s."""
+"""The `max_time`, in ns, from which on it is probably right if timers do not tick before it: 10 s."""
 
 
 def _machine(context: MachineContext) -> Iterator[Finding]:
     end = context.system.parameters.max_time if context.system else None
     if context.system is None or end is None or not context.automata:
         return
-    if not _is_end_usual(end) and _nothing_ticks(context.system, end):
+    if not _is_end_usual(end) and _little_ticks(context.system, end):
         return  # reported at `max_time`
     for _, rate, hertz in timers(context):
         ns = period(hertz).nanoseconds
@@ -77,14 +77,15 @@ def _system(context: SystemContext) -> Iterator[Finding]:
         return
     shown = context.file.parameter("max_time")
     unit = min((p.unit for p in periods(context.system)), default=1)
-    if shown is not None and not _is_end_usual(end) and _nothing_ticks(context.system, end):
+    if shown is not None and not _is_end_usual(end) and _little_ticks(context.system, end):
         if end % unit:
             return  # inexact-max-time reports it
-        shortest = min(timer.period.nanoseconds for timer in rates(context.system))
+        times = [timer.period.nanoseconds for timer in rates(context.system)]
+        late = sorted(time for time in times if time > end)
         value = shown.get("value")
         message = (
-            f"no timer ticks: the system runs for {duration(end)}, and the shortest period of a timer is "
-            f"{duration(shortest)}"
+            f"{_count(len(late), len(times))}: the system runs for {duration(end)}, and the shortest of their periods "
+            f"is {duration(late[0])}"
         )
         yield RULE.at(value.value_span if value is not None else shown.name_span, message)
         return
@@ -129,10 +130,19 @@ def _is_end_usual(end: int) -> bool:
     return end >= SHORT_RUN
 
 
-def _nothing_ticks(system: System, end: int) -> bool:
-    """Whether the system has timers and none of them ticks."""
-    periods = [timer.period.nanoseconds for timer in rates(system)]
-    return bool(periods) and min(periods) > end
+MIN_LATE = 3
+"""How many timers never tick at least before `max_time` is probably wrong, instead of their periods."""
+
+
+def _little_ticks(system: System, end: int) -> bool:
+    """Whether the system has timers and none of them ticks, or several, and at least half of them, do not."""
+    times = [timer.period.nanoseconds for timer in rates(system)]
+    late = sum(time > end for time in times)
+    return bool(times) and (late == len(times) or (late >= MIN_LATE and 2 * late >= len(times)))
+
+
+def _count(late: int, all_: int) -> str:
+    return "no timer ticks" if late == all_ else f"{late} of {all_} timers never tick"
 
 
 RULE = Rule(
