@@ -170,6 +170,7 @@ from roaml.rules.systems import (
     short_time,
     small_clock_step,
     timer_rate,
+    timer_step,
     tree_too_large,
 )
 from roaml.rules.trees import (
