@@ -234,6 +234,7 @@ from roaml.rules.variables import (
     struct_declaration,
     undeclared_variable,
     unenforced_bounds,
+    unguarded_read,
     unknown_type,
     unused_variable,
 )

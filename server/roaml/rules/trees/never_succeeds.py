@@ -11,7 +11,7 @@ from roaml.forest.forest import CPP, Forest
 from roaml.forest.ports import ports_of
 from roaml.forest.statuses import statuses_of
 from roaml.libraries.programs.statuses import FAILURE, SUCCESS
-from roaml.model.machine import CallChild, ReturnStatus, RosSend
+from roaml.model.machine import CallChild, ReturnStatus, RosSend, bodies
 from roaml.model.tree import PortSetting, TreeNode
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule, TreeContext, replacements
@@ -54,20 +54,31 @@ def check_machine(context: MachineContext) -> Iterator[Finding]:
     if context.system is None or not context.automata or context.gaps or not _FAILED.isdisjoint(words):
         return
     statements = [statement for chart in context.machine.charts for statement in chart.statements]
-    returned = [s.status for s in statements if isinstance(s, ReturnStatus) and s.status is not None]
-    failing = [status for status in returned if status.value == "FAILURE"]
+    # Beside an alternative, the answer of the other one may be missing, which other rules report.
+    alone = {
+        statement.element
+        for chart in context.machine.charts
+        for _, handler, body in bodies(chart)
+        for statement in body
+        if handler is None or len(handler.targets) == 1
+    }
+    returned = [(s, s.status) for s in statements if isinstance(s, ReturnStatus) and s.status is not None]
+    failing = [(statement, status) for statement, status in returned if status.value == "FAILURE"]
     calls = any(isinstance(statement, CallChild) for statement in statements)
-    is_known = all(status.value in ("FAILURE", "RUNNING") for status in returned)
-    if plugins(context) and not calls and len(failing) == 1 and is_known:
+    is_known = all(status.value in ("FAILURE", "RUNNING") for _, status in returned)
+    if plugins(context) and not calls and len(failing) == 1 and is_known and failing[0][0].element in alone:
+        span = failing[0][1].span
         message = "the plugin returns FAILURE here and SUCCESS nowhere; did you mean `SUCCESS`?"
-        yield RULE.at(failing[0].span, message, *replacements(failing[0].span, ("SUCCESS",)))
+        yield RULE.at(span, message, *replacements(span, ("SUCCESS",)))
     results: dict[str, list[RosSend]] = {}
     for statement in statements:
         if isinstance(statement, RosSend) and statement.part is ProtocolPart.RESULT and statement.handle is not None:
             results.setdefault(statement.handle.value, []).append(statement)
     for handle, sent in results.items():
         aborting = [statement for statement in sent if statement.element.name == _ABORT]
-        if len(aborting) == 1 and not any(statement.element.name == _SUCCEED for statement in sent):
+        if any(statement.element.name == _SUCCEED for statement in sent):
+            continue
+        if len(aborting) == 1 and aborting[0].element in alone:
             message = f"the goals of `{handle}` are aborted here, and none succeeds; did you mean `<{_SUCCEED}>`?"
             yield RULE.at(aborting[0].element.name_span, message, rename_tag(aborting[0].element, _SUCCEED))
 

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The rule `unguarded-read`, which unguarded_read.md describes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.expr.operators import Operator
+from roaml.expr.tree import Binary, Boolean, Expr, Name
+from roaml.model.behavior.knowledge import variables_in
+from roaml.model.machine import Assign, Chart, Handler, If, RosSend, Send, SetOutput, Statement, bodies, statements
+from roaml.model.syntax import Expression
+from roaml.model.values.evaluate import place_of
+from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.alternatives import joined
+from roaml.text import TextEdit
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    for chart in context.machine.charts:
+        guarded = list(_guarded(chart))
+        if not any(_disjunction(cond) for cond, _ in guarded):
+            continue
+        data = _data_of_flags(chart)
+        for cond, body in guarded:
+            flags = _disjunction(cond)
+            read = _read(body)
+            unset = [name for flag in flags for name in sorted(data.get(flag.name, frozenset()) & read)[:1]]
+            if len(flags) > 1 and len(unset) == len(flags):
+                tree = cond.tree
+                assert isinstance(tree, Binary)
+                message = (
+                    f"this holds if only `{flags[0].name}` is true, and what follows also reads `{unset[1]}`, which is "
+                    f"set together with `{flags[1].name}`; did you mean `&&`?"
+                )
+                edits = tuple(TextEdit(node.operator_span, "&amp;&amp;") for node in _operators(tree))
+                fix = Fix("Change to `&&`", edits)
+                related = [
+                    Related(flag.span, f"says that `{name}` is set") for flag, name in zip(flags, unset, strict=True)
+                ]
+                yield RULE.at(tree.operator_span, message, fix, related=related)
+
+
+def _guarded(chart: Chart) -> Iterator[tuple[Expression, Sequence[Statement]]]:
+    for handler in (handler for state in chart.states for handler in state.handlers):
+        if handler.cond is not None:
+            yield handler.cond, [statement for target in handler.targets for statement in target.body]
+    for statement in chart.statements:
+        for branch in statement.branches if isinstance(statement, If) else ():
+            if branch.cond is not None:
+                yield branch.cond, branch.body
+
+
+def _disjunction(cond: Expression) -> Sequence[Name]:
+    """The variables that a condition joins with `||`, if it contains nothing else."""
+    parts = [] if cond.broken else joined(cond.tree, Operator.OR)
+    names = [part for part in parts if isinstance(part, Name)]
+    return names if len(names) == len(parts) > 1 else ()
+
+
+def _operators(tree: Expr) -> Iterator[Binary]:
+    if isinstance(tree, Binary) and tree.operator is Operator.OR:
+        yield tree
+        yield from _operators(tree.left)
+
+
+def _data_of_flags(chart: Chart) -> Mapping[str, frozenset[str]]:
+    """Flag -> the variables that get their only values, which arrive, in the same handler as the flag, which is false
+    before and always true afterwards."""
+    begin = {data.id.value: data.value for data in chart.data if data.id is not None}
+    handlers: dict[str, list[Handler | None]] = {}
+    values: dict[str, list[Expr | None]] = {}
+    for _, handler, body in bodies(chart):
+        for statement in statements(body):
+            name = place_of(statement.location.tree) if isinstance(statement, Assign) and statement.location else None
+            if name is not None and isinstance(statement, Assign):
+                value = statement.value
+                handlers.setdefault(name, []).append(handler)
+                values.setdefault(name, []).append(value.tree if isinstance(value, Expression) else None)
+    received = {name for name, of_one in values.items() if all(v is not None and _is_received(v) for v in of_one)}
+    data: dict[str, frozenset[str]] = {}
+    for name, of_one in values.items():
+        start = begin.get(name)
+        is_false = isinstance(start, Expression) and isinstance(start.tree, Boolean) and not start.tree.value
+        if is_false and len(of_one) == 1 and isinstance(of_one[0], Boolean) and of_one[0].value:
+            data[name] = frozenset(other for other in received if handlers[other] == handlers[name] != [None])
+    return data
+
+
+def _is_received(value: Expr) -> bool:
+    return any(name.startswith("_") for name in variables_in((value,)))
+
+
+def _read(body: Sequence[Statement]) -> frozenset[str]:
+    """The variables that a body assigns, sends or writes to the blackboard."""
+    values: list[object] = []
+    for statement in statements(tuple(body)):
+        match statement:
+            case Assign(value=value) | SetOutput(value=value):
+                values.append(value)
+            case Send(params=params) | RosSend(fields=params):
+                values += [param.value for param in params]
+    return variables_in(value.tree for value in values if isinstance(value, Expression) and not value.broken)
+
+
+RULE = Rule(
+    "unguarded-read",
+    Severity.WARNING,
+    "A variable may be read before it is set.",
+    machine=check,
+    whole=True,
+)
