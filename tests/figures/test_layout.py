@@ -85,6 +85,62 @@ def test_layered(graph: tuple[dict[str, Extent], list[Link]], direction: LayoutD
     assert layered(nodes, links, direction, 1.5) == layout
 
 
+@st.composite
+def long_lines(draw: st.DrawFn) -> tuple[dict[str, Extent], list[Link]]:
+    """Lines and rings of 12 to 40 nodes, in any order of their links, with or without the dot of an initial state. The
+    last node may lead back to any other one."""
+    count = draw(st.integers(12, 40))
+    sizes = [draw(SIZES) for _ in range(count)] if draw(st.booleans()) else [Extent(100, 40)] * count
+    labels = st.builds(Extent, st.integers(20, 120), st.integers(15, 60))
+    links = [Link(str(n), str(n + 1), draw(st.none() | labels)) for n in range(count - 1)]
+    back = draw(st.none() | st.integers(0, count - 2))
+    links += [] if back is None else [Link(str(count - 1), str(back), draw(st.none() | labels))]
+    nodes = {str(number): size for number, size in enumerate(sizes)}
+    if draw(st.booleans()):
+        nodes, links = {"start": Extent(10, 10), **nodes}, [Link("start", "0"), *links]
+    return nodes, draw(st.permutations(links))
+
+
+@settings(max_examples=examples(60), deadline=None)
+@given(long_lines(), DIRECTIONS, st.sampled_from([0.6, 1.0, 1.8]))
+def test_long_lines_are_read_like_text(
+    graph: tuple[dict[str, Extent], list[Link]], direction: LayoutDirection, aspect: float
+) -> None:
+    """Each node follows the one before it in its row, or is the first of the next row; no lines cross."""
+    nodes, links = graph
+    layout = layered(nodes, links, direction, aspect)
+    assert flaws(nodes, links, layout) == []
+    lines = segments(layout)
+    for (one, a, b), (other, c, d) in combinations(lines, 2):
+        if one != other and (a.x == b.x) != (c.x == d.x):
+            assert not area(a, b).grown(NEAR).overlaps(area(c, d).grown(NEAR)), (a, b, c, d)
+    boxes = layout.nodes if direction is LayoutDirection.RIGHT else layout.turned.nodes
+    rows = [[boxes["0"]]]
+    for number in range(1, len(nodes) - ("start" in nodes)):
+        box, last = boxes[str(number)], rows[-1][-1]
+        if box.x >= last.right:
+            assert abs(middle(box) - middle(last)) < NEAR
+            rows[-1].append(box)
+        else:
+            assert box.y >= max(before.bottom for before in rows[-1])
+            rows.append([box])
+    assert {len(row) for row in rows[:-1]} <= {len(rows[0])}
+    assert len(rows[-1]) <= len(rows[0])
+
+
+def middle(box: Box) -> float:
+    return box.y + box.height / 2
+
+
+def test_rings_have_the_desired_ratio() -> None:
+    """A ring of 30 nodes suits the window, in both directions."""
+    nodes = {str(number): Extent(110, 40) for number in range(30)}
+    links = [Link(str(n), str((n + 1) % 30), Extent(60, 25)) for n in range(30)]
+    for direction in LayoutDirection:
+        width, height = layered(nodes, links, direction, 1.6).size
+        assert 1.2 < width / height < 2.1
+
+
 def test_the_first_node_comes_first() -> None:
     nodes = dict.fromkeys("abc", Extent(40, 20))
     links = [Link("a", "b"), Link("b", "c"), Link("c", "a", Extent(30, 10))]

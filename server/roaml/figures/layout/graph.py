@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import enum
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from roaml.figures.geometry import Box, Extent, Point
 from roaml.record import Record
@@ -57,3 +57,18 @@ class Layout(Record, frozen=True):
     def turned(self) -> Layout:
         boxes = {name: box.turned for name, box in self.nodes.items()}
         return Layout(self.size.turned, boxes, tuple(route.turned for route in self.routes))
+
+
+def at_origin(boxes: Mapping[str, Box], routes: Sequence[Route]) -> Layout:
+    """A layout moved so that its upper left corner is the origin."""
+    areas = [*boxes.values(), *(route.label for route in routes if route.label)]
+    points = [point for route in routes for part in route.parts for point in part]
+    left = min([area.x for area in areas] + [point.x for point in points])
+    top = min([area.y for area in areas] + [point.y for point in points])
+    right = max([area.right for area in areas] + [point.x for point in points])
+    bottom = max([area.bottom for area in areas] + [point.y for point in points])
+    return Layout(
+        Extent(right - left, bottom - top),
+        {name: box.moved(-left, -top) for name, box in boxes.items()},
+        tuple(route.moved(-left, -top) for route in routes),
+    )

@@ -10,8 +10,9 @@ from functools import cached_property
 
 from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.layout.cycles import closing_links
-from roaml.figures.layout.graph import Layout, LayoutDirection, Link, Route
+from roaml.figures.layout.graph import Layout, LayoutDirection, Link, Route, at_origin
 from roaml.figures.layout.layers import assign_layers, column_starts
+from roaml.figures.layout.lines import find_line, in_columns
 from roaml.figures.layout.order import order_layers
 from roaml.figures.layout.packing import components, pack
 from roaml.figures.layout.ports import PORT_DISTANCE, PORT_MARGIN, Ports
@@ -51,7 +52,7 @@ def layered(nodes: Mapping[str, Extent], links: Sequence[Link], direction: Layou
         turned = {name: size.turned for name, size in nodes.items()}
         turned_links = [Link(link.source, link.target, link.label.turned if link.label else None) for link in links]
         return layered(turned, turned_links, LayoutDirection.DOWN, 1 / aspect).turned
-    parts = [(_part(nodes, names, indexes, links), indexes) for names, indexes in components(nodes, links)]
+    parts = [(_part(nodes, names, indexes, links, aspect), indexes) for names, indexes in components(nodes, links)]
     return pack(parts, len(links), aspect)
 
 
@@ -81,13 +82,22 @@ def component(
     """
     fixed = {name for name, _ in boundary.anchors} | boundary.tops | boundary.bottoms
     if fixed.isdisjoint(names):
-        return _part(sizes, names, indexes, links)
+        return _part(sizes, names, indexes, links, 1 / WRAPPED_RATIO)
     return _Component(sizes, names, indexes, links, boundary=boundary).layout()
 
 
-def _part(sizes: Mapping[str, Extent], names: Sequence[str], indexes: Sequence[int], links: Sequence[Link]) -> Layout:
+def _part(
+    sizes: Mapping[str, Extent], names: Sequence[str], indexes: Sequence[int], links: Sequence[Link], aspect: float
+) -> Layout:
     """The layout of a connected graph, downwards. If it is much higher than wide, its layers are continued in further
-    columns; if it is much wider than high, its layers are divided."""
+    columns; if it is much wider than high, its layers are divided.
+
+    Args:
+        aspect: the desired ratio of width to height of a long line or ring.
+    """
+    line = find_line(names, indexes, links) if len(names) >= MIN_WRAPPED else None
+    if line is not None:
+        return in_columns(line, sizes, links, aspect)
 
     def made(columns: int = 1, limit: float | None = None) -> Layout:
         return _Component(sizes, names, indexes, links, columns, limit).layout()
@@ -301,7 +311,7 @@ class _Component:
                 lines = [line[::-1] for line in reversed(lines)]
             routes.append(Route(tuple(lines), boxes[self.labels[link]] if link in self.labels else None))
         placed = {name: boxes[index] for index, name in enumerate(self.names)}
-        return _at_origin(placed, routes)
+        return at_origin(placed, routes)
 
 
 def simplified(points: Sequence[Point]) -> tuple[Point, ...]:
@@ -312,17 +322,3 @@ def simplified(points: Sequence[Point]) -> tuple[Point, ...]:
             kept.pop()
         kept.append(point)
     return tuple(kept)
-
-
-def _at_origin(boxes: Mapping[str, Box], routes: Sequence[Route]) -> Layout:
-    areas = [*boxes.values(), *(route.label for route in routes if route.label)]
-    points = [point for route in routes for part in route.parts for point in part]
-    left = min([area.x for area in areas] + [point.x for point in points])
-    top = min([area.y for area in areas] + [point.y for point in points])
-    right = max([area.right for area in areas] + [point.x for point in points])
-    bottom = max([area.bottom for area in areas] + [point.y for point in points])
-    return Layout(
-        Extent(right - left, bottom - top),
-        {name: box.moved(-left, -top) for name, box in boxes.items()},
-        tuple(route.moved(-left, -top) for route in routes),
-    )
