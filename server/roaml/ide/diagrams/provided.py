@@ -2,13 +2,14 @@
 """Large ROS graphs in which most topics, services and actions are rows of the card of their publisher or server.
 
 A line then leads from a client to the server, and from the publisher to a subscriber. Interfaces with several
-publishers or servers, or with none, remain nodes.
+publishers or servers, or with none, remain nodes. Nodes that then have the same neighbours are one card (`alike`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
+from roaml.ide.diagrams.alike import with_nodes_alike
 from roaml.ide.diagrams.diagram import Detail, DetailKind, DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
 from roaml.ide.diagrams.namespaces import INTERFACES
 from roaml.record import replace
@@ -29,7 +30,7 @@ def with_provided_interfaces(picture: Picture) -> Picture:
             provided.setdefault(provider[node.id], []).append(node)
     nodes = [_with_rows(node, provided.get(node.id, ())) for node in picture.nodes if node.id not in provider]
     nodes = _without_empty_namespaces(nodes)
-    return replace(picture, nodes=tuple(nodes), edges=tuple(_edges(picture, provider)))
+    return with_nodes_alike(replace(picture, nodes=tuple(nodes), edges=tuple(_edges(picture, provider))))
 
 
 def _providers(picture: Picture) -> Mapping[str, str]:
