@@ -182,9 +182,9 @@ def test_the_ends_of_the_range_of_a_plot_are_beside_its_name_and_cross_no_line(p
     numbered = 0
     for plot in timeline.plots:
         name, *numbers = by_hint[plot.name]
-        ends = [] if plot.is_flag else [f"{value:.6g}" for value in sorted({*plot.values}, reverse=True)]
+        ends = ["true", "false"] if plot.is_flag else [f"{value:.6g}" for value in sorted({*plot.values}, reverse=True)]
         assert [number.text for number in numbers] == [*ends[:1], *ends[1:][-1:]]
-        assert all(name.box.right <= number.box.x and number.box.right <= width for number in numbers)
+        assert not any(name.box.overlaps(number.box) or number.box.right > width for number in numbers)
         assert [number.y for number in numbers] == sorted(number.y for number in numbers)
         numbered += len(numbers)
     assert numbered > 1

@@ -427,10 +427,13 @@ def _plot_names(row: _PlotRow, width: float) -> Iterator[Group]:
     crosses them."""
     low, high = _range(row.plots)
     is_flag = all(plot.is_flag for plot in row.plots)
-    numbers = [] if is_flag else [(_number(high), row.top + _MARGIN)]
-    if low != high and not is_flag:
-        numbers.append((_number(low), row.top + row.height - _MARGIN))
-    free = width - 8.0 - max((text_width(number, SMALL) + 6.0 for number, _ in numbers), default=0.0)
+    numbers = [("true" if is_flag else _number(high), row.top + _MARGIN)]
+    if low != high:
+        numbers.append(("false" if is_flag else _number(low), row.top + row.height - _MARGIN))
+    # The name of a single curve is between the ends of the range.
+    free = width - 8.0
+    if len(row.plots) > 1:
+        free -= max(text_width(number, SMALL) + 6.0 for number, _ in numbers)
     ends = [_text(number, width - 4.0 - text_width(number, SMALL), y, width, "muted") for number, y in numbers]
     first = row.top + row.height / 2 - CURVE_NAME * (len(row.plots) - 1) / 2
     for number, plot in enumerate(row.plots):
