@@ -19,7 +19,7 @@ from roaml.figures.drawing import Drawing, Group, Polyline, TextItem
 from roaml.figures.geometry import Point
 from roaml.figures.layout import LayoutDirection
 from roaml.figures.svg import svg_file
-from roaml.ide.diagrams import DiagramKind, Picture, draw, draw_for, draw_outline, picture_of
+from roaml.ide.diagrams import OUTLINE_WIDTHS, DiagramKind, Picture, draw, draw_for, draw_outline, picture_of
 from roaml.project.analysis import Analysis
 from roaml.project.settings import Settings
 from roaml.record import replace
@@ -47,7 +47,8 @@ def test_examples(folder: str) -> None:
                 assert problems(picture, draw(kind, picture, direction)) == [], (path, kind, direction)
                 shown += 1
             if picture is not None and kind is DiagramKind.TREE:
-                assert problems(picture, draw_outline(picture)) == [], path
+                for width in OUTLINE_WIDTHS:
+                    assert problems(picture, draw_outline(picture, width)) == [], path
     assert shown > 0
 
 
@@ -80,6 +81,10 @@ def test_golden_outline() -> None:
     assert picture is not None
     drawing = draw_outline(picture)
     assert drawing.size.width < 400
+    wide = draw_outline(picture, OUTLINE_WIDTHS[1])
+    assert problems(picture, wide) == []
+    assert wide.size.width < 900
+    assert wide.size.height < 0.8 * drawing.size.height
     compare_golden("fetch_outline", svg_file(drawing, picture.title))
 
 

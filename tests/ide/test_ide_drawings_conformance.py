@@ -11,7 +11,17 @@ from drawing_check import problems
 from conformance import ROOT, Mistake, mistakes, systems
 from roaml import api
 from roaml.figures.layout import LayoutDirection
-from roaml.ide.diagrams import DiagramKind, EdgeKind, Picture, collapsed, draw, draw_outline, picture_of, tree_picture
+from roaml.ide.diagrams import (
+    OUTLINE_WIDTHS,
+    DiagramKind,
+    EdgeKind,
+    Picture,
+    collapsed,
+    draw,
+    draw_outline,
+    picture_of,
+    tree_picture,
+)
 from roaml.mocks.mock import read_mock
 from roaml.project.settings import Settings
 
@@ -38,7 +48,8 @@ def check(kind: DiagramKind, picture: Picture, path: str) -> None:
     for direction in LayoutDirection:
         assert problems(picture, draw(kind, picture, direction)) == [], (path, kind, direction)
     if kind is DiagramKind.TREE:
-        assert problems(picture, draw_outline(picture)) == [], path
+        for width in OUTLINE_WIDTHS:
+            assert problems(picture, draw_outline(picture, width)) == [], path
 
 
 TREES = sorted({path.parent for path in (ROOT / "trees").rglob("*.xml")})

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from base64 import b64decode
 from pathlib import Path
 from typing import Any
@@ -21,6 +22,9 @@ OLD_MAIN = """\
     <node_models><input type="ros-scxml" src="clock.scxml" /></node_models>
 </convince_mc_tc>
 """
+LONG_PORTS = """<root BTCPP_format="4"><BehaviorTree ID="Drive">
+    <ComputePathToPose goal="{the_place_of_the_shelf}" path="{the_path_to_the_shelf}" planner_id="GridBased" />
+</BehaviorTree></root>"""
 SPARE = '<input type="bt-plugin-ascxml" src="plugins/spare.ascxml" />'
 OLD_CLOCK = clock.CLOCK.replace("<ascxml", "<scxml").replace("</ascxml", "</scxml")
 
@@ -99,7 +103,7 @@ async def test_pictures(tmp_path: Path) -> None:
     assert all(box["width"] > 0 for drawing in machine["drawings"] for box in drawing["nodes"])
     (tree,) = await asked(tmp_path, "as2fm/picture", "main.xml", kind="tree")
     assert [node["label"] for node in tree["nodes"]][:3] == ["ReactiveSequence", "ReactiveFallback", "BatteryAbove"]
-    assert [drawing["scene"].count("data-node=") for drawing in tree["drawings"]] == [len(tree["nodes"])] * 3
+    assert [drawing["scene"].count("data-node=") for drawing in tree["drawings"]] == [len(tree["nodes"])] * 4
     (top,) = await asked(tmp_path, "as2fm/picture", "main.xml", kind="tree", collapsed=["1000"])
     assert [node["label"] for node in top["nodes"]] == ["ReactiveSequence"]
     ros, none = await asked(tmp_path, "as2fm/picture", "main.xml", "tree.xml", kind="ros")
@@ -148,6 +152,13 @@ async def test_picture_files(tmp_path: Path, capsys: pytest.CaptureFixture[str])
         assert both["svg"] == file["svg"]
         assert b64decode(both["pdf"]) == (tmp_path / "battery.pdf").read_bytes()
     (outline,) = await asked(tmp_path, "as2fm/pictureFile", "main.xml", kind="tree", direction="outline", theme="light")
+    (tmp_path / "lone.xml").write_text(LONG_PORTS)
+    heights = []
+    for direction in ("outline", "wide-outline"):
+        options = {"kind": "tree", "direction": direction, "theme": "light"}
+        (file,) = await asked(tmp_path, "as2fm/pictureFile", "lone.xml", **options)
+        heights.append(_height(file["svg"]))
+    assert heights[1] < heights[0]
     draw.run((str(tmp_path / "main.xml"), "--tree", "--outline", "-o", "-"))
     assert outline["svg"] == capsys.readouterr().out
     assert await asked(tmp_path, "as2fm/pictureFile", "main.xml", kind="machine") == [None]
@@ -228,3 +239,9 @@ async def test_unsaved_text_is_drawn(tmp_path: Path) -> None:
 async def _picture(client: Client, path: Path) -> Any:
     params = {"kind": "machine", "textDocument": types.TextDocumentIdentifier(path.as_uri())}
     return await client.protocol.send_request_async("as2fm/picture", params)
+
+
+def _height(svg: str) -> float:
+    found = re.search(r'<svg [^>]* height="([\d.]+)"', svg)
+    assert found is not None
+    return float(found[1])

@@ -19,6 +19,7 @@ import {
     reveal,
     search,
     shifts,
+    withStart,
     zoom,
 } from "../src/pictures/view/find";
 import { badgeOf, isOf, nodeCoverageWords, summaryOf } from "../src/pictures/view/coverage";
@@ -299,6 +300,34 @@ test("the first view shows the root and as many whole nodes as possible", () => 
     const near = [box(640, 100)];
     const far = [box(180, 100), box(180, 140), box(380, 100)];
     assert.ok(amongOthers(sight, drawing, root, near, [root, ...near, ...far], 400, 400).x >= 340);
+});
+
+test("a first view cuts nodes off at the lower side rather than at the upper one", () => {
+    const sight = { x: -24, y: -24, scale: 1 };
+    const drawing = { width: 300, height: 900 };
+    const others = [box(0, 10), box(0, 360), box(150, 360)];
+    // Beside the state, the second row would be whole without the first node.
+    assert.equal(amongOthers(sight, drawing, box(0, 60), [], others, 400, 380).y, -24);
+    assert.equal(fullest(sight, drawing, [box(0, 30), box(0, 60), box(0, 390)], 400, 400).y, -24);
+    const start = withStart({ x: 200, y: 30, width: 100, height: 20 });
+    assert.deepEqual(start, { x: 110, y: 0, width: 190, height: 50 });
+});
+
+test("of two drawings that do not fit, the one of which a window shows more is chosen", () => {
+    const [wide, high] = [
+        { width: 2400, height: 1500 },
+        { width: 1300, height: 2300 },
+    ];
+    assert.equal(bestDrawing([wide, high], 1200, 750), 1);
+    assert.equal(bestDrawing([{ width: 2000, height: 900 }, high], 1200, 750), 0);
+    // The wide outline is lower than the narrow one.
+    const outlines = [
+        { width: 380, height: 2400 },
+        { width: 860, height: 1500 },
+    ];
+    assert.equal(bestDrawing([wide, high, ...outlines], 1200, 750), 3);
+    assert.equal(bestDrawing([wide, high, ...outlines], 500, 750), 2);
+    assert.equal(bestDrawing([{ width: 700, height: 600 }, high, ...outlines], 1200, 750), 0);
 });
 
 function box(x: number, y: number): Box {

@@ -16,6 +16,7 @@ from roaml.figures.pdf import pdf_file
 from roaml.figures.svg import svg_file, svg_scene
 from roaml.figures.themes import THEMES
 from roaml.ide.diagrams import (
+    OUTLINE_WIDTHS,
     DiagramKind,
     Picture,
     around,
@@ -33,8 +34,8 @@ from roaml.text import Location
 
 METHOD = "as2fm/picture"
 FILE_METHOD = "as2fm/pictureFile"
-OUTLINE = "outline"
-"""The parameter `direction` for the outline of a tree."""
+OUTLINES = dict(zip(("outline", "wide-outline"), OUTLINE_WIDTHS, strict=True))
+"""The widths of the outlines of a tree, in pixels, by the values of the parameter `direction`."""
 
 
 def register(context: Context) -> None:
@@ -55,8 +56,8 @@ def register(context: Context) -> None:
             return None
         _, kind, diagram = shown
         direction, theme = string(params, "direction"), string(params, "theme")
-        if direction == OUTLINE and kind is DiagramKind.TREE:
-            drawing = draw_outline(diagram)
+        if direction in OUTLINES and kind is DiagramKind.TREE:
+            drawing = draw_outline(diagram, OUTLINES[direction])
         else:
             is_wide = direction == LayoutDirection.RIGHT.value
             drawing = draw(kind, diagram, LayoutDirection.RIGHT if is_wide else LayoutDirection.DOWN)
@@ -140,10 +141,10 @@ def _converted(session: Session, analysis: Analysis, kind: DiagramKind, picture:
 
 
 def _drawings(kind: DiagramKind, picture: Picture) -> Iterator[Drawing]:
-    """The drawings in each direction, and the outline of a tree."""
+    """The drawings in each direction, and the outlines of a tree."""
     yield from (draw(kind, picture, direction) for direction in LayoutDirection)
     if kind is DiagramKind.TREE:
-        yield draw_outline(picture)
+        yield from (draw_outline(picture, width) for width in OUTLINES.values())
 
 
 def _drawing(drawing: Drawing) -> dict[str, object]:

@@ -136,11 +136,11 @@ export interface Picture {
     readonly title: string;
     readonly nodes: readonly PictureNode[];
     readonly edges: readonly PictureEdge[];
-    /** The drawings in the directions of `DIRECTIONS`. Only trees have an outline. */
+    /** The drawings in the directions of `DIRECTIONS`. Only trees have outlines. */
     readonly drawings: readonly Drawing[];
 }
 
-export const DIRECTIONS = ["down", "right", "outline"] as const;
+export const DIRECTIONS = ["down", "right", "outline", "wide-outline"] as const;
 export type Direction = (typeof DIRECTIONS)[number];
 
 export const THEMES = ["light", "dark", "high-contrast", "high-contrast-light"] as const;

@@ -19,7 +19,7 @@ from roaml.ide.diagrams.diagram import (
     EdgeKind,
     Picture,
 )
-from roaml.ide.diagrams.drawings import PAGE, draw, draw_for, draw_outline
+from roaml.ide.diagrams.drawings import OUTLINE_WIDTHS, PAGE, draw, draw_for, draw_outline
 from roaml.ide.diagrams.highlight import DiagramHighlight, highlights
 from roaml.ide.diagrams.machine import machine_picture
 from roaml.ide.diagrams.namespaces import closed_namespaces
@@ -31,6 +31,7 @@ from roaml.ide.diagrams.tree import tree_picture
 from roaml.project.analysis import Analysis
 
 __all__ = [
+    "OUTLINE_WIDTHS",
     "PAGE",
     "Detail",
     "DetailKind",

@@ -80,19 +80,22 @@ function at(drawing: Area, width: number, height: number, scale: number): Sight 
     return { scale, x: start(drawing.width, width / scale), y: start(drawing.height, height / scale) };
 }
 
-/** The index of the drawing of a tree as an outline. */
+/** The index of the first drawing of a tree as an outline. */
 export const OUTLINE = DIRECTIONS.indexOf("outline");
 
 /**
- * The index of the drawing that fits a window best: it is legible as a whole, or at least in its whole width. An outline
- * is used only if no other drawing is legible as a whole. `least` is the minimum legible scale.
+ * The index of the drawing that fits a window best: it is legible as a whole, or at least in its whole width; of several
+ * others, the one of which the window shows the largest part. An outline is used only if no other drawing is legible as a
+ * whole. `least` is the minimum legible scale.
  */
 export function bestDrawing(drawings: readonly Area[], width: number, height: number, least = LEGIBLE): number {
     const rank = (drawing: Area): readonly number[] => {
         const scale = scaleOf(drawing, width, height);
-        const fitsAcross = drawing.width * least <= width - 2 * MARGIN;
-        const isFirst = drawings.indexOf(drawing) !== OUTLINE;
-        return scale >= least ? [1, Number(isFirst), scale] : [0, Number(fitsAcross), scale];
+        const isFirst = drawings.indexOf(drawing) < OUTLINE;
+        if (scale >= least) return [1, Number(isFirst), scale];
+        const across = Math.min(1, (width - 2 * MARGIN) / (drawing.width * least));
+        const along = Math.min(1, (height - 2 * MARGIN) / (drawing.height * least));
+        return [0, Number(across === 1), across * along];
     };
     let best = 0;
     drawings.forEach((drawing, index) => {
@@ -185,7 +188,8 @@ export function amongOthers(
         for (const other of reachable) {
             const [right, bottom] = [other.x + other.width, other.y + other.height];
             if (other.x >= x && right <= x + w && other.y >= y && bottom <= y + h) sum += near.includes(other) ? 3 : 1;
-            else if (other.x < x + w && right > x && other.y < y + h && bottom > y) sum -= 0.5;
+            else if (other.x < x + w && right > x && other.y < y + h && bottom > y)
+                sum -= other.x < x || other.y < y ? CUT_AT_START : CUT_AT_END;
         }
         return sum;
     };
@@ -198,7 +202,8 @@ export function amongOthers(
     return { ...sight, x: best.x, y: best.y };
 }
 
-/** The view with as many whole boxes as possible; among equally good views, the one nearest to the start. */
+/** The view with as many whole boxes as possible, and few that are cut off at the upper side; among equally good views,
+ * the one nearest to the start. */
 export function fullest(sight: Sight, drawing: Area, boxes: readonly Box[], width: number, height: number): Sight {
     const [w, h] = [width / sight.scale, height / sight.scale];
     const margin = MARGIN / sight.scale;
@@ -214,18 +219,33 @@ export function fullest(sight: Sight, drawing: Area, boxes: readonly Box[], widt
     let best = { ...sight, count: -1 };
     for (const y of rows) {
         const inRow = boxes.filter((box) => box.y >= y && box.y + box.height <= y + h);
+        const cut = boxes.filter((box) => box.y < y && box.y + box.height > y);
         for (const x of columns) {
-            const count = inRow.filter((box) => box.x >= x && box.x + box.width <= x + w).length;
+            const isWithin = (box: Box) => box.x >= x && box.x + box.width <= x + w;
+            const count = inRow.filter(isWithin).length - cut.filter(isWithin).length;
             if (count > best.count) best = { ...sight, x, y, count };
         }
     }
     return { x: best.x, y: best.y, scale: best.scale };
 }
 
+/** The distance of the dot before an initial state from the left or the upper side of the state, in pixels. */
+const START = 90;
+
+/** The box of an initial state with the dot before it, on the left or above. */
+export function withStart<B extends Box>(box: B): B {
+    const [left, top] = [Math.min(START, box.x), Math.min(START, box.y)];
+    return { ...box, x: box.x - left, y: box.y - top, width: box.width + left, height: box.height + top };
+}
+
 function ascending(one: number, other: number): number {
     return one - other;
 }
 
+/** What a box that is cut off counts, less than a whole one: at the left or the upper side, or at the other sides, where
+ * readers expect that a picture goes on. */
+const CUT_AT_START = 4;
+const CUT_AT_END = 0.5;
 /** The maximum number of places in one direction that are compared. */
 const MAX_PLACES = 100;
 /** The extent of a box in one direction. */

@@ -7,7 +7,7 @@ import { centered, mapOf, type MapScale, type Sight } from "./find";
 import { element } from "./scene";
 
 /** The size of the largest map, in pixels. */
-const LARGEST = { width: 200, height: 300 };
+const LARGEST = { width: 150, height: 190 };
 /** A drawing needs no map if it is at most this many times as large as the visible part. */
 const ALMOST_ALL = 1.4;
 /** A smaller window has no space for a map, in pixels. */

@@ -34,6 +34,7 @@ import {
     reveal,
     search,
     shifts,
+    withStart,
     zoom,
     type PlacedNodes,
     type Sight,
@@ -237,13 +238,15 @@ export class PictureView {
     private best(): number {
         const { width, height } = this.svg.getBoundingClientRect();
         const drawings = this.picture?.drawings ?? [];
-        if (this.wantsOutline === true && drawings[OUTLINE]) return OUTLINE;
+        const outlines = drawings.slice(OUTLINE);
+        if (this.wantsOutline === true && outlines.length > 0)
+            return OUTLINE + bestDrawing(outlines, width, height, this.least);
         const candidates = this.wantsOutline === false ? drawings.slice(0, OUTLINE) : drawings;
         return bestDrawing(candidates, width, height, this.least);
     }
 
     private toggleOutline(): void {
-        this.wantsOutline = this.shown !== OUTLINE;
+        this.wantsOutline = this.shown < OUTLINE;
         this.shown = this.best();
         this.moved = false;
         this.drawAgain();
@@ -253,7 +256,7 @@ export class PictureView {
 
     private offerOutline(): void {
         this.outlineButton.hidden = !this.picture?.drawings[OUTLINE];
-        this.outlineButton.setAttribute("aria-pressed", String(this.shown === OUTLINE));
+        this.outlineButton.setAttribute("aria-pressed", String(this.shown >= OUTLINE));
     }
 
     /** Adapt the drawing to a new size of the window, unless the user has changed the visible part. */
@@ -306,7 +309,7 @@ export class PictureView {
         const { width, height } = this.svg.getBoundingClientRect();
         if (!this.drawing) return;
         const sight = fitLegibly(this.drawing, width, height, this.least);
-        const first = this.box(this.first);
+        const first = this.firstBox(sight, width, height);
         if (!first && this.picture?.kind === "ros") {
             this.look(fullest(sight, this.drawing, this.innermost(this.drawing), width, height));
             return;
@@ -348,6 +351,17 @@ export class PictureView {
         if ("node" in part) return part.node;
         const source = this.picture?.edges[part.edge]?.source;
         return this.picture?.nodes.findIndex((node) => node.id === source) ?? -1;
+    }
+
+    /** The box of the node that is shown first, with what belongs to it: the dot of an initial state, and the frame
+     * around it if the whole frame is visible. */
+    private firstBox(sight: Sight, width: number, height: number): DrawnNode | undefined {
+        const box = this.box(this.first);
+        const node = this.picture?.nodes[this.first];
+        if (!box || !node) return box;
+        const frame = this.box(this.picture?.nodes.findIndex(({ id }) => id === node.parent) ?? -1);
+        if (frame && frame.width * sight.scale <= width && frame.height * sight.scale <= height) return frame;
+        return node.initial ? withStart(box) : box;
     }
 
     private box(node: number): DrawnNode | undefined {

@@ -2,7 +2,7 @@
 """Drawings of diagrams: the position and the style of each part.
 
 The editor and the command line use the same drawings. A drawing has one of two directions: for an area that is wider
-than it is high, or higher than it is wide. A tree has a third drawing, an outline, for narrow areas.
+than it is high, or higher than it is wide. A tree also has a narrow and a wide outline.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from roaml.figures.drawing import Drawing
 from roaml.figures.layout import LayoutDirection
 from roaml.ide.diagrams.diagram import DiagramKind, Picture
 from roaml.ide.diagrams.drawings.machine import draw_machine
-from roaml.ide.diagrams.drawings.outline import draw_outline
+from roaml.ide.diagrams.drawings.outline import OUTLINE_WIDTHS, draw_outline
 from roaml.ide.diagrams.drawings.ros import draw_ros
 from roaml.ide.diagrams.drawings.system import draw_system
 from roaml.ide.diagrams.drawings.tree import draw_tree
@@ -25,7 +25,7 @@ _PAINTERS: Mapping[DiagramKind, Callable[[Picture, LayoutDirection], Drawing]] =
     DiagramKind.SYSTEM: draw_system,
 }
 
-__all__ = ["PAGE", "draw", "draw_for", "draw_outline", "scale"]
+__all__ = ["OUTLINE_WIDTHS", "PAGE", "draw", "draw_for", "draw_outline", "scale"]
 
 PAGE = (1200.0, 900.0)
 """The width and height of the area for a drawing in a document, in pixels."""

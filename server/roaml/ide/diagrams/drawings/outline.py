@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The drawing of a behavior tree as an outline for narrow areas: a row for each node, with its children indented below.
+"""The drawing of a behavior tree as an outline: a row for each node, with its children indented below.
 
 A row has the symbol, the name, the plugin and the number of its node, then its ports, scripts and mock, continued in
 further lines if necessary. Of several constant ports, those are shown for which the last line has space; a hover shows
@@ -30,8 +30,9 @@ from roaml.ide.diagrams.drawings.tree import (
     with_blackboard,
 )
 
-WIDTH = 380.0
-"""The width of the whole drawing, in pixels, if no node is too deep: it is legible in a panel of 400 pixels."""
+OUTLINE_WIDTHS = (380.0, 860.0)
+"""The widths of whole drawings, in pixels, if no node is too deep: they are legible in panels of 400 and 840 pixels. In
+the wide drawing, most nodes need one line."""
 _MIN_TEXT_WIDTH = 180.0
 """The width of the lines of a node that is too deep, in pixels."""
 MAX_LINES = 2
@@ -43,14 +44,17 @@ _PADDING = 5.0
 below, in pixels."""
 
 
-def draw_outline(picture: Picture) -> Drawing:
+def draw_outline(picture: Picture, width: float = OUTLINE_WIDTHS[0]) -> Drawing:
+    """The outline of a tree; its lines have at most a width in pixels."""
     index = {node.id: number for number, node in enumerate(picture.nodes)}
     children = children_of(picture)
     variables = [node.id for node in picture.nodes if node.kind is DiagramNodeKind.VARIABLE]
     written = [node.id for node in picture.nodes if node.kind is not DiagramNodeKind.VARIABLE]
     depths = dict(rows(dict.fromkeys(written), children))
-    cards = {name: _Lines(picture, picture.nodes[index[name]], depth) for name, depth in depths.items()}
-    cards |= {name: _Lines(picture, picture.nodes[index[name]], 0) for name in variables}
+    cards = {
+        name: _Lines(picture, picture.nodes[index[name]], width - depth * INDENT) for name, depth in depths.items()
+    }
+    cards |= {name: _Lines(picture, picture.nodes[index[name]], OUTLINE_WIDTHS[0]) for name in variables}
     layout = outline({name: cards[name].size for name in written}, children)
     boxes, size = with_blackboard(layout.nodes, layout.size, {name: cards[name].size for name in variables})
     groups = links(picture, children, layout.routes)
@@ -59,16 +63,19 @@ def draw_outline(picture: Picture) -> Drawing:
 
 
 class _Lines:
-    """The texts of a node, in lines that have the width of the drawing."""
+    """The texts of a node, in lines.
 
-    def __init__(self, picture: Picture, node: DiagramNode, depth: int) -> None:
+    Args:
+        available: the maximum width of the node, in pixels.
+    """
+
+    def __init__(self, picture: Picture, node: DiagramNode, available: float) -> None:
         self.node = node
         self.shape = OUTLINES.get(node.kind, Outline.ROUNDED)
         self.side = 0.0 if node.title is None else BADGE + _BADGE_DISTANCE
         # The ends of conditions are round, those of decorators slanted.
         inset = {Outline.PILL: MAX_ROUNDING / 2, Outline.HEXAGON: 6.0, Outline.DOUBLE: 3.0}.get(self.shape, 0.0)
-        width = WIDTH - depth * INDENT - self.side - 2 * (PADDING + inset)
-        width = max(_MIN_TEXT_WIDTH, width)
+        width = max(_MIN_TEXT_WIDTH, available - self.side - 2 * (PADDING + inset))
         self.lines = _filled(*_texts(picture, node, width), width)
         across = max(map(_width, self.lines)) + self.side + 2 * PADDING
         height = max(BADGE, sum(map(_height, self.lines))) + 2 * _PADDING
