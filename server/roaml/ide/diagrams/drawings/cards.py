@@ -63,7 +63,8 @@ class Row(Record, frozen=True):
 
 
 class Card(Record, frozen=True):
-    """A column of rows. `ruled` is true if a line separates the first row from the others. `side` is the free width on
+    """A column of rows. `ruled` is true if a line separates the first row from the others; if there are no others, the
+    first row is in the middle of a wider box. `side` is the free width on
     the left of the first row, for a badge, and `padding` the distance of the rows from the edge of the card, both in
     pixels."""
 
@@ -101,6 +102,8 @@ class Card(Record, frozen=True):
                     items.append(Polyline(rule, role="rule"))
                 y += gap
             x = box.x + self.padding + (self.side if index == 0 else 0)
+            if self.ruled and len(self.rows) == 1:
+                x = box.x + (box.width - row.size.width) / 2
             items += row_items(row, x, y)
             y += row.size.height
         return tuple(items)
