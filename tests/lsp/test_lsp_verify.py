@@ -204,6 +204,16 @@ async def test_properties_that_can_be_verified(tmp_path: Path) -> None:
         assert ticks["stale"] is True
 
 
+async def test_systems_with_properties_are_in_the_order_of_their_paths(tmp_path: Path) -> None:
+    for name in ("one", "two"):
+        (tmp_path / name).mkdir()
+        clock.write(tmp_path / name)
+    mains = [(tmp_path / name / "main.xml").as_uri() for name in ("one", "two")]
+    async with connect(tmp_path) as client:
+        client.open(tmp_path / "two" / "clock.ascxml")
+        assert [system["uri"] for system in await ask(client, PROPERTIES, None)] == mains
+
+
 async def test_counterexample_leads_to_the_models(robot: Path) -> None:
     main = robot / "main_with_bug.xml"
     async with connect(robot) as client:

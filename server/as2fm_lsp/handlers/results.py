@@ -62,10 +62,10 @@ def register(context: Context) -> None:
     @context.feature(PROPERTIES)
     def properties(_: Any) -> list[Json]:
         """The systems that have properties, and the trees without a system that have mocks or are open, with the
-        properties and their known results."""
+        properties and their known results, in the order of their paths."""
         moment = session.moment()
         systems = []
-        for path in moment.files():
+        for path in sorted(moment.files()):
             snapshot = moment.snapshot(path)
             analysis = snapshot.analysis
             if analysis.kind(path) is FileKind.SYSTEM or _is_tree_to_verify(context, analysis, path):

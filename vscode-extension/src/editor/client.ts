@@ -57,6 +57,8 @@ const MAX_LOGGED_CHARACTERS = 4000;
 /** Handles the results of lenses and commands of the server. */
 export interface Listener {
     onTranslated(translated: Translated): unknown;
+    /** The server knows that a file on the disk has changed. */
+    onFile(): void;
     /** Executes a command instead of the server, so that the Test Explorer shows the results. No names means all. */
     onVerify(system: string, names: readonly string[]): unknown;
 }
@@ -147,6 +149,12 @@ function options(log: vscode.LogOutputChannel, listener: Listener): LanguageClie
             closed: () => ({ action: CloseAction.DoNotRestart, handled: true }),
         },
         middleware: {
+            workspace: {
+                async didChangeWatchedFile(event, next) {
+                    await next(event);
+                    listener.onFile();
+                },
+            },
             handleDiagnostics(uri, diagnostics, next) {
                 next(uri, isXml(uri) && ownsWellFormedness() ? diagnostics.filter(isOurs) : diagnostics);
             },

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import * as vscode from "vscode";
 import type { Location, Position } from "vscode-languageserver-protocol";
-import { migrate, TRANSLATE } from "../protocol";
+import { migrate, TRANSLATE, type Property } from "../protocol";
 import { thisHost } from "../server/host";
 import { pythons } from "../server/python";
 import {
@@ -16,6 +16,7 @@ import {
     SHOW_WITNESS,
 } from "./client";
 import type { Activation } from "./activation";
+import { chosenProperty } from "./chosenProperty";
 import { compareRuns } from "./compareRuns";
 import type { Counterexamples } from "./counterexamples";
 import type { Debugging, Trace } from "./debugging";
@@ -91,46 +92,44 @@ export function registerCommands(parts: Parts): void {
             return vscode.commands.executeCommand("editor.action.showReferences", convert.asUri(uri), at, locations);
         }),
     );
+    type Of = string | vscode.TestItem | Asked | undefined;
+    /** The property that a lens, a message, a test or a row denotes; without one, in the palette, the user chooses. */
+    const ofProperty = (of: Of, property: string, applies: (property: Property) => boolean, none: string) =>
+        of === undefined ? chosenProperty(parts.tests.known, applies, none) : parts.tests.asked(of, property);
+    const withCounterexample = (of: Of, property: string) =>
+        ofProperty(
+            of,
+            property,
+            ({ view }) => view?.counterexample === true,
+            vscode.l10n.t("No property has a counterexample. Verify the properties first."),
+        );
     context.subscriptions.push(
-        // Also called from a lens, from a message, and from the menu of a test.
-        vscode.commands.registerCommand(
-            SHOW_COUNTEREXAMPLE,
-            (of: string | vscode.TestItem | Asked, property: string) => {
-                const asked = parts.tests.asked(of, property);
-                return asked && parts.counterexamples.show(asked.system, asked.property);
-            },
-        ),
-        vscode.commands.registerCommand(SHOW_WITNESS, (of: string | vscode.TestItem | Asked, property: string) => {
-            const asked = parts.tests.asked(of, property);
-            return asked && parts.counterexamples.show(asked.system, asked.property, true);
+        vscode.commands.registerCommand(SHOW_COUNTEREXAMPLE, async (of: Of, property: string) => {
+            const asked = await withCounterexample(of, property);
+            if (asked) await parts.counterexamples.show(asked.system, asked.property);
         }),
-        vscode.commands.registerCommand(
-            SET_EXPECTATION,
-            async (of: string | vscode.TestItem | Asked, property: string) => {
-                const asked = parts.tests.asked(of, property);
-                if (!asked || !isTrusted()) return;
-                if (await chooseExpectation(server, asked.system, asked.property)) await parts.tests.refresh();
-            },
-        ),
-    );
-    context.subscriptions.push(
+        vscode.commands.registerCommand(SHOW_WITNESS, async (of: Of, property: string) => {
+            const none = vscode.l10n.t("No property has a witness. Verify the properties first.");
+            const asked = await ofProperty(of, property, ({ view }) => view?.witness === true, none);
+            if (asked) await parts.counterexamples.show(asked.system, asked.property, true);
+        }),
+        vscode.commands.registerCommand(SET_EXPECTATION, async (of: Of, property: string) => {
+            const none = vscode.l10n.t("There are no properties.");
+            const asked = await ofProperty(of, property, () => true, none);
+            if (!asked || !isTrusted()) return;
+            if (await chooseExpectation(server, asked.system, asked.property)) await parts.tests.refresh();
+        }),
         // From the command palette and the view of a counterexample, without arguments.
-        vscode.commands.registerCommand(
-            COMPARE_RUNS,
-            async (of: string | vscode.TestItem | Asked | undefined, property: string) => {
-                const { asked: shown } = parts.counterexamples;
-                const asked = of === undefined ? shown : parts.tests.asked(of, property);
-                if (asked && isTrusted()) await compareRuns(server, parts.debugging, asked);
-            },
-        ),
-        vscode.commands.registerCommand(
-            DEBUG_COUNTEREXAMPLE,
-            (of: string | vscode.TestItem | Asked, property: string, trace?: Trace) => {
-                const asked = parts.tests.asked(of, property);
-                const uri = asked && server.client?.protocol2CodeConverter.asUri(asked.system);
-                return uri && parts.debugging.counterexample(uri, asked.property, asked.trace ?? trace);
-            },
-        ),
+        vscode.commands.registerCommand(COMPARE_RUNS, async (of: Of, property: string) => {
+            const { asked: shown } = parts.counterexamples;
+            const asked = of === undefined ? shown : parts.tests.asked(of, property);
+            if (asked && isTrusted()) await compareRuns(server, parts.debugging, asked);
+        }),
+        vscode.commands.registerCommand(DEBUG_COUNTEREXAMPLE, async (of: Of, property: string, trace?: Trace) => {
+            const asked = await withCounterexample(of, property);
+            const uri = asked && server.client?.protocol2CodeConverter.asUri(asked.system);
+            if (uri) await parts.debugging.counterexample(uri, asked.property, asked.trace ?? trace);
+        }),
     );
     context.subscriptions.push(
         vscode.commands.registerCommand(DEBUG_MODEL, async (model: string, attributes: object) => {
@@ -144,8 +143,9 @@ export function registerCommands(parts: Parts): void {
             parts.activation.need();
             return experiment(parts, of, typeof parameter === "string" ? parameter : undefined);
         }),
-        vscode.commands.registerCommand(EDIT_MOCKS, (tree: string) => {
-            const uri = server.client?.protocol2CodeConverter.asUri(tree);
+        vscode.commands.registerCommand(EDIT_MOCKS, (tree?: string) => {
+            const active = vscode.window.activeTextEditor?.document.uri;
+            const uri = tree === undefined ? active : server.client?.protocol2CodeConverter.asUri(tree);
             done("mocked");
             return uri && pictures.editMocks(uri);
         }),

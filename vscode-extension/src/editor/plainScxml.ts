@@ -21,15 +21,12 @@ export class PlainScxmlPreview implements vscode.TextDocumentContentProvider, vs
     constructor(private readonly server: LanguageServer) {
         this.subscriptions = [
             vscode.workspace.registerTextDocumentContentProvider(SCHEME, this),
-            vscode.workspace.onDidChangeTextDocument(({ document }) => {
-                if (document.uri.scheme !== SCHEME) this.refreshSoon();
+            server.onModels(() => {
+                this.refreshSoon();
             }),
             vscode.workspace.onDidCloseTextDocument((document) => this.shown.delete(document.uri.toString())),
             vscode.window.onDidChangeTextEditorSelection((event) => {
                 this.follow(event);
-            }),
-            server.onState((state) => {
-                if (state.kind === "running") this.refreshSoon();
             }),
         ];
     }

@@ -60,6 +60,13 @@ export class ResultsView implements vscode.Disposable, vscode.TreeDataProvider<R
             tests.onSystems((systems) => {
                 this.show(systems);
             }),
+            tests.onVerifying(() => {
+                this.changed.fire(undefined);
+            }),
+            // The names of the systems contain that of their folder if there are several.
+            vscode.workspace.onDidChangeWorkspaceFolders(() => {
+                this.changed.fire(undefined);
+            }),
             vscode.commands.registerCommand(OPEN, ({ shown: { uri, range } }: PropertyRow) =>
                 jump({ uri, range }, false, true),
             ),
@@ -93,11 +100,15 @@ export class ResultsView implements vscode.Disposable, vscode.TreeDataProvider<R
         const sentence = comment === "" ? name : comment;
         const item = new vscode.TreeItem(sentence, view ? Collapsed : None);
         item.id = `${row.system}#${name}`;
-        const words = view?.words ?? vscode.l10n.t("not verified");
+        const isRunning = this.tests.isBeingVerified(row);
+        const known = view?.words ?? vscode.l10n.t("not verified");
+        const words = isRunning ? vscode.l10n.t("Verifying…") : known;
         item.description = comment === "" ? words : `${name}: ${words}`;
         item.tooltip = [sentence, ...(view ? [view.since, ...view.lines] : [words])].filter((line) => line).join("\n");
         const [icon, color] = view ? ICONS[view.mark] : ["circle-outline", "disabledForeground"];
-        item.iconPath = new vscode.ThemeIcon(icon, new vscode.ThemeColor(stale ? "disabledForeground" : color));
+        item.iconPath = isRunning
+            ? new vscode.ThemeIcon("loading~spin")
+            : new vscode.ThemeIcon(icon, new vscode.ThemeColor(stale ? "disabledForeground" : color));
         item.contextValue = contextOf(view);
         item.command = { command: OPEN, title: vscode.l10n.t("Go to Text"), arguments: [row] };
         item.accessibilityInformation = { label: `${sentence} ${item.description}` };

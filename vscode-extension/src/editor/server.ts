@@ -27,17 +27,40 @@ export class LanguageServer implements vscode.Disposable {
     private readonly recall: Recall;
     private readonly wheel: string;
     private readonly states = new vscode.EventEmitter<State>();
+    private readonly models = new vscode.EventEmitter<undefined>();
+    private readonly subscriptions: readonly vscode.Disposable[];
     private compiling: Promise<void> | undefined;
     private connection: Connection | undefined;
 
     /** Fires at each change of the state. */
     readonly onState = this.states.event;
+    /**
+     * Fires when answers of the server may have changed: after changes of texts, of files on the disk, of folders and of
+     * settings, and when a server runs. It may fire often, and before the server is told.
+     */
+    readonly onModels = this.models.event;
 
     constructor(
         context: vscode.ExtensionContext,
         private readonly log: vscode.LogOutputChannel,
-        private readonly listener: Listener,
+        listener: Omit<Listener, "onFile">,
     ) {
+        const changed = () => {
+            this.models.fire(undefined);
+        };
+        this.subscriptions = [
+            vscode.workspace.onDidChangeTextDocument(({ document }) => {
+                if (document.uri.scheme === "file" || document.isUntitled) changed();
+            }),
+            // Without an editor, the text is that on the disk again.
+            vscode.workspace.onDidCloseTextDocument(({ uri }) => {
+                if (uri.scheme === "file") changed();
+            }),
+            vscode.workspace.onDidChangeWorkspaceFolders(changed),
+            this.onState(({ kind }) => {
+                if (kind === "running") changed();
+            }),
+        ];
         const wheel = findWheel(context.extensionPath);
         const folder = join(context.globalStorageUri.fsPath, "environments");
         this.wheel = wheel.id;
@@ -47,7 +70,7 @@ export class LanguageServer implements vscode.Disposable {
             find: (hurry) => this.find(hurry),
             install: (onStep) => this.installWithProgress(onStep),
             launch: async (server) => {
-                this.connection = await connect(server, log, this.listener);
+                this.connection = await connect(server, log, { ...listener, onFile: changed });
                 return this.connection;
             },
             now: Date.now,
@@ -102,6 +125,7 @@ export class LanguageServer implements vscode.Disposable {
     /** Notify the server, which then requests the settings. */
     settingsChanged(): void {
         void this.client?.sendNotification(DidChangeConfigurationNotification.type, { settings: null });
+        this.models.fire(undefined);
     }
 
     /** Send a request; return undefined if no server runs, or if the server returns no result. */
@@ -115,7 +139,7 @@ export class LanguageServer implements vscode.Disposable {
     }
 
     dispose(): void {
-        this.states.dispose();
+        for (const disposable of [...this.subscriptions, this.states, this.models]) disposable.dispose();
         void this.supervisor.stop();
     }
 

@@ -48,6 +48,11 @@ export class PropertyTests implements vscode.Disposable {
     private readonly systems = new vscode.EventEmitter<readonly VerifiableSystem[]>();
     /** The systems with their properties and known results, whenever they may have changed. */
     readonly onSystems = this.systems.event;
+    private readonly verifying = new vscode.EventEmitter<undefined>();
+    /** Fires when properties begin to be verified, and when that ends. */
+    readonly onVerifying = this.verifying.event;
+    /** The systems with their properties that were known last. */
+    known: readonly VerifiableSystem[] = [];
 
     constructor(
         private readonly server: LanguageServer,
@@ -73,13 +78,12 @@ export class PropertyTests implements vscode.Disposable {
         this.subscriptions = [
             this.controller,
             this.systems,
+            this.verifying,
             profile,
             debug,
-            server.onState(soon),
+            server.onModels(soon),
+            // A tree without a system is listed when it is open.
             vscode.languages.onDidChangeDiagnostics(soon),
-            vscode.workspace.onDidChangeTextDocument(({ document }) => {
-                if (document.uri.scheme === "file") soon();
-            }),
         ];
     }
 
@@ -116,6 +120,10 @@ export class PropertyTests implements vscode.Disposable {
         return "system" in of ? of : this.askedBy.get(of);
     }
 
+    isBeingVerified({ system, property }: Asked): boolean {
+        return this.running.has(testId(system, property));
+    }
+
     dispose(): void {
         clearTimeout(this.timer);
         for (const subscription of this.subscriptions) subscription.dispose();
@@ -132,6 +140,7 @@ export class PropertyTests implements vscode.Disposable {
     async refresh(): Promise<void> {
         const systems = await this.server.ask(properties, null);
         if (systems === undefined) return;
+        this.known = systems;
         this.systems.fire(systems);
         const known = new Set(systems.map(({ uri }) => uri));
         this.controller.items.forEach((item) => {
@@ -147,6 +156,8 @@ export class PropertyTests implements vscode.Disposable {
             suite = this.controller.createTestItem(uri, vscode.workspace.asRelativePath(place), place);
             this.controller.items.add(suite);
         }
+        // With several folders, a path begins with the name of its folder.
+        suite.label = vscode.workspace.asRelativePath(place);
         const ids = new Set(all.map(({ name }) => testId(uri, name)));
         suite.children.forEach((item) => {
             if (!ids.has(item.id)) suite.children.delete(item.id);
@@ -171,6 +182,8 @@ export class PropertyTests implements vscode.Disposable {
             this.stale.add(id);
             this.controller.invalidateTestResults(item);
         } else if (!property.stale) this.stale.delete(id);
+        if (item.description !== undefined)
+            item.description = marked(item.description, vscode.l10n.t("stale"), property.stale === true);
         if (property.result && property.stale === false) this.compareAgain(item, property.result);
     }
 
@@ -208,7 +221,7 @@ export class PropertyTests implements vscode.Disposable {
         }
         try {
             for (const [system, tests] of bySystem) {
-                if (cancel.token.isCancellationRequested) for (const item of tests) run.skipped(item);
+                if (cancel.token.isCancellationRequested) for (const item of tests) this.skip(run, item);
                 else await this.runSystem(run, system, tests, cancel.token);
             }
         } finally {
@@ -240,6 +253,7 @@ export class PropertyTests implements vscode.Disposable {
             item.busy = true;
             this.running.add(item.id);
         }
+        this.verifying.fire(undefined);
         const all = new Map(open);
         const take = (result: Verified) => {
             const item = open.get(result.property);
@@ -260,20 +274,29 @@ export class PropertyTests implements vscode.Disposable {
             for (const item of open.values()) {
                 const wrong = answer?.errors.map((error) => this.wrong(error)) ?? [];
                 if (wrong.length > 0) run.errored(item, wrong);
-                else run.skipped(item);
+                else this.skip(run, item);
             }
         } catch (error) {
             this.log.debug(`${system} has no answer: ${String(error)}`);
             for (const item of open.values()) {
-                if (token.isCancellationRequested) run.skipped(item);
+                if (token.isCancellationRequested) this.skip(run, item);
                 else run.errored(item, new vscode.TestMessage(String(error)));
             }
         } finally {
             for (const item of items) {
                 item.busy = false;
                 this.running.delete(item.id);
+                // What is shown now is new, but may be stale: the text has changed meanwhile, or the run was cancelled.
+                this.stale.delete(item.id);
             }
+            this.verifying.fire(undefined);
         }
+    }
+
+    /** End a test without a result. The result that is known, if there is one, is shown again. */
+    private skip(run: vscode.TestRun, item: vscode.TestItem): void {
+        run.skipped(item);
+        if (this.judged.has(item.id)) this.judged.set(item.id, "");
     }
 
     private async ask(
@@ -382,6 +405,13 @@ export class PropertyTests implements vscode.Disposable {
         if (uri !== undefined && range) made.location = new vscode.Location(this.uri(uri), rangeOf(range));
         return made;
     }
+}
+
+/** A text with a mark at its end, or without it. */
+function marked(text: string, mark: string, isMarked: boolean): string {
+    const end = `, ${mark}`;
+    const plain = text.endsWith(end) ? text.slice(0, -end.length) : text;
+    return isMarked ? plain + end : plain;
 }
 
 function testId(system: string, property: string): string {
