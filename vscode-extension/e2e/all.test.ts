@@ -8,6 +8,7 @@ import { experiments } from "./experiments";
 import { firstStart } from "./firstStart";
 import { compatibility } from "./compatibility";
 import { serverLifeCycle } from "./serverLifeCycle";
+import { journeys } from "./journeys";
 import { pictures } from "./pictures";
 import { restricted } from "./restricted";
 import { systems } from "./systems";
@@ -35,6 +36,9 @@ describe("pictures", () => {
 });
 describe("verification", () => {
     verification(stage);
+});
+describe("journeys", () => {
+    journeys(stage);
 });
 describe("experiments", () => {
     experiments(stage);

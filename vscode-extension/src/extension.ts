@@ -13,6 +13,7 @@ import { JaniView } from "./editor/janiView";
 import { PicturePanels } from "./editor/picturePanels";
 import { PlainScxmlPreview } from "./editor/plainScxml";
 import { onInterpreterChange } from "./editor/pythonExtensions";
+import { watchEditors } from "./editor/recentEditor";
 import { ResultsView } from "./editor/results";
 import { LanguageServer } from "./editor/server";
 import { Stage } from "./editor/stage";
@@ -72,6 +73,7 @@ export function activate(context: vscode.ExtensionContext): void {
         new Stage(context, sessions, pictures, server, log),
         ...debugging.register(),
         watchErrors(),
+        watchEditors(),
     );
     server.onState((state) => {
         status.show(state);

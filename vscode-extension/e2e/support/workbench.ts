@@ -89,16 +89,17 @@ export class Workbench {
         return new Workbench(home, port, server, browser);
     }
 
-    /** Opens a folder. After `leave` or `forget`, the browser knows nothing of earlier folders. */
+    /** Opens a folder, or a file that lists the folders of a workspace. After `leave` or `forget`, the browser knows nothing of earlier folders. */
     async open(folder: string): Promise<Window> {
         if (!this.page) {
             this.page = await this.browser.newPage();
             this.page.on("dialog", (dialog) => void dialog.accept()); // whether to leave a page with changes
         }
         this.page.setDefaultTimeout(TIMEOUT_MS);
-        await this.page.goto(`${this.address}/?folder=${folder}`);
+        const isFile = folder.endsWith(".code-workspace");
+        await this.page.goto(`${this.address}/?${isFile ? "workspace" : "folder"}=${folder}`);
         await this.page.locator(".monaco-workbench").waitFor();
-        return new Window(this.page, folder);
+        return new Window(this.page, isFile ? path.dirname(folder) : folder);
     }
 
     /** Leaves the page, so that its extensions end, and removes what it has stored. In the same page, the next folder

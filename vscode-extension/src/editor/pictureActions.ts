@@ -6,7 +6,8 @@ import { PICTURE_ACTIONS, type MenuContext, type MenuPart, type PictureAction } 
 import { pictureEdit, type PictureEdit, type PictureEditParams, type PictureQuestion } from "../protocol";
 import { toggle } from "./breakpoints";
 import type { PicturePanels } from "./picturePanels";
-import { jump } from "./pictureSource";
+import { jump, type PictureSource } from "./pictureSource";
+import { columnFor } from "./recentEditor";
 import type { LanguageServer } from "./server";
 
 /** A picture takes the focus back when its menu closes. This must not close a question that is already open. */
@@ -14,11 +15,14 @@ const LASTING = { ignoreFocusOut: true };
 
 export class PictureActions implements vscode.Disposable {
     private readonly commands: readonly vscode.Disposable[];
+    /** The file that was changed last. */
+    private changed: vscode.Uri | undefined;
 
     constructor(
         private readonly server: LanguageServer,
         private readonly pictures: PicturePanels,
     ) {
+        pictures.onChangeBack = (source, which) => this.changeBack(source, which);
         this.commands = [
             vscode.commands.registerCommand("as2fm.picture.goTo", async ({ as2fmParts }: MenuContext) => {
                 const part = await chooseOne(as2fmParts);
@@ -52,7 +56,16 @@ export class PictureActions implements vscode.Disposable {
         // The edit is shown, and can be undone, in the text.
         if (part) await jump(part.place, false, true);
         else await vscode.window.showTextDocument(vscode.Uri.parse(uri), { preserveFocus: true });
-        await vscode.workspace.applyEdit(edit);
+        if (await vscode.workspace.applyEdit(edit)) this.changed = vscode.Uri.parse(uri);
+    }
+
+    /** Undo or redo in the text, where VS Code keeps the changes, and return to the picture. */
+    private async changeBack(source: PictureSource, which: "undo" | "redo"): Promise<void> {
+        const uri = this.changed ?? source.uri;
+        if (!uri) return;
+        await vscode.window.showTextDocument(uri, { viewColumn: columnFor(uri) });
+        await vscode.commands.executeCommand(which);
+        source.host.focus();
     }
 
     /** Ask the server for an edit, and the user for what the server still needs. */

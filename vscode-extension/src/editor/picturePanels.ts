@@ -23,6 +23,8 @@ export class PicturePanels implements vscode.Disposable {
     private readonly verified = new vscode.EventEmitter<undefined>();
     /** A tree was verified after a change of its mocks. */
     readonly onVerified = this.verified.event;
+    /** Undoes the last change of the text of a picture, or makes it again. */
+    onChangeBack: (source: PictureSource, which: "undo" | "redo") => Promise<void> = () => Promise.resolve();
 
     constructor(
         private readonly context: vscode.ExtensionContext,
@@ -30,8 +32,12 @@ export class PicturePanels implements vscode.Disposable {
         private readonly log: vscode.LogOutputChannel,
     ) {
         this.subscriptions = [
-            vscode.workspace.onDidChangeTextDocument(({ document }) => {
-                if (document.uri.scheme === "file" || document.isUntitled) this.refreshSoon();
+            server.onModels(() => {
+                this.refreshSoon();
+            }),
+            vscode.workspace.onDidRenameFiles(({ files }) => {
+                for (const source of this.sources) source.rename(files);
+                this.refreshSoon();
             }),
             vscode.window.onDidChangeTextEditorSelection(({ textEditor }) => {
                 this.follow(textEditor);
@@ -41,9 +47,6 @@ export class PicturePanels implements vscode.Disposable {
             }),
             vscode.debug.onDidChangeBreakpoints(() => {
                 for (const source of this.sources) source.postBreakpoints();
-            }),
-            server.onState((state) => {
-                if (state.kind === "running") this.refreshSoon();
             }),
         ];
     }
@@ -75,6 +78,7 @@ export class PicturePanels implements vscode.Disposable {
         source.onVerified = () => {
             this.verified.fire(undefined);
         };
+        source.onChangeBack = (which) => this.onChangeBack(source, which);
         this.sources.add(source);
     }
 
@@ -151,6 +155,9 @@ class PicturePanel implements vscode.Disposable {
         this.source = new PictureSource(kind, server, log, {
             post: (message) => void panel.webview.postMessage(message),
             setTitle: (title) => (panel.title = title),
+            focus: () => {
+                panel.reveal();
+            },
         });
         this.loaded = new Promise((resolve) => {
             setTimeout(resolve, LOADING_LIMIT_MS);

@@ -29,6 +29,7 @@ import {
     type PictureParams,
 } from "../protocol";
 import { breakpoints, toggle } from "./breakpoints";
+import { columnFor } from "./recentEditor";
 import type { LanguageServer } from "./server";
 import { isTrusted } from "./trust";
 
@@ -46,12 +47,16 @@ type SetMock = Extract<FromView, { type: "setMock" }>;
 export interface PictureHost {
     post(message: ToView): void;
     setTitle(title: string): void;
+    /** Give the page the focus. */
+    focus(): void;
 }
 
 /** A picture that follows its document, and the answers to what the user does in it. */
 export class PictureSource {
     uri: vscode.Uri | undefined;
     private picture: Picture | undefined;
+    /** Whether the file of the picture was deleted or renamed by another program. */
+    private isMissing = false;
     private here: Part | null = null;
     /** The highlighted nodes of the step that was selected last, in all files. */
     highlighted: Highlight | undefined;
@@ -68,6 +73,8 @@ export class PictureSource {
     private isChanging = false;
     private showsCoverage = false;
     onVerified: () => void = () => undefined;
+    /** Called when the user undoes a change of the text, or makes it again, while the picture has the focus. */
+    onChangeBack: (which: "undo" | "redo") => Promise<void> = () => Promise.resolve();
     /** The ids of the nodes whose descendants are hidden, and the file that they belong to. */
     private readonly collapsed = new Set<string>();
     /** The part of a ROS graph that is shown. */
@@ -87,6 +94,15 @@ export class PictureSource {
         await this.refresh();
     }
 
+    /** Follow a file that the user has renamed in the editor, or whose folder was renamed. */
+    rename(files: readonly { readonly oldUri: vscode.Uri; readonly newUri: vscode.Uri }[]): void {
+        for (const { oldUri, newUri } of files) {
+            const [old, path] = [oldUri.path, this.uri?.path ?? ""];
+            if (path === old || path.startsWith(`${old}/`))
+                this.uri = this.uri?.with({ path: newUri.path + path.slice(old.length) });
+        }
+    }
+
     async refresh(): Promise<void> {
         if (!this.uri) return;
         const asked = ++this.asked;
@@ -97,7 +113,9 @@ export class PictureSource {
         }
         this.chosenIn = uri;
         const picture = await this.server.ask(pictureRequest, this.request(uri));
+        const missing = picture === null && (await isMissing(this.uri));
         if (asked !== this.asked || picture === undefined) return;
+        this.isMissing = missing;
         this.picture = picture ?? undefined;
         const center = picture?.nodes.find(({ id }) => id === this.part.around)?.label;
         const part = [center, this.part.matching].filter(Boolean).join(", ");
@@ -259,7 +277,9 @@ export class PictureSource {
 
     private draw(): void {
         if (!this.picture) {
-            this.post({ type: "none", reason: nothingOf(this.kind) });
+            const name = this.uri ? vscode.workspace.asRelativePath(this.uri) : "";
+            const missing = vscode.l10n.t("{0} does not exist any more.", name);
+            this.post({ type: "none", reason: this.isMissing ? missing : nothingOf(this.kind) });
             return;
         }
         const { picture, part, here, highlightedNode } = this;
@@ -312,6 +332,10 @@ export class PictureSource {
             case "breakpoint":
                 toggle(message.breakpoint);
                 break;
+            case "undo":
+            case "redo":
+                await this.onChangeBack(message.type);
+                break;
             case "save":
                 await this.save(message);
                 break;
@@ -350,16 +374,20 @@ export class PictureSource {
 export async function jump(place: Place, beside: boolean, preserveFocus = false): Promise<void> {
     const { start, end } = place.range;
     const uri = vscode.Uri.parse(place.uri);
-    const open = vscode.window.visibleTextEditors.find((editor) => editor.document.uri.toString() === uri.toString());
-    const others = vscode.window.visibleTextEditors[0]?.viewColumn ?? vscode.ViewColumn.One;
-    const editor = await vscode.window.showTextDocument(uri, {
-        viewColumn: beside ? vscode.ViewColumn.Beside : (open?.viewColumn ?? others),
-        preserveFocus,
-    });
+    const viewColumn = beside ? vscode.ViewColumn.Beside : columnFor(uri);
+    const editor = await vscode.window.showTextDocument(uri, { viewColumn, preserveFocus });
     const from = new vscode.Position(start.line, start.character);
     editor.selection = new vscode.Selection(from, from);
     const range = new vscode.Range(from, new vscode.Position(end.line, end.character));
     editor.revealRange(range, vscode.TextEditorRevealType.InCenterIfOutsideViewport);
+}
+
+async function isMissing(uri: vscode.Uri): Promise<boolean> {
+    if (uri.scheme !== "file") return false;
+    return vscode.workspace.fs.stat(uri).then(
+        () => false,
+        (error: unknown) => error instanceof vscode.FileSystemError && error.code === "FileNotFound",
+    );
 }
 
 export function titleOf(kind: PictureKind): string {
@@ -401,10 +429,22 @@ function words(): Words {
         savePng: vscode.l10n.t("Save as PNG"),
         savePdf: vscode.l10n.t("Save as PDF"),
         nothing: vscode.l10n.t("No results"),
+        match: vscode.l10n.t("{0}, result {1} of {2}"),
         help: vscode.l10n.t(
             "Arrow keys move between nodes, T selects the edges that leave a node, Enter opens the source, Shift+F10 the menu, Space collapses a node of a tree or a namespace, or shows only the neighbors of a node of a ROS graph, B sets a breakpoint, + and - zoom, 0 fits the diagram, / searches.",
         ),
         byChance: vscode.l10n.t("random"),
+        looks: {
+            active: vscode.l10n.t("active"),
+            next: vscode.l10n.t("takes the next step"),
+            message: vscode.l10n.t("receives the next message"),
+            running: vscode.l10n.t("running"),
+            ticked: vscode.l10n.t("is being ticked"),
+            success: vscode.l10n.t("succeeded"),
+            failure: vscode.l10n.t("failed"),
+            idle: vscode.l10n.t("idle"),
+        },
+        breakpoint: vscode.l10n.t("breakpoint"),
         mocks: vscode.l10n.t("Mocks"),
         probability: vscode.l10n.t("probability of success"),
         seconds: vscode.l10n.t("duration in seconds"),

@@ -174,6 +174,12 @@ interface Shown {
     readonly comparedIn: string | undefined;
 }
 
+/** The page of the panel, as one of the runs uses it. */
+interface Page {
+    readonly post: (message: ToStage) => void;
+    readonly focus: () => void;
+}
+
 class StagePanel {
     private readonly panel: vscode.WebviewPanel;
     private readonly runs: { readonly here: RunOnStage; readonly there?: RunOnStage };
@@ -192,18 +198,27 @@ class StagePanel {
         const column = { viewColumn: vscode.ViewColumn.Two, preserveFocus: false };
         this.panel = webviewPanel(context, dist, "as2fm.stage", title, column);
         const { webview } = this.panel;
-        const post = (message: ToStage) => {
-            this.post(message);
+        const focus = () => {
+            this.panel.reveal();
+        };
+        const page: Page = {
+            post: (message) => {
+                this.post(message);
+            },
+            focus,
         };
         const { kinds } = about;
         const shown = beside && about.compared ? [about.compared.picture, "timeline" as const] : undefined;
-        const here = new RunOnStage(kinds, sessions, moveSession(sessions), post, server, log, shown);
+        const here = new RunOnStage(kinds, sessions, moveSession(sessions), page, server, log, shown);
         this.subscriptions = [here, webview.onDidReceiveMessage((message: FromStage) => void this.receive(message))];
         if (beside) {
-            const postThere = (message: ToStage) => {
-                post({ to: "there", message });
+            const pageThere: Page = {
+                post: (message) => {
+                    this.post({ to: "there", message });
+                },
+                focus,
             };
-            const there = new RunOnStage(kinds, beside, () => Promise.resolve(), postThere, server, log, shown);
+            const there = new RunOnStage(kinds, beside, () => Promise.resolve(), pageThere, server, log, shown);
             this.runs = { here, there };
             const ended = sessions.onEnded(({ id }) => {
                 if (id === about.comparedIn) beside.dispose();
@@ -271,25 +286,29 @@ class RunOnStage implements vscode.Disposable {
         private readonly kinds: readonly PicturePane[],
         private readonly run: Run,
         private readonly move: (move: Move) => Promise<void>,
-        private readonly post: (message: ToStage) => void,
+        private readonly page: Page,
         server: LanguageServer,
         log: vscode.LogOutputChannel,
         private readonly shown: readonly Pane[] | undefined,
     ) {
         for (const kind of kinds) {
-            const postTo = (message: Parameters<PictureSource["host"]["post"]>[0]) => {
-                post({ to: kind, message });
+            const host: PictureSource["host"] = {
+                post: (message) => {
+                    page.post({ to: kind, message });
+                },
+                setTitle: () => undefined,
+                focus: page.focus,
             };
-            this.bySource.set(kind, new PictureSource(kind, server, log, { post: postTo, setTitle: () => undefined }));
+            this.bySource.set(kind, new PictureSource(kind, server, log, host));
         }
         this.timeline = new TimelineSource(run, (message) => {
-            post({ to: "timeline", message });
+            page.post({ to: "timeline", message });
         });
         this.subscriptions = [
             this.timeline,
             run.onStopped(() => void this.stopped()),
             run.onEnded(() => {
-                post({ to: "ended" });
+                page.post({ to: "ended" });
             }),
         ];
     }
@@ -306,7 +325,7 @@ class RunOnStage implements vscode.Disposable {
     async begin(): Promise<void> {
         const panes: readonly Pane[] = [...this.kinds, "timeline", "properties"];
         const shown = panes.filter((pane) => this.shown?.includes(pane) ?? true);
-        this.post({ to: "words", words: words(), panes, shown });
+        this.page.post({ to: "words", words: words(), panes, shown });
         for (const source of this.sources) await source.receive({ type: "ready" });
         await this.timeline.receive({ type: "ready" });
         await this.stopped();
@@ -321,7 +340,7 @@ class RunOnStage implements vscode.Disposable {
                 await this.move(message.move);
                 break;
             case "ask":
-                this.post({ to: "moments", asked: message.asked, moments: await this.moments(message.asked) });
+                this.page.post({ to: "moments", asked: message.asked, moments: await this.moments(message.asked) });
                 break;
             case "jump":
                 await jump(message.place, false);
@@ -351,7 +370,7 @@ class RunOnStage implements vscode.Disposable {
     private async stopped(): Promise<void> {
         const session = this.run.current;
         if (!session) {
-            this.post({ to: "ended" });
+            this.page.post({ to: "ended" });
             return;
         }
         try {
@@ -361,7 +380,7 @@ class RunOnStage implements vscode.Disposable {
             };
             const next = choices.choices.find(({ isNext }) => isNext)?.text ?? "";
             const ended = choices.end === null ? "" : vscode.l10n.t("The run has ended: {0}.", choices.end);
-            this.post({
+            this.page.post({
                 to: "stopped",
                 state: {
                     step: choices.step,

@@ -201,9 +201,14 @@ export interface Words {
     readonly savePng: string;
     readonly savePdf: string;
     readonly nothing: string;
+    /** The result of a search that is selected: its name, its number, and the number of results. */
+    readonly match: string;
     readonly help: string;
     readonly kinds: Readonly<Record<NodeKind | EdgeKind, string>>;
     readonly byChance: string;
+    /** What the looks of active nodes mean, for screen readers. */
+    readonly looks: Readonly<Record<string, string>>;
+    readonly breakpoint: string;
     readonly mocks: string;
     readonly probability: string;
     readonly seconds: string;
@@ -324,6 +329,8 @@ export type FromView =
     | { readonly type: "coverage"; readonly shows: boolean }
     /** Set a breakpoint on a part, or remove it. */
     | { readonly type: "breakpoint"; readonly breakpoint: Breakpoint }
+    /** Undo or redo the last change of the text. */
+    | { readonly type: "undo" | "redo" }
     /** The answer to `rasterize`: the PNG file in base64. */
     | { readonly type: "png"; readonly data: string }
     /** Sent after the picture has been drawn. */

@@ -109,7 +109,7 @@ function addBadge(group: SVGGElement, x: number, y: number, text: string): void 
 }
 
 /** A text whose places `{0}`, `{1}`, … contain values. */
-function filled(text: string, ...values: readonly (string | number)[]): string {
+export function filled(text: string, ...values: readonly (string | number)[]): string {
     return text.replace(/\{(\d)\}/g, (_, index: string) => {
         const value = values[Number(index)] ?? "";
         return typeof value === "number" ? value.toLocaleString() : value;

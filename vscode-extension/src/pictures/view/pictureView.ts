@@ -40,16 +40,18 @@ import {
     type Sight,
 } from "./find";
 import { breakpointOf } from "../breakpoints";
-import { isOf, paint, shareOf, summaryOf } from "./coverage";
+import { filled, isOf, paint, shareOf, summaryOf } from "./coverage";
 import { Minimap } from "./minimap";
 import { MockPane } from "./mocks";
 import { menuOf } from "./menu";
-import { element, pngData, sceneOf, type Scene } from "./scene";
+import { element, pngData, sceneOf, spoken, type Scene } from "./scene";
 import { shownActivity, shownId } from "./shown";
 import { legendOf, type LegendEntry } from "./words";
 import { theme } from "./theme";
 
 const ZOOM = 1.25;
+/** The number of views of this page, whose elements have different ids. */
+let views = 0;
 /** The distance of the context menu from the corner of its node, in pixels. */
 const MENU_OFFSET = 8;
 /** How long a node whose look has changed is emphasised, in ms. */
@@ -61,6 +63,9 @@ const MAX_ANIMATED = 300;
 
 export class PictureView {
     private readonly svg = element("svg", { class: "picture", tabindex: 0, role: "application" });
+    private readonly prefix = `picture${++views}`;
+    /** What a screen reader says while another element than the picture has the focus. */
+    private readonly said = document.createElement("div");
     private readonly bar = document.createElement("div");
     private readonly input = document.createElement("input");
     private readonly legend = document.createElement("div");
@@ -112,13 +117,15 @@ export class PictureView {
         this.legend.className = "legend";
         this.notice.className = "notice";
         this.notice.setAttribute("role", "status");
+        this.said.className = "said";
+        this.said.setAttribute("role", "status");
         const stage = document.createElement("div");
         stage.className = "stage";
         stage.append(this.svg, this.notice, this.minimap.svg);
         const middle = document.createElement("div");
         middle.className = "middle";
         middle.append(stage, this.mocks.pane);
-        root.append(this.bar, middle, this.legend);
+        root.append(this.bar, middle, this.legend, this.said);
         this.mocks.onFocus = (nodes) => {
             this.emphasiseNodes(nodes);
         };
@@ -226,7 +233,10 @@ export class PictureView {
         this.scene = sceneOf(picture, drawing, words);
         this.svg.append(this.scene.root);
         this.minimap.show(picture, drawing);
-        this.svg.setAttribute("aria-label", `${picture.title}. ${words.help}`);
+        this.svg.setAttribute("aria-label", picture.title);
+        this.svg.setAttribute("aria-description", words.help);
+        for (const [index, group] of this.scene.nodes) group.id = `${this.prefix}-node${index}`;
+        for (const [index, groups] of this.scene.edges) spoken(groups).id ||= `${this.prefix}-edge${index}`;
         this.offerOutline();
         this.showCoverage(picture, drawing, words);
         this.look(this.sight);
@@ -281,6 +291,7 @@ export class PictureView {
 
     private clear(): void {
         this.scene?.root.remove();
+        this.svg.removeAttribute("aria-activedescendant");
         this.scene = undefined;
         this.picture = undefined;
         this.selected = this.selectedEdge = -1;
@@ -409,7 +420,12 @@ export class PictureView {
         if (!chosen) return;
         this.reveal(node);
         this.notice.textContent = "";
-        this.svg.setAttribute("aria-label", chosen.getAttribute("aria-label") ?? "");
+        this.svg.setAttribute("aria-activedescendant", chosen.id);
+    }
+
+    /** The element that handles the keys. */
+    get focusable(): SVGElement {
+        return this.svg;
     }
 
     /** Select an edge beside the node; -1 selects none. */
@@ -418,8 +434,7 @@ export class PictureView {
         this.selectedEdge = edge;
         const groups = this.scene?.edges.get(edge) ?? [];
         for (const group of groups) group.classList.add("selected");
-        const label = groups[0]?.getAttribute("aria-label");
-        if (label !== undefined && label !== null) this.svg.setAttribute("aria-label", label);
+        if (groups.length > 0) this.svg.setAttribute("aria-activedescendant", spoken(groups).id);
         this.reveal(this.picture?.nodes.findIndex(({ id }) => id === this.picture?.edges[edge]?.target) ?? -1);
     }
 
@@ -517,7 +532,21 @@ export class PictureView {
             const isActive = now.edges.some(({ from, to }) => from === edge?.source && to === edge.target);
             for (const group of groups) group.classList.toggle("active", isActive);
         }
+        this.describeNodes();
         this.revealActivity(picture, now);
+    }
+
+    /** Tell screen readers what the look of a node means, and whether it has a breakpoint. */
+    private describeNodes(): void {
+        const { words, scene, breakpoints } = this;
+        if (!words || !scene) return;
+        for (const [index, group] of scene.nodes) {
+            const look = words.looks[group.dataset["look"] ?? ""] ?? "";
+            const texts = [look, breakpoints.nodes.includes(index) ? words.breakpoint : ""];
+            const text = texts.filter((text) => text !== "").join(", ");
+            if (text === "") group.removeAttribute("aria-description");
+            else group.setAttribute("aria-description", text);
+        }
     }
 
     /** Show the node that is next; otherwise the innermost node that is running, or the ends of an active edge. */
@@ -537,6 +566,7 @@ export class PictureView {
     /** Put a dot on the parts that have a breakpoint. */
     private showBreakpoints(): void {
         const { scene, breakpoints } = this;
+        this.describeNodes();
         for (const dot of scene?.root.querySelectorAll(".breakpoint") ?? []) dot.remove();
         for (const node of breakpoints.nodes) {
             const box = this.box(node);
@@ -628,6 +658,14 @@ export class PictureView {
         const next = forward ? matches.find((index) => index > this.selected) : undefined;
         const first = next ?? matches[0];
         if (first !== undefined) this.select(first);
+        this.said.textContent = first === undefined ? "" : this.describeMatch(matches, first);
+    }
+
+    /** The node that a search has selected, and its number among the matches. */
+    private describeMatch(matches: readonly number[], node: number): string {
+        const label = this.scene?.nodes.get(node)?.getAttribute("aria-label") ?? "";
+        const text = this.words?.match ?? "";
+        return filled(text, label, matches.indexOf(node) + 1, matches.length);
     }
 
     // ------------------------------------------------------------------- the user
@@ -719,6 +757,13 @@ export class PictureView {
         }
         // They press the button that has the focus.
         if ((key === "Enter" || key === " ") && this.bar.contains(document.activeElement)) return false;
+        if (ctrlKey || metaKey) {
+            const change = { z: shiftKey ? "redo" : "undo", y: "redo" } as const;
+            if (key.toLowerCase() in change) {
+                this.post({ type: change[key.toLowerCase() as keyof typeof change] });
+                return true;
+            }
+        }
         if (key === "/" || (key === "f" && (ctrlKey || metaKey))) this.input.focus();
         else if (ctrlKey || metaKey) return false;
         else if (isArrow(key)) this.select(neighbour(this.drawing?.nodes ?? [], this.selected, key) ?? this.selected);

@@ -52,7 +52,22 @@ export function sceneOf(picture: Picture, drawing: Drawing, words: Words): Scene
         title.textContent = shown.map((edge) => edgeHint(picture, edge)).join("\n\n");
         group.prepend(title, ...wideLines(group));
     }
+    hideRepeated(edges);
     return { root, nodes, edges };
+}
+
+/** The element of an edge that a screen reader reads: its text, if it has one beside its line. */
+export function spoken(groups: readonly SVGGElement[]): SVGGElement {
+    const group = groups.at(-1);
+    if (!group) throw new Error("an edge has no element");
+    return group;
+}
+
+/** Hide the lines of edges whose text has the same name from screen readers. */
+function hideRepeated(edges: ReadonlyMap<number, readonly SVGGElement[]>): void {
+    const all = [...edges.values()];
+    const names = new Set(all.map(spoken));
+    for (const group of all.flat()) if (!names.has(group)) group.setAttribute("aria-hidden", "true");
 }
 
 /** Invisible wide lines under the lines of a group, which are easy to point at. */

@@ -2,6 +2,7 @@
 /** The page of a panel with one picture. */
 
 import type { FromView, ToView } from "../contract";
+import { receiveFocus } from "./focus";
 import { PictureView } from "./pictureView";
 
 declare function acquireVsCodeApi(): { postMessage(message: FromView): void };
@@ -13,4 +14,5 @@ const view = new PictureView(document.body, (message) => {
 window.addEventListener("message", ({ data }: MessageEvent<ToView>) => {
     view.receive(data);
 });
+receiveFocus(() => view.focusable);
 editor.postMessage({ type: "ready" });

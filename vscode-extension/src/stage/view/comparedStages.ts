@@ -72,6 +72,10 @@ export class ComparedStages {
         else this[side].receive(inner);
     }
 
+    get focusable(): HTMLElement | SVGElement | undefined {
+        return this.here.focusable;
+    }
+
     private side(side: SideName): HTMLElement {
         const { title, choice } = this.comparison.runs[side];
         const made = element("section", `side ${side}`);

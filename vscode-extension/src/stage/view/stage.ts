@@ -2,6 +2,7 @@
 /** The page of the stage, which shows one run or two. */
 
 import type { FromStage, ToStage } from "../contract";
+import { receiveFocus } from "../../pictures/view/focus";
 import { ComparedStages } from "./comparedStages";
 import { StageView } from "./stageView";
 
@@ -18,4 +19,5 @@ window.addEventListener("message", ({ data }: MessageEvent<ToStage>) => {
     else if (data.to === "words") view ??= new StageView(document.body, post);
     view?.receive(data);
 });
+receiveFocus(() => view?.focusable);
 post({ from: "ready" });

@@ -119,6 +119,12 @@ export class StageView {
         this.timeline.lead(follower.timeline);
     }
 
+    /** The timeline, whose keys go to a step; otherwise the first picture that is shown. */
+    get focusable(): HTMLElement | SVGElement | undefined {
+        if (!this.hidden.has("timeline")) return this.timeline.focusable;
+        return PICTURES.filter((pane) => !this.hidden.has(pane)).map((pane) => this.pictures.get(pane)?.focusable)[0];
+    }
+
     /** The axis of the timeline. */
     get axis(): Axis {
         return this.timeline.axis;

@@ -2,6 +2,7 @@
 /** The page of the view of the timeline. */
 
 import type { FromTimeline, ToTimeline } from "../contract";
+import { receiveFocus } from "../../pictures/view/focus";
 import { TimelineView } from "./timelineView";
 
 declare function acquireVsCodeApi(): { postMessage(message: FromTimeline): void };
@@ -13,4 +14,5 @@ const view = new TimelineView(document.body, (message) => {
 window.addEventListener("message", ({ data }: MessageEvent<ToTimeline>) => {
     view.receive(data);
 });
+receiveFocus(() => view.focusable);
 editor.postMessage({ type: "ready" });

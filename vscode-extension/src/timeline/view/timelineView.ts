@@ -141,6 +141,11 @@ export class TimelineView {
         this.place();
     }
 
+    /** The element that handles the keys. */
+    get focusable(): HTMLElement {
+        return this.rows;
+    }
+
     private choose(curves: readonly string[]): void {
         this.curvesChosen = curves;
         this.hasChanged = true;
