@@ -54,7 +54,8 @@ def test_the_page_has_a_column_for_each_who(bug: tuple[Story, PlaceOf]) -> None:
     page = as_html([story], place_of, "why <now>")
     assert "why &lt;now&gt;" in page
     for who in {line.who for line in lines(story, place_of) if line.who}:
-        assert page.count(f"<th>{who}</th>") == 1
+        assert page.count(f"<th scope='col'>{who}</th>") == 1
+    assert "<ul></ul>" not in page  # screen readers announce it
 
 
 def test_forwarding_steps_are_omitted() -> None:

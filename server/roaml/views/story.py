@@ -233,7 +233,7 @@ def as_html(
 def _section(story: Story, place_of: PlaceOf, near: tuple[Parting, Story] | None) -> str:
     table = lines(story, place_of)
     lanes = list(dict.fromkeys(row.who for row in table if row.who))
-    head = "".join(f"<th>{html.escape(name)}</th>" for name in lanes)
+    head = "".join(f"<th scope='col'>{html.escape(name)}</th>" for name in lanes)
     rows = []
     for row in table:
         cells = []
@@ -241,14 +241,17 @@ def _section(story: Story, place_of: PlaceOf, near: tuple[Parting, Story] | None
             if name == row.who:
                 place = f"<small>{html.escape(row.place)}</small>"
                 details = "".join(f"<li>{html.escape(detail)}</li>" for detail in row.details)
-                cells.append(f"<td class='at'>{html.escape(row.what)}{place}<ul>{details}</ul></td>")
+                effects = f"<ul>{details}</ul>" if details else ""
+                cells.append(f"<td class='at'>{html.escape(row.what)}{place}{effects}</td>")
             else:
                 cells.append("<td></td>")
-        rows.append(f"<tr><th>{row.step}</th><th>{html.escape(row.time)}</th>{''.join(cells)}</tr>")
+        numbers = f"<th scope='row'>{row.step}</th><th scope='row'>{html.escape(row.time)}</th>"
+        rows.append(f"<tr>{numbers}{''.join(cells)}</tr>")
     return (
         f"<h2>{html.escape(story.property)}</h2><p>{html.escape(story.comment)}</p>"
         f"<p><strong>{html.escape(cause(story, place_of, near))}</strong></p><p>{html.escape(heading(story))}</p>"
-        f"<table><thead><tr><th>step</th><th>time</th>{head}</tr></thead><tbody>{''.join(rows)}</tbody></table>"
+        f"<table><thead><tr><th scope='col'>step</th><th scope='col'>time</th>{head}</tr></thead>"
+        f"<tbody>{''.join(rows)}</tbody></table>"
         f"<details><summary>Mermaid</summary><pre>{html.escape(as_mermaid(story, place_of))}</pre></details>"
     )
 
@@ -262,7 +265,7 @@ tbody th {{ font-weight: normal; color: #666; white-space: nowrap; }}
 .at {{ background: #eef4ff; border-left: 3px solid #1f6feb; }} small {{ display: block; color: #666; }}
 ul {{ margin: .2em 0 0; padding-left: 1.2em; }} pre {{ background: #f6f8fa; padding: 1em; overflow: auto; }}
 @media (prefers-color-scheme: dark) {{ body, thead th {{ background: #0d1117; color: #e6edf3; }}
-.at {{ background: #10243f; }} pre {{ background: #161b22; }} }}
+tbody th, small {{ color: #9aa4af; }} .at {{ background: #10243f; }} pre {{ background: #161b22; }} }}
 </style></head><body><h1>{title}</h1>
 {body}
 </body></html>
