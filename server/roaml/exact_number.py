@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Numbers as users write them, as exact fractions."""
+"""Numbers as users write them, as exact fractions, and remainders of numbers."""
 
 from __future__ import annotations
 
 from fractions import Fraction
+from typing import TypeVar
+
+Number = TypeVar("Number", int, float, Fraction)
 
 SMALLEST, GREATEST = 1e-30, 1e30
 """The smallest and greatest absolute value of a number other than 0. Without these limits, the fraction of `1e-9999999`
@@ -33,3 +36,15 @@ def exact_fraction(text: str) -> Fraction | None:
     numerator, slash, denominator = text.partition("/")
     above, below = exact_number(numerator), exact_number(denominator) if slash else Fraction(1)
     return above / below if above is not None and below else None
+
+
+def remainder(left: Number, right: Number) -> Number:
+    """The Euclidean remainder of `left / right`: 0 <= result < |right|, for all signs.
+
+    JANI does not define the sign of the result. Storm and PRISM return the same result for positive divisors. In
+    ECMAScript, C and IEEE 754, the result has the sign of `left`.
+
+    Raises:
+        ZeroDivisionError: `right` is 0.
+    """
+    return left % abs(right)

@@ -153,3 +153,8 @@ def test_an_assignment_to_an_element_keeps_what_is_known_about_its_index(array: 
     (below,) = facts.assume(NOTHING, tree(f"{index} < 2"))
     (known,) = facts.assume(below, tree(f"{array}[{index}] == 1"))
     assert facts.assign(known, tree(f"{array}[{index}]"), tree("3")) == (below,)
+
+
+def test_a_remainder_is_never_negative() -> None:
+    for text, expected in (("-7 % 3", 2), ("7 % -3", 1), ("-7 % -3", 2), ("7 % 3", 1)):
+        assert FACTS.value(NOTHING, tree(text)) == expected

@@ -18,9 +18,11 @@ from smc_models import Json, automaton, document, edge, model, op, probability, 
 
 from as2fm_lsp.verification.scheduler_report import note
 from roaml.explicit.space import StateLimits
+from roaml.jani.operators import BinaryOperator
 from roaml.rules import document as rule_document
 from roaml.smc.choices import Choices
-from roaml.smc.goal import Question
+from roaml.smc.goal import Question, Threshold
+from roaml.verification.expectations import Expectation, Verdict
 from roaml.verification.small import SHARED_LIMITS, UNIFORM_LIMITS
 from roaml.verification.target import VerificationTarget, target_of
 from roaml.verification.verifier import verifier_of
@@ -441,6 +443,12 @@ def test_mistakes_in_the_configuration(command: Command, tmp_path: Path, text: s
     done = command("verify", write(tmp_path, coin()))
     assert done.status == 2
     assert "verify" in done.err
+
+
+@pytest.mark.parametrize(("count", "which"), [(1, "only sampled scheduler"), (1200, "1,200 sampled schedulers")])
+def test_words_for_a_number_of_sampled_schedulers(count: int, which: str) -> None:
+    verdict = Verdict(Expectation("p", Threshold(BinaryOperator.GREATER_EQUAL, 0)), True, True, sampled=count)
+    assert verdict.text == f"met by the {which}; another one may miss it"
 
 
 def test_expectations_of_sampled_schedulers(command: Command, tmp_path: Path) -> None:

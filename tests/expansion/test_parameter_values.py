@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from roaml.expansion.values import ParameterValue, number_text, read_value
 from roaml.expr.types import INTEGER_RANGES
+from roaml.model.timing import period
 
 SCOPE = {
     "n": ParameterValue("int32", Fraction(5)),
@@ -28,7 +29,7 @@ SCOPE = {
         ("n / 2", "float64", "2.5"),
         ("2 * n", "int32", "10"),
         ("2 * n", "float64", "10.0"),
-        ("-n % 3", "int32", "-2"),
+        ("-n % 3", "int32", "1"),
         ("Math.floor(n / 2) + Math.pow(2, 3)", "int32", "10"),
         ("Math.min(n, 2, 7)", "int32", "2"),
         ("n > 3 && !on ? 1 : 2", "int32", "2"),
@@ -88,3 +89,11 @@ def test_an_integer_is_in_the_range_of_its_type(type_: str, value: int) -> None:
     least, most = INTEGER_RANGES[type_]
     read = read_value(str(value), type_, {})
     assert isinstance(read, ParameterValue) == (least <= value <= most)
+
+
+@given(st.integers(1, 10**6), st.sampled_from((1, 10**3, 10**6)))
+def test_a_rate_keeps_its_period(count: int, unit: int) -> None:
+    """`rate_hz="1 / period"`: periods are rounded down, so the rate must not be rounded up."""
+    rate = Fraction(number_text(Fraction(10**9, count * unit), is_real=False))
+    if rate <= 10**9:
+        assert period(rate).nanoseconds == period(Fraction(10**9, count * unit)).nanoseconds

@@ -18,7 +18,7 @@ from roaml import api
 from roaml.libraries import LIBRARIES, library
 from roaml.libraries.programs.assembly import programs
 from roaml.mocks.assumptions import assumption
-from roaml.mocks.mock import Mock, mock_for
+from roaml.mocks.mock import Mock, mock_for, mock_spans
 from roaml.roles import NodeKind
 from roaml.xml_syntax.escapes import escape
 
@@ -254,3 +254,18 @@ def test_mocks_of_the_command_line_are_not_completed(nav2: Path, capsys: pytest.
 
 def test_a_proposed_mock_is_a_mock() -> None:
     assert api.read_mocks("Spin: 0.95 in 1.57 s  # action: a reason") == (Mock("Spin", 0.95, 1570),)  # type: ignore[arg-type]
+
+
+def test_a_comment_begins_outside_of_quotes() -> None:
+    lines = (
+        "A: 1 in histogram('times #1.csv', s) # it's 'measured'",
+        "Don't: 0.5 # it's a guess",
+        "# B: 1",
+        'C: as Repeat(num_cycles="#")',
+    )
+    text = "\n".join(lines)
+    assert [text[span.start : span.end] for span in mock_spans(text)] == [
+        "A: 1 in histogram('times #1.csv', s)",
+        "Don't: 0.5",
+        'C: as Repeat(num_cycles="#")',
+    ]

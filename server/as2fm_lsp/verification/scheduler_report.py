@@ -106,7 +106,7 @@ def note(entries: Sequence[tuple[Question, Choices]], *, knows_reactions: bool =
     lines = []
     for (operator, why), of in names.items():
         extreme = "minimum" if operator.endswith("min") else "maximum"
-        looked = why or f"up to {tried[operator, why]:,} sampled schedulers show no difference, which proves nothing"
+        looked = why or f"{_no_difference(tried[operator, why], 'up to ')}, which proves nothing"
         lines.append(f"note: the {extreme} of {_listed(of)} over all schedulers is not known ({looked})")
     ways = ["--exhaustive to compute it from all states", "--scheduler uniform if uniform choices are meant"]
     if knows_reactions:
@@ -120,10 +120,16 @@ def _listed(names: Sequence[str]) -> str:
     return shown if len(names) <= MAX_NAMED else f"{shown} and {len(names) - MAX_NAMED + 1:,} more"
 
 
+def _no_difference(tried: int, at_most: str = "") -> str:
+    if tried == 1:
+        return "the only sampled scheduler shows no difference"
+    return f"{at_most}{tried:,} sampled schedulers show no difference"
+
+
 def _looked(question: Question, choices: Choices) -> str:
     """A phrase that states how a difference was searched for without success."""
     if choices.tried:
-        return f"{choices.tried:,} sampled schedulers show no difference"
+        return _no_difference(choices.tried)
     return "schedulers are not sampled for expected rewards" if question.is_reward else "no schedulers were sampled"
 
 

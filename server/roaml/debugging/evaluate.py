@@ -8,6 +8,7 @@ import operator
 from collections.abc import Callable, Mapping, Sequence
 
 from roaml.debugging.values import Value, bytes_of, shown, type_of
+from roaml.exact_number import remainder
 from roaml.expr import parse as parser
 from roaml.expr.operators import FUNCTIONS, FunctionResult, Operator, UnaryOperator
 from roaml.expr.tree import (
@@ -253,7 +254,7 @@ _OPERATORS: Mapping[Operator, Callable[[float, float], float]] = {
     Operator.SUBTRACT: operator.sub,
     Operator.MULTIPLY: operator.mul,
     Operator.DIVIDE: operator.truediv,
-    Operator.REMAINDER: lambda left, right: left % abs(right),
+    Operator.REMAINDER: remainder,
 }
 
 _FUNCTIONS: Mapping[str, Callable[..., float]] = {

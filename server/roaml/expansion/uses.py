@@ -90,7 +90,8 @@ class ParameterUses:
             if content is not None:
                 self._text(content, content.span(0, len(content.text)), type_.value, inner, None)
         for child in element.elements:
-            if child.name in (PARAMETER, PARAM, SECTIONS[0]) and grammar is not BEHAVIOR_TREE:
+            is_setting = child.name == PARAM and element.name == "input"  # a `<param>` of a `<send>` uses parameters
+            if (is_setting or child.name in (PARAMETER, SECTIONS[0])) and grammar is not BEHAVIOR_TREE:
                 continue  # their values are read elsewhere
             child_type = None
             if grammar is not None and not child.is_foreign:

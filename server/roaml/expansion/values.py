@@ -12,6 +12,7 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import TypeAlias
 
+from roaml.exact_number import remainder
 from roaml.expr.operators import Operator, UnaryOperator
 from roaml.expr.parse import parse
 from roaml.expr.tree import Binary, Boolean, Call, Conditional, Expr, Member, Name, Number, String, Unary
@@ -65,7 +66,8 @@ Scope: TypeAlias = Mapping[str, ParameterValue]
 
 def number_text(value: Fraction, *, is_real: bool) -> str:
     """A number without an exponent. A real number has a point. A fraction that is not a finite decimal, such as 1/3, is
-    rounded to a float64."""
+    rounded to a float64; downwards where reals and integers are the same, because periods of timers are rounded down:
+    with a rate that is rounded up, 300 ms would become 299 ms."""
     if value.denominator == 1:
         return f"{value.numerator}.0" if is_real else str(value.numerator)
     rest = value.denominator
@@ -77,7 +79,10 @@ def number_text(value: Fraction, *, is_real: bool) -> str:
         scaled = Decimal(value.numerator) / Decimal(value.denominator)
         if Fraction(scaled) == value:
             return format(scaled, "f")
-    return format(Decimal(repr(float(value))), "f")
+    text = repr(float(value))
+    if not is_real and Fraction(text) > value:
+        text = repr(math.nextafter(float(value), -math.inf))
+    return format(Decimal(text), "f")
 
 
 def read_value(text: str, type_: str, scope: Scope) -> ParameterValue | str:
@@ -163,7 +168,7 @@ def _arithmetic(operator: Operator, left: Fraction, right: Fraction) -> Content 
         case Operator.DIVIDE:
             return left / right if right else None
         case Operator.REMAINDER:
-            return left - right * math.trunc(left / right) if right else None
+            return remainder(left, right) if right else None
         case Operator.LESS:
             return left < right
         case Operator.LESS_EQUAL:

@@ -13,6 +13,7 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import TypeAlias
 
+from roaml.exact_number import remainder
 from roaml.exhaustive import assert_never
 from roaml.expr.operators import FUNCTIONS, FunctionResult, Operator, OperatorKind, UnaryOperator
 from roaml.expr.tree import (
@@ -242,7 +243,7 @@ def _arithmetic(operator: Operator, left: float, right: float) -> int | float | 
             case Operator.DIVIDE:
                 value = left / right
             case Operator.REMAINDER:
-                value = left % right
+                value = remainder(left, right)
             case _:
                 return None
         return value if math.isfinite(value) else None

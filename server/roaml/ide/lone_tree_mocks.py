@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 
 from roaml.ide.code_actions.action import WorkspaceEdit
-from roaml.mocks.mock import Mock, read_mocks
+from roaml.mocks.mock import Mock, read_mocks, without_comment
 from roaml.mocks.proposal import MockableLeaf, mockable_leaves, proposed_text
 from roaml.model.kinds import mocks_path
 from roaml.project.analysis import Analysis
@@ -74,7 +74,7 @@ def _place(text: str, pattern: str, written: str) -> tuple[Span, str]:
     """The text to replace, and its replacement: the first line with this pattern for leaves, which is the one that
     applies; otherwise a new line at the end."""
     for line in re.finditer(r"[^\r\n]+", text):
-        code = line[0].partition("#")[0]
+        code = without_comment(line[0])
         if [mock.pattern for mock in read_mocks(code) if mock.like is None] == [pattern]:
             start = line.start() + len(code) - len(code.lstrip())
             return Span(start, line.start() + len(code.rstrip())), written

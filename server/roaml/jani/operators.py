@@ -14,6 +14,7 @@ import operator
 from collections.abc import Callable
 from typing import Any
 
+from roaml.exact_number import remainder
 from roaml.jani.features import Feature
 
 _DERIVED = Feature.DERIVED_OPERATORS
@@ -33,15 +34,6 @@ class Signature(enum.Enum):
     ARITHMETIC = "numbers -> int if all are int, otherwise real"
     REAL = "numbers -> real"
     ROUNDING = "number -> int"
-
-
-def remainder(left: float, right: float) -> float:
-    """The Euclidean remainder of `left / right`: 0 <= result < |right|, for all signs.
-
-    JANI does not define the sign of the result. Storm and PRISM return the same result for positive divisors. In
-    ECMAScript, C and IEEE 754, the result has the sign of `left`.
-    """
-    return left % abs(right)
 
 
 def power(base: float, exponent: float) -> float:

@@ -181,6 +181,8 @@ def _walk(document: Document, root: Element, grammar: Grammar, disordered: list[
                 below.append((child, child_type))
             elif type_.any_child is None:
                 known = grammar.find(child.name)
+                if known is None and child.is_undeclared:
+                    continue  # it may be of another language: the parser reports its prefix
                 if known is None:
                     yield UnknownElement(child, type_)
                 else:

@@ -158,10 +158,19 @@ def mock_spans(text: str) -> Iterator[Span]:
     """The places of the mocks in the text of a file, without comments and the blanks around them."""
     start = 0
     for line in text.splitlines(keepends=True):
-        mock = line.partition("#")[0].rstrip()
+        mock = without_comment(line).rstrip()
         if mock.strip():
             yield Span(start + len(mock) - len(mock.lstrip()), start + len(mock))
         start += len(line)
+
+
+_QUOTED_OR_COMMENT = regex(r"""[(,=]\s*(?:'[^'\n]*'|"[^"\n]*")|#""")
+
+
+def without_comment(line: str) -> str:
+    """The part of a line before its comment. `#` in an argument in quotes, such as the name of a file, begins none."""
+    comment = next((match for match in _QUOTED_OR_COMMENT.finditer(line) if match[0] == "#"), None)
+    return line if comment is None else line[: comment.start()]
 
 
 def named_mocks(mocks: Mapping[str, str]) -> tuple[Mock, ...]:

@@ -31,6 +31,7 @@ from roaml.project.memo import Memo
 from roaml.project.settings import Settings
 from roaml.project.suppress import Suppression, covering, suppressions
 from roaml.record import replace
+from roaml.regex import regex
 from roaml.rules import BY_CODE, RULES
 from roaml.rules.elements import invalid_value
 from roaml.rules.files import file_too_large, unused_suppression
@@ -170,25 +171,33 @@ class RuleRunner:
         and instances.
 
         A finding at a place that cannot be expanded is a consequence, and is left out. So is a finding that is not an
-        error and that depends on the values of parameters: it does not occur with other values. While a number cannot
-        be drawn, a constant replaces it, so that all findings that are not errors may be consequences.
+        error and that depends on the values of parameters: the same instance does not have it with other values. While
+        a number cannot be drawn, a constant replaces it, so that all findings that are not errors may be consequences.
         """
         path, system = subject.path, subject.system_path
         own = expanded.expansion.findings.get(path, ())
         broken = [finding.span for finding in own if _own_severity(finding) is Severity.ERROR]
         has_invalid_draw = any(finding.code in _INVALID_DRAWS for finding in own)
-        findings = [
-            finding
-            for finding in self._mapped_findings(expanded, path, system)
-            if not any(span.start < finding.span.end and finding.span.start < span.end for span in broken)
-            and (_own_severity(finding) is Severity.ERROR or not has_invalid_draw)
-        ]
-        if path in expanded.expansion.variants and any(_own_severity(f) < Severity.ERROR for f in findings):
+        of_variants = self._mapped_findings(expanded, path, system)
+        if path in expanded.expansion.variants and any(
+            _own_severity(f) < Severity.ERROR for fs in of_variants for f in fs
+        ):
             analysis = self.analysis
             varied = analysis.expanded(system, varied=True) if system else analysis.expanded_file(path, varied=True)
             assert varied is not None
-            always = {(f.code, f.span) for f in self._mapped_findings(varied, path, system)}
-            findings = [f for f in findings if _own_severity(f) is Severity.ERROR or (f.code, f.span) in always]
+            others = self._mapped_findings(varied, path, system)
+            of_variants = [
+                [f for f in findings if _own_severity(f) is Severity.ERROR or _without_values(f) in always]
+                for findings, always in zip(
+                    of_variants, ({_without_values(f) for f in fs} for fs in others), strict=True
+                )
+            ]
+        findings = [
+            finding
+            for finding in itertools.chain.from_iterable(of_variants)
+            if not any(span.start < finding.span.end and finding.span.start < span.end for span in broken)
+            and (_own_severity(finding) is Severity.ERROR or not has_invalid_draw)
+        ]
         known = {(finding.code, finding.span) for finding in findings}
         unseen = (f for f in self._replaced_findings(expanded, subject) if (f.code, f.span) not in known)
         unseen = (f for f in unseen if not any(f.span.start < span.end and span.start < f.span.end for span in broken))
@@ -207,15 +216,22 @@ class RuleRunner:
             if finding.code not in _OF_VALUES and any(s.start <= place.start and place.end <= s.end for s in spans):
                 yield finding
 
-    def _mapped_findings(self, expanded: Expanded[Analysis], path: str, system: str | None) -> Iterator[Finding]:
+    def _mapped_findings(self, expanded: Expanded[Analysis], path: str, system: str | None) -> list[list[Finding]]:
+        """The findings in each expanded text of a file, at their places in the file."""
         runner = RuleRunner(expanded.analysis, self.settings)
+        mapped: list[list[Finding]] = []
         for variant in expanded.expansion.paths(path):
             findings, text = runner.findings(variant, system), expanded.expansion.texts.get(variant)
             if text is not None and text.copies:
                 findings = _in_all_copies(text, findings)
-            for finding in findings:
-                if text is None or not _is_given_impossible(text, finding):
-                    yield _meant_parameter(expanded, path, expanded.finding(variant, finding))
+            mapped.append(
+                [
+                    _meant_parameter(expanded, path, expanded.finding(variant, finding))
+                    for finding in findings
+                    if text is None or not _is_given_impossible(text, finding)
+                ]
+            )
+        return mapped
 
     def _is_selected(self, finding: Finding) -> bool:
         code, settings = finding.code, self.settings
@@ -269,6 +285,15 @@ def _in_all_copies(text: ExpandedText, findings: tuple[Finding, ...]) -> tuple[F
         elif _own_severity(finding) is Severity.ERROR or count[place] >= copies:
             kept.setdefault(place, finding)
     return tuple(kept.values())
+
+
+_VALUES = regex(r"`[^`]*`|\d+(?:\.\d+)?")
+"""The parts of a message that may contain the value of a parameter."""
+
+
+def _without_values(finding: Finding) -> tuple[str, Span, str]:
+    """What a finding states and where, without the values in its message: `always true` and `never true` differ."""
+    return finding.code, finding.span, _VALUES.sub("", finding.message)
 
 
 _OF_VALUES = (invalid_value.RULE.code,)

@@ -82,7 +82,8 @@ class Verdict(Record, frozen=True):
             what = "met under uniform choices" if self.is_met else "NOT MET: known only under uniform choices"
             return "; ".join(filter(None, (what, self.uniform_only)))
         if self.is_met and self.sampled:
-            return f"met by the {self.sampled:,} sampled schedulers; another one may miss it"
+            which = "only sampled scheduler" if self.sampled == 1 else f"{self.sampled:,} sampled schedulers"
+            return f"met by the {which}; another one may miss it"
         if self.is_met:
             return "met"
         return f"NOT MET {self.under}".rstrip()

@@ -564,6 +564,7 @@ class _Parser:
             if not self.stack:
                 self.namespaces.add(declared[-1])
             element.is_foreign = declared[-1] not in self.namespaces
+        element.is_undeclared = bool(element.prefix) and not declared
         if element.self_closing:
             self.forget_prefixes()
 

@@ -69,6 +69,7 @@ class Element:
         name: local name, without prefix.
         prefix: namespace prefix, often empty.
         is_foreign: whether the prefix denotes another namespace than that of the root and that of SCXML.
+        is_undeclared: whether no namespace is declared for the prefix, which the parser reports.
         name_span: the whole name in the start tag.
         attributes: in document order; attributes with equal names are all kept.
         nodes: all children, in document order.
@@ -88,6 +89,7 @@ class Element:
         "complete",
         "elements",
         "is_foreign",
+        "is_undeclared",
         "name",
         "name_span",
         "nodes",
@@ -101,6 +103,7 @@ class Element:
         self.name = name
         self.prefix = prefix
         self.is_foreign = False
+        self.is_undeclared = False
         self.name_span = name_span
         self.attributes = attributes
         self.open_span = open_span

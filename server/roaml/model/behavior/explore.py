@@ -289,11 +289,11 @@ class _Path(Record, frozen=True):
 
 
 def _kinds(chart: Chart) -> tuple[Mapping[str, str], frozenset[str], frozenset[str]]:
-    """The base types of the scalar variables of a chart, the names of its integer variables and `_bt`, and the names of
-    its boolean variables."""
+    """The base types of the scalar variables of a chart, the names of its integer variables and of the event variables
+    that contain only integers, and the names of its boolean variables."""
     types = {d.id.value: d.type.name for d in chart.data if d.id and d.type and d.type.name}
     scalar = {name: type_.base for name, type_ in types.items() if not type_.dimensions}
-    integers = {name for name, base in scalar.items() if base.startswith(("int", "uint"))} | {"_bt"}
+    integers = {name for name, base in scalar.items() if base.startswith(("int", "uint"))} | {"_action", "_bt"}
     return scalar, frozenset(integers), frozenset(name for name, base in scalar.items() if base == "bool")
 
 
@@ -1016,6 +1016,7 @@ class _Explorer(Record, eq=False, dict=True):
         if count is None or statement.thread_id is None:
             return path
         values = self.facts.values(path.knowledge, statement.thread_id.tree)
+        values = values.narrowed(is_integer=True) or values  # below 2 means at most 1
         if values.only is not None:
             numbers = [number for number in values.only if not isinstance(number, str)]
             below = min(numbers, default=0) < 0 and not self.counts_down

@@ -14,6 +14,7 @@ import math
 from collections.abc import Callable, Iterator
 from typing import TypeAlias
 
+from roaml.exact_number import remainder
 from roaml.expr.operators import MIRRORED, OPPOSITE, Operator, OperatorKind, UnaryOperator
 from roaml.expr.tree import (
     ArrayLiteral,
@@ -382,7 +383,7 @@ def _result(operator: Operator, a: float, b: float) -> float:
         case Operator.MULTIPLY:
             return a * b
         case Operator.REMAINDER:
-            return a % b
+            return remainder(a, b)
         case _:
             return a / b
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import RealEquality
 from roaml.expr.operators import Operator
-from roaml.expr.tree import Binary, Call, Expr, walk
+from roaml.expr.tree import Binary, Call, Expr, Member, walk
 from roaml.model.syntax import Expression
 from roaml.model.value_types import TypedValue
 from roaml.model.values.domain import ANYTHING, ValueSet
@@ -16,6 +16,8 @@ from roaml.rules.rule import MachineContext, Rule
 from roaml.text import TextEdit
 
 TOLERANCE = "0.001"
+_EXACT = ("abs", "ceil", "floor", "max", "min")
+"""The functions that do not round a result: they choose one of their arguments, change its sign, or give an integer."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -47,6 +49,9 @@ def _is_exact(context: MachineContext, value: TypedValue, problem: RealEquality)
 
 
 def _is_computed(expr: Expr) -> bool:
+    """Whether a number is the result of an operation that may round it."""
+    if isinstance(expr, Call) and isinstance(expr.function, Member) and expr.function.name in _EXACT:
+        return any(_is_computed(argument) for argument in expr.arguments)
     return isinstance(expr, Binary | Call)
 
 
