@@ -84,6 +84,7 @@ from roaml.rules.expressions import (
     misplaced_random,
     real_equality,
     repeated_comparison,
+    repeated_operand,
     type_mismatch,
     unknown_function,
     unknown_member,

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The rule `repeated-operand`, which repeated_operand.md describes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.expr.format import format_expr
+from roaml.expr.operators import Operator
+from roaml.expr.tree import Binary, Expr, is_draw, walk
+from roaml.jani import expressions as jani
+from roaml.jani.operators import BinaryOperator
+from roaml.jani.properties import BinaryFormula, Formula
+from roaml.jani.properties import walk as walk_formula
+from roaml.model.property_links import LinkedFile
+from roaml.model.syntax import Expression
+from roaml.rules.rule import MachineContext, PropertiesContext, Rule
+from roaml.text import Span
+
+_JOINING = (Operator.AND, Operator.OR)
+
+_JOINING_IN_JANI = (BinaryOperator.AND, BinaryOperator.OR)
+
+
+def check(context: MachineContext) -> Iterator[Finding]:
+    """Report the operands of `&&` and `||` that an earlier operand repeats, in the expressions of a machine."""
+    for value in context.typed.values:
+        if isinstance(value.value, Expression) and not value.value.broken:
+            yield from _repeated(value.value.tree)
+
+
+def check_properties(file: LinkedFile) -> Iterator[Finding]:
+    """Report the same in the conditions of properties in XML."""
+    for written in file.file.properties:
+        for expression in written.expressions:
+            if not expression.broken:
+                yield from _repeated(expression.tree)
+
+
+def check_jani(context: PropertiesContext) -> Iterator[Finding]:
+    """Report the same in properties in JANI, where the operators are `∧` and `∨`."""
+    for property_ in context.properties:
+        nested: set[int] = set()
+        for node in walk_formula(property_.expression):
+            if _joining(node) is None or id(node) in nested:
+                continue
+            operands = list(_operands_in_jani(node, nested))
+            for number, operand in enumerate(operands):
+                earlier = next((other for other in operands[:number] if other == operand), None)
+                if earlier is not None and earlier.origin is not None and operand.origin is not None:
+                    yield _finding(operand.origin.span, earlier.origin.span, str(_joining(node)), "this operand")
+
+
+def _repeated(tree: Expr) -> Iterator[Finding]:
+    nested: set[int] = set()
+    for node in walk(tree):
+        if not isinstance(node, Binary) or node.operator not in _JOINING or id(node) in nested:
+            continue
+        first: dict[str, Expr] = {}
+        for operand in _operands(node, nested):
+            if any(is_draw(part) for part in walk(operand)):
+                continue
+            text = format_expr(operand)
+            earlier = first.setdefault(text, operand)
+            if earlier is not operand:
+                yield _finding(operand.span, earlier.span, node.operator.value, f"`{text}`")
+
+
+def _operands(tree: Binary, nested: set[int]) -> Iterator[Expr]:
+    """What a chain of the operator of `tree` joins, from left to right. Adds the inner operations to `nested`."""
+    stack: list[Expr] = [tree]
+    while stack:
+        node = stack.pop()
+        if isinstance(node, Binary) and node.operator is tree.operator:
+            nested.add(id(node))
+            stack += (node.right, node.left)
+        else:
+            yield node
+
+
+def _joining(formula: Formula) -> str | None:
+    """The symbol of a `∧` or `∨`; `None` for other formulas."""
+    is_binary = isinstance(formula, jani.Binary | BinaryFormula)
+    return formula.operator.value if is_binary and formula.operator in _JOINING_IN_JANI else None
+
+
+def _operands_in_jani(formula: Formula, nested: set[int]) -> Iterator[Formula]:
+    """What a chain of the operator of `formula` joins, from left to right. Adds the inner operations to `nested`."""
+    stack = [formula]
+    while stack:
+        node = stack.pop()
+        if isinstance(node, jani.Binary | BinaryFormula) and _joining(node) == _joining(formula):
+            nested.add(id(node))
+            stack += (node.right, node.left)
+        else:
+            yield node
+
+
+def _finding(place: Span, earlier: Span, operator: str, what: str) -> Finding:
+    message = f"{what} is already an operand of this `{operator}`, so it has no effect; did you mean another one?"
+    return RULE.at(place, message, related=[Related(earlier, "the same operand")])
+
+
+RULE = Rule(
+    "repeated-operand",
+    Severity.WARNING,
+    "Two operands of `&&` or `||` are the same.",
+    machine=check,
+    properties=check_jani,
+    xml_properties=check_properties,
+)
