@@ -34,6 +34,7 @@ from roaml.model.system_file import ListedFile, SystemFile, SystemSection
 from roaml.model.tree import TreeFile, TreeNode
 from roaml.model.value_types import TypedMachine
 from roaml.model.values.analyse import NO_VALUES, MachineValues
+from roaml.model.values.global_values import GlobalValues
 from roaml.record import Record, field
 from roaml.suggest import close_names as close_names  # noqa: PLC0414 - the rules import it from here
 from roaml.suggest import did_you_mean as did_you_mean  # noqa: PLC0414
@@ -201,6 +202,7 @@ class PropertiesContext(Record, frozen=True):
         variables: the global variables of the translated system, by name; `None` if the file belongs to no system.
         taken: the names of the properties in the files that the system lists before this file, each with a phrase that
             names its file.
+        values: the values of the global variables for integer fields of topics, by name.
     """
 
     source: SourceFile
@@ -209,6 +211,7 @@ class PropertiesContext(Record, frozen=True):
     system: System | None
     variables: Mapping[str, GlobalVariable] | None
     taken: Mapping[str, str] = field(default_factory=dict)
+    values: Mapping[str, GlobalValues] = field(default_factory=dict)
 
 
 class Rule(Record, frozen=True):

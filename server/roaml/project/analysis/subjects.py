@@ -277,7 +277,8 @@ class _Reader:
                 includes = (tuple(self._missing_includes().items()), tuple(self._found_includes().items()))
                 return (*parts, self._tree_outlines(), includes, self.rooms.linking.forest(self.path, self.system_path))
             case FileKind.PROPERTIES if self.system_path:
-                return (*parts, tuple(self.rooms.systems.names_before(self.path, self.system_path)))
+                names = tuple(self.rooms.systems.names_before(self.path, self.system_path))
+                return (*parts, names, self.rooms.values.of_globals(self.system_path))
             case FileKind.XML_PROPERTIES if self.system_path:
                 return (*parts, self.rooms.values.observed(self.path, self.system_path))
             case FileKind.STRUCTS | FileKind.JSON_STRUCTS:
@@ -596,4 +597,5 @@ class _Reader:
         properties, _ = self.rooms.sources.properties(self.path)
         variables = self.rooms.linking.globals(self.system_path) if self.system_path else None
         taken = dict(self.rooms.systems.names_before(self.path, self.system_path)) if self.system_path else {}
-        return PropertiesContext(self.source, json[0], properties, self.system, variables, taken)
+        values = self.rooms.values.of_globals(self.system_path) if self.system_path else {}
+        return PropertiesContext(self.source, json[0], properties, self.system, variables, taken, values)

@@ -16,6 +16,7 @@ from roaml.model.property_links import LinkedFile
 from roaml.model.system import System
 from roaml.model.values.analyse import Arriving, MachineValues, Sent, analyse
 from roaml.model.values.arriving import arriving, arriving_by_type, observed_values
+from roaml.model.values.global_values import GlobalValues, topic_values
 from roaml.model.values.remembered import Memory
 from roaml.project.analysis.linking import Linking
 from roaml.project.analysis.sources import SourceFiles
@@ -59,15 +60,29 @@ class ReachedValues:
         file, linked = self._linking.linked_properties(path, system), self._linking.system(system)
         if file is None or linked is None or not linked.complete:
             return file
-        machines = dict.fromkeys(path for path, _ in (*linked.nodes, *linked.plugins))
-        known = {path: self.values_in(path, system) for path in machines if self._sources.machine(path) is not None}
-        values = {path: values.sent if values.complete else None for path, values in known.items()}
-        of_file = observed_values(file, linked, values)
+        of_file = observed_values(file, linked, self._sent(linked, system))
 
         def compute() -> LinkedFile:
             return replace(file, values=of_file)
 
         return self._sources.memo.get("observed properties", (path, system), (file, of_file), compute)
+
+    def of_globals(self, system: str) -> Mapping[str, GlobalValues]:
+        """The values of the global variables of topics, which properties in JANI use, by name."""
+        linked = self._linking.system(system)
+        if linked is None or not linked.complete:
+            return {}
+        sent = self._sent(linked, system)
+        interface = self._interfaces.interface
+        return self._sources.memo.get(
+            "values of globals", system, (linked, sent), lambda: topic_values(linked, sent, interface)
+        )
+
+    def _sent(self, linked: System, system: str) -> dict[str, Sent | None]:
+        """Path of a machine of a complete system -> what it sends; `None` if this is not known."""
+        machines = dict.fromkeys(path for path, _ in (*linked.nodes, *linked.plugins))
+        known = {path: self.values_in(path, system) for path in machines if self._sources.machine(path) is not None}
+        return {path: values.sent if values.complete else None for path, values in known.items()}
 
     def _by_type(self, path: str) -> Arriving:
         machine = self._sources.machine(path)

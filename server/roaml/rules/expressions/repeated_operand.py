@@ -31,8 +31,14 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def check_properties(file: LinkedFile) -> Iterator[Finding]:
-    """Report the same in the conditions of properties in XML."""
+    """Report the same in the conditions of properties in XML, and patterns whose two events are the same."""
     for written in file.file.properties:
+        events = [condition for condition in written.conditions if not condition.broken]
+        if len(events) == 2 and format_expr(events[0].tree) == format_expr(events[1].tree):
+            message = (
+                "this is also the first event of the property, so the pattern decides nothing; did you mean another?"
+            )
+            yield RULE.at(events[1].span, message, related=[Related(events[0].span, "the same event")])
         for expression in written.expressions:
             if not expression.broken:
                 yield from _repeated(expression.tree)
@@ -64,7 +70,7 @@ def _repeated(tree: Expr) -> Iterator[Finding]:
             text = format_expr(operand)
             earlier = first.setdefault(text, operand)
             if earlier is not operand:
-                yield _finding(operand.span, earlier.span, node.operator.value, f"`{text}`")
+                yield _finding(operand.span, earlier.span, node.operator.symbol, f"`{text}`")
 
 
 def _operands(tree: Binary, nested: set[int]) -> Iterator[Expr]:
@@ -81,8 +87,9 @@ def _operands(tree: Binary, nested: set[int]) -> Iterator[Expr]:
 
 def _joining(formula: Formula) -> str | None:
     """The symbol of a `∧` or `∨`; `None` for other formulas."""
-    is_binary = isinstance(formula, jani.Binary | BinaryFormula)
-    return formula.operator.value if is_binary and formula.operator in _JOINING_IN_JANI else None
+    if isinstance(formula, (jani.Binary, BinaryFormula)) and formula.operator in _JOINING_IN_JANI:
+        return formula.operator.symbol
+    return None
 
 
 def _operands_in_jani(formula: Formula, nested: set[int]) -> Iterator[Formula]:
@@ -90,7 +97,7 @@ def _operands_in_jani(formula: Formula, nested: set[int]) -> Iterator[Formula]:
     stack = [formula]
     while stack:
         node = stack.pop()
-        if isinstance(node, jani.Binary | BinaryFormula) and _joining(node) == _joining(formula):
+        if isinstance(node, (jani.Binary, BinaryFormula)) and _joining(node) == _joining(formula):
             nested.add(id(node))
             stack += (node.right, node.left)
         else:

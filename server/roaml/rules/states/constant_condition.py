@@ -29,10 +29,18 @@ from roaml.model.values.domain import FALSE, MAX_LISTED, TRUE, Origin, ValueSet,
 from roaml.model.values.evaluate import compared, place_of
 from roaml.observers.properties import Pattern
 from roaml.roles import ProtocolPart
-from roaml.rules.rule import MachineContext, Rule, TreeContext, close_names, replacements
+from roaml.rules.rule import (
+    MachineContext,
+    PropertiesContext,
+    Rule,
+    TreeContext,
+    close_names,
+    replacements,
+)
 from roaml.rules.support.assignments import is_unchanged
 from roaml.rules.support.entries import entries_of
 from roaml.rules.support.forest import trees_of
+from roaml.rules.support.jani_comparisons import constant_comparisons
 from roaml.rules.support.message_constants import wrong_fields
 from roaml.rules.support.steps import step_of
 from roaml.text import Span, TextEdit
@@ -184,6 +192,12 @@ def check_properties(file: LinkedFile) -> Iterator[Finding]:
                 ):
                     sent = described(known, most=MAX_LISTED)
                     yield RULE.at(node.span, f"this comparison is never true: the values of `{name}` are {sent}")
+
+
+def check_jani(context: PropertiesContext) -> Iterator[Finding]:
+    """Report the same in properties in JANI."""
+    for comparison in constant_comparisons(context):
+        yield RULE.at(comparison.span, comparison.message)
 
 
 _OCCURRING = frozenset(p.value for p in Pattern) - {Pattern.ABSENCE.value, Pattern.UNIVERSALITY.value}
@@ -679,6 +693,7 @@ RULE = Rule(
     "A condition is always true or never true.",
     machine=check,
     tree=check_trees,
+    properties=check_jani,
     xml_properties=check_properties,
     whole=True,
 )

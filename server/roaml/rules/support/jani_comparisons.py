@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The comparisons in properties in JANI that have the same result for all values of a variable."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.expr import operators
+from roaml.jani.expressions import Binary, Integer, Name, Real
+from roaml.jani.operators import BinaryOperator
+from roaml.jani.properties import (
+    BinaryFormula,
+    BinaryPath,
+    BinaryPathOperator,
+    Filter,
+    Formula,
+    Probability,
+    UnaryPath,
+    UnaryPathOperator,
+    walk,
+)
+from roaml.model.values.describe import described
+from roaml.model.values.domain import FALSE, MAX_LISTED, TRUE, exactly
+from roaml.model.values.evaluate import compared
+from roaml.model.values.global_values import GlobalValues
+from roaml.record import Record
+from roaml.rules.rule import PropertiesContext
+from roaml.text import Span
+
+_OPERATORS = {
+    BinaryOperator.EQUAL: operators.Operator.EQUAL,
+    BinaryOperator.NOT_EQUAL: operators.Operator.NOT_EQUAL,
+    BinaryOperator.LESS: operators.Operator.LESS,
+    BinaryOperator.LESS_EQUAL: operators.Operator.LESS_EQUAL,
+    BinaryOperator.GREATER: operators.Operator.GREATER,
+    BinaryOperator.GREATER_EQUAL: operators.Operator.GREATER_EQUAL,
+}
+
+
+class ConstantComparison(Record, frozen=True):
+    """A comparison at `span` that always or never `holds`; `message` gives the reason."""
+
+    span: Span
+    holds: bool
+    message: str
+
+
+def constant_comparisons(context: PropertiesContext) -> Iterator[ConstantComparison]:
+    """The comparisons of a topic's integer with a number that have the same result for all values of its type; and, in
+    what has to occur at some time, those that hold for none of the values that machines send."""
+    for property_ in context.properties:
+        expected = {id(node) for node in _expected(property_.expression)}
+        ranges = set(_ranges(property_.expression))
+        for node in walk(property_.expression):
+            sides = _sides(context, node)
+            if sides is None or not isinstance(node, Binary) or node.origin is None:
+                continue
+            variable, number, operator = sides
+            result = compared(operator, variable.by_type, exactly(number))
+            if result.value is not None:
+                if result == TRUE and id(node) in ranges:
+                    continue
+                how = "always" if result == TRUE else "never"
+                why = f"the values of `{variable.type}` are {described(variable.by_type)}"
+                yield ConstantComparison(node.origin.span, result == TRUE, f"this comparison is {how} true: {why}")
+                continue
+            never = compared(operator, variable.sent, exactly(number)) == FALSE
+            if never and variable.sent.value is None and id(node) in expected:
+                why = f"the values of the field are {described(variable.sent, most=MAX_LISTED)}"
+                yield ConstantComparison(node.origin.span, False, f"this comparison is never true: {why}")
+
+
+def _sides(context: PropertiesContext, node: Formula) -> tuple[GlobalValues, int | float, operators.Operator] | None:
+    """The variable and the number that a comparison compares, as if the variable were on the left."""
+    if not isinstance(node, Binary) or node.operator not in _OPERATORS:
+        return None
+    operator = _OPERATORS[node.operator]
+    match node.left, node.right:
+        case Name(identifier), Integer(number) | Real(number):
+            pass
+        case Integer(number) | Real(number), Name(identifier):
+            operator = operators.MIRRORED.get(operator, operator)
+        case _:
+            return None
+    values = context.values.get(identifier)
+    return None if values is None else (values, number, operator)
+
+
+def _expected(formula: Formula) -> Iterator[Formula]:
+    """The parts of a property without which what it expects at some time cannot hold."""
+    while isinstance(formula, (Filter, Probability)):
+        formula = formula.values if isinstance(formula, Filter) else formula.path
+    match formula:
+        case UnaryPath(operator=UnaryPathOperator.FINALLY, operand=part):
+            yield from _joined(part)
+        case BinaryPath(operator=BinaryPathOperator.UNTIL, right=part):
+            yield from _joined(part)
+
+
+def _ranges(formula: Formula) -> Iterator[int]:
+    """The ids of the comparisons of a variable that `∧` joins with another comparison of it. There, one that is always
+    true states a range completely: `0 ≤ x ∧ x ≤ 9`."""
+    nested: set[int] = set()
+    for node in walk(formula):
+        if id(node) in nested:
+            continue
+        parts = list(_joined(node))
+        nested |= {id(part) for part in parts}
+        comparisons: dict[str, list[Formula]] = {}
+        for part in parts:
+            for side in (part.left, part.right) if isinstance(part, Binary) and part.operator in _OPERATORS else ():
+                if isinstance(side, Name):
+                    comparisons.setdefault(side.identifier, []).append(part)
+        yield from (id(part) for alike in comparisons.values() if len(alike) > 1 for part in alike)
+
+
+def _joined(formula: Formula) -> Iterator[Formula]:
+    """A formula, and what it joins with `∧`."""
+    stack = [formula]
+    while stack:
+        node = stack.pop()
+        yield node
+        if isinstance(node, (Binary, BinaryFormula)) and node.operator is BinaryOperator.AND:
+            stack += (node.left, node.right)
