@@ -20,7 +20,7 @@ from roaml.jani.properties import (
     walk,
 )
 from roaml.model.values.describe import described
-from roaml.model.values.domain import FALSE, MAX_LISTED, TRUE, exactly
+from roaml.model.values.domain import MAX_LISTED, TRUE, exactly
 from roaml.model.values.evaluate import compared
 from roaml.model.values.global_values import GlobalValues
 from roaml.record import Record
@@ -47,7 +47,7 @@ class ConstantComparison(Record, frozen=True):
 
 def constant_comparisons(context: PropertiesContext) -> Iterator[ConstantComparison]:
     """The comparisons of a topic's integer with a number that have the same result for all values of its type; and, in
-    what has to occur at some time, those that hold for none of the values that machines send."""
+    what has to occur at some time, those of equality that hold for none of the values that machines send."""
     for property_ in context.properties:
         expected = {id(node) for node in _expected(property_.expression)}
         ranges = set(_ranges(property_.expression))
@@ -64,7 +64,8 @@ def constant_comparisons(context: PropertiesContext) -> Iterator[ConstantCompari
                 why = f"the values of `{variable.type}` are {described(variable.by_type)}"
                 yield ConstantComparison(node.origin.span, result == TRUE, f"this comparison is {how} true: {why}")
                 continue
-            never = compared(operator, variable.sent, exactly(number)) == FALSE
+            # An order that never holds often states that a limit is never exceeded.
+            never = operator is operators.Operator.EQUAL and not variable.sent.includes(number)
             if never and variable.sent.value is None and id(node) in expected:
                 why = f"the values of the field are {described(variable.sent, most=MAX_LISTED)}"
                 yield ConstantComparison(node.origin.span, False, f"this comparison is never true: {why}")
