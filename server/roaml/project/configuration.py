@@ -9,7 +9,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+import re
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any
 
 from roaml.diagnostics import Finding, Fix
@@ -18,6 +19,8 @@ from roaml.model.config_files import CONFIG_FILE, CONFIG_FILES, PROJECT_FILE
 from roaml.project.files import MAX_CHARACTERS, DiskFiles
 from roaml.project.settings import Folder, SettingProblem, Settings, folders_above, folders_in, settings_from
 from roaml.record import Record, replace
+from roaml.regex import regex
+from roaml.suggest import close_names, did_you_mean
 from roaml.text import SourceFile, Span, TextEdit
 from roaml.toml import Path, Places, TomlError, loads, places
 
@@ -29,11 +32,13 @@ class Configuration(Record, frozen=True):
         table: the values; `None` if they cannot be read.
         findings: the errors that do not depend on the disk.
         folders: the folders that the file names, with their positions.
+        expected: the names of the properties whose results are expected, with their positions.
     """
 
     table: Mapping[str, Any] | None
     findings: tuple[Finding, ...] = ()
     folders: tuple[tuple[Span, Folder], ...] = ()
+    expected: tuple[tuple[Span, str], ...] = ()
 
 
 def read_configuration(source: SourceFile) -> Configuration:
@@ -59,10 +64,33 @@ def read_configuration(source: SourceFile) -> Configuration:
     if not isinstance(table, dict):
         message = "`tool.as2fm` must be a table of settings"
         return Configuration(None, (Finding("invalid-setting", _span(source, known, prefix), message),))
-    _, problems = settings_from(table, os.path.dirname(source.path), Settings())
+    settings, problems = settings_from(table, os.path.dirname(source.path), Settings())
     findings = tuple(_finding(source, known, prefix, problem) for problem in problems)
     folders = folders_in(table, os.path.dirname(source.path))
-    return Configuration(table, findings, tuple((_span(source, known, (*prefix, *f.path)), f) for f in folders))
+    expected = {name: known.keys.get((*prefix, "verify", "expect", name)) for name in settings.expectations}
+    return Configuration(
+        table,
+        findings,
+        tuple((_span(source, known, (*prefix, *f.path)), f) for f in folders),
+        tuple((span, name) for name, span in expected.items() if span is not None),
+    )
+
+
+def unknown_expectations(source: SourceFile, configuration: Configuration, names: Collection[str]) -> Iterator[Finding]:
+    """A finding for each expected property that is not one of `names`, those of the systems that are known, if one of
+    these is similar: it may also belong to a system that is not known. Names with parameters, such as
+    `$(var robot)_arrives`, may be any names of this form."""
+    written = [name for name in names if "$(" not in name]
+    forms = [re.compile(".*".join(map(re.escape, _PARAMETER.split(name)))) for name in names if "$(" in name]
+    for span, name in configuration.expected:
+        is_known = name in names or any(form.fullmatch(name) for form in forms)
+        close = () if is_known else close_names(name, written)
+        if close:
+            message = f"no system has a property `{name}`, so nothing is expected{did_you_mean(close)}"
+            yield Finding("unknown-expectation", span, message, fixes=_renamed(source, span, close))
+
+
+_PARAMETER = regex(r"\$\([^)]*\)")
 
 
 def missing_folders(configuration: Configuration) -> tuple[Finding, ...]:
@@ -82,13 +110,17 @@ def _finding(source: SourceFile, known: Places, prefix: Path, problem: SettingPr
     path = (*prefix, *problem.path)
     span = known.keys.get(path) if problem.is_key else None
     span = span or _span(source, known, path)
+    return Finding("invalid-setting", span, problem.message, fixes=_renamed(source, span, problem.instead))
+
+
+def _renamed(source: SourceFile, span: Span, names: Iterable[str]) -> tuple[Fix, ...]:
+    """A fix for each name that replaces the key or value at `span` by it, with its quotation marks."""
     quotes = source.text[span.start : span.start + 1]
     quotes = quotes if quotes in ("'", '"') else ""
-    fixes = tuple(
+    return tuple(
         Fix(f"Change to `{name}`", (TextEdit(span, f"{quotes}{name}{quotes}"),), preferred=number == 0)
-        for number, name in enumerate(problem.instead)
+        for number, name in enumerate(names)
     )
-    return Finding("invalid-setting", span, problem.message, fixes=fixes)
 
 
 def _span(source: SourceFile, known: Places, path: Path) -> Span:

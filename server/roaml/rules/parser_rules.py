@@ -76,6 +76,9 @@ TOML_SYNTAX = _parser_rule("toml-syntax", Severity.ERROR, "A configuration file 
 UNDEFINED_ENTITY = _parser_rule(
     "undefined-entity", Severity.ERROR, "An entity is not one of the five predefined entities."
 )
+UNKNOWN_EXPECTATION = _parser_rule(
+    "unknown-expectation", Severity.WARNING, "A configuration file names a property that no system has."
+)
 UNMATCHED_MOCK = _parser_rule("unmatched-mock", Severity.WARNING, "A mock matches no node of the tree.")
 XML_SYNTAX = Rule("xml-syntax", Severity.ERROR, "The file is not well-formed XML.", file=xml_syntax)
 
@@ -96,6 +99,7 @@ RULES = (
     REPEATED_MOCK,
     TOML_SYNTAX,
     UNDEFINED_ENTITY,
+    UNKNOWN_EXPECTATION,
     UNMATCHED_MOCK,
     XML_SYNTAX,
 )

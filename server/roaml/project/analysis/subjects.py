@@ -37,7 +37,7 @@ from roaml.project.analysis.symbols import symbol_name
 from roaml.project.analysis.systems import Systems
 from roaml.project.analysis.tree_files import TreeFiles
 from roaml.project.analysis.values import ReachedValues
-from roaml.project.configuration import missing_folders
+from roaml.project.configuration import missing_folders, unknown_expectations
 from roaml.project.files import MAX_CHARACTERS
 from roaml.project.paths import slashed
 from roaml.project.ros_types import Interfaces
@@ -408,7 +408,11 @@ class _Reader:
 
     def _configuration_findings(self) -> tuple[Finding, ...]:
         configuration = self.rooms.sources.configuration(self.path)
-        return (*configuration.findings, *missing_folders(configuration)) if configuration else ()
+        if configuration is None:
+            return ()
+        names = self.rooms.systems.property_names(os.path.dirname(self.path)) if configuration.expected else ()
+        unknown = unknown_expectations(self.source, configuration, names)
+        return (*configuration.findings, *missing_folders(configuration), *unknown)
 
     def _grammar(self) -> Grammar | None:
         if self.kind is FileKind.MACHINE:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 
@@ -137,3 +138,8 @@ class Systems:
                 and (before := self._sources.property_file(listed.path)) is not None
             ):
                 yield from ((written.id.value, file) for written in before.properties if written.id is not None)
+
+    def property_names(self, folder: str) -> frozenset[str]:
+        """The names of the properties of all systems in a folder."""
+        inside = (system for system in self.paths if system.startswith(os.path.join(folder, "")))
+        return frozenset(name for system in inside for name, _ in self.names_before("", system))
