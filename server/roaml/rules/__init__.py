@@ -226,6 +226,7 @@ from roaml.rules.variables import (
     invalid_name,
     large_array_size,
     machine_name,
+    misplaced_value,
     missing_type,
     mixed_names,
     never_reset,

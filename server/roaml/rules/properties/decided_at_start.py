@@ -23,7 +23,7 @@ from roaml.jani.properties import (
     UnaryPathOperator,
     identifiers,
 )
-from roaml.json_syntax import JsonArray, JsonObject, JsonString, JsonValue
+from roaml.json_syntax import JsonString
 from roaml.model.property_file import WrittenProperty
 from roaml.model.property_links import LinkedFile
 from roaml.model.syntax import Expression
@@ -31,8 +31,9 @@ from roaml.model.values.domain import FALSE, TRUE, ValueSet
 from roaml.model.values.evaluate import Evaluator
 from roaml.observers.properties import Pattern, ScopeKind
 from roaml.rules.rule import PropertiesContext, Rule
+from roaml.rules.support.jani_places import operator_at
 from roaml.scxml.names import flagged_by
-from roaml.text import Span, TextEdit
+from roaml.text import TextEdit
 
 NEVER = "so the property never holds; did you mean another pattern or condition?"
 ALWAYS = "so the property always holds; did you mean another initial value or condition?"
@@ -93,26 +94,11 @@ def check_jani(context: PropertiesContext) -> Iterator[Finding]:
         part, value, effect = _decisive_part(formula)
         if part is None or formula.origin is None or _at_start(part) is not value or not any(identifiers(part)):
             continue
-        operator = _operator(context.value, formula.origin.span)
+        operator = operator_at(context.value, formula.origin.span)
         if operator is not None:
             state = "true" if value else "false"
             message = f"the operand is {state} at the start of every trace, before any event is sent, {effect}"
             yield RULE.at(operator.span, message, *_fixes(operator))
-
-
-def _operator(value: JsonValue, place: Span) -> JsonString | None:
-    """The operator of the formula at `place` in a file."""
-    stack = [value]
-    while stack:
-        inner = stack.pop()
-        if isinstance(inner, JsonObject):
-            operator = inner.get("op")
-            if inner.span == place and isinstance(operator, JsonString):
-                return operator
-            stack += [member.value for member in inner.members if member.value is not None]
-        elif isinstance(inner, JsonArray):
-            stack += inner.items
-    return None
 
 
 def _fixes(operator: JsonString) -> Iterator[Fix]:

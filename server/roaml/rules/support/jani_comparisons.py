@@ -25,6 +25,7 @@ from roaml.model.values.evaluate import compared
 from roaml.model.values.global_values import GlobalValues
 from roaml.record import Record
 from roaml.rules.rule import PropertiesContext
+from roaml.rules.support.jani_places import operator_at
 from roaml.text import Span
 
 _OPERATORS = {
@@ -38,10 +39,9 @@ _OPERATORS = {
 
 
 class ConstantComparison(Record, frozen=True):
-    """A comparison at `span` that always or never `holds`; `message` gives the reason."""
+    """A comparison at `span` that is always or never true; `message` gives the reason."""
 
     span: Span
-    holds: bool
     message: str
 
 
@@ -62,13 +62,24 @@ def constant_comparisons(context: PropertiesContext) -> Iterator[ConstantCompari
                     continue
                 how = "always" if result == TRUE else "never"
                 why = f"the values of `{variable.type}` are {described(variable.by_type)}"
-                yield ConstantComparison(node.origin.span, result == TRUE, f"this comparison is {how} true: {why}")
+                yield ConstantComparison(_place(context, node), f"this comparison is {how} true: {why}")
                 continue
             # An order that never holds often states that a limit is never exceeded.
             never = operator is operators.Operator.EQUAL and not variable.sent.includes(number)
             if never and variable.sent.value is None and id(node) in expected:
                 why = f"the values of the field are {described(variable.sent, most=MAX_LISTED)}"
-                yield ConstantComparison(node.origin.span, False, f"this comparison is never true: {why}")
+                yield ConstantComparison(_place(context, node), f"this comparison is never true: {why}")
+
+
+def _place(context: PropertiesContext, comparison: Binary) -> Span:
+    """The number of an equality, and the operator of an order: these are probably wrong."""
+    assert comparison.origin is not None
+    place = comparison.origin.span
+    if comparison.operator in (BinaryOperator.EQUAL, BinaryOperator.NOT_EQUAL):
+        numbers = (side for side in (comparison.left, comparison.right) if isinstance(side, (Integer, Real)))
+        return next((side.origin.span for side in numbers if side.origin is not None), place)
+    operator = operator_at(context.value, place)
+    return operator.span if operator is not None else place
 
 
 def _sides(context: PropertiesContext, node: Formula) -> tuple[GlobalValues, int | float, operators.Operator] | None:
