@@ -12,7 +12,7 @@ from roaml.expr.infer import constant
 from roaml.expr.operators import MIRRORED, Operator, OperatorKind, UnaryOperator
 from roaml.expr.tree import Binary, Boolean, Expr, Member, Name, String, Unary, walk
 from roaml.expr.types import INTEGER_RANGES, Scalar
-from roaml.forest.scripts import scripts_of
+from roaml.forest.scripts import ScriptUse, parsed, scripts_of
 from roaml.interruption import checkpoint
 from roaml.model.behavior.explore import condition_facts
 from roaml.model.behavior.knowledge import NOTHING, ConditionFacts, variables_in
@@ -43,7 +43,9 @@ from roaml.rules.support.forest import trees_of
 from roaml.rules.support.jani_comparisons import constant_comparisons
 from roaml.rules.support.message_constants import wrong_fields
 from roaml.rules.support.steps import step_of
-from roaml.text import Span, TextEdit
+from roaml.script.tree import Comparison
+from roaml.script.tree import walk as walk_script
+from roaml.text import Decoded, Span, TextEdit
 
 _FROM_SENDERS = {ProtocolPart.MESSAGE: "_msg.", ProtocolPart.EVENT: "_event.data."}
 """What machines send without being asked -> the beginning of the places of its data."""
@@ -184,7 +186,7 @@ def check_properties(file: LinkedFile) -> Iterator[Finding]:
                     is_range = holds and node is not expression.tree
                     yield RULE.at(node.span, message, severity=Severity.INFORMATION if is_range else None)
                 elif (
-                    (pattern in _OCCURRING or expression in limits)
+                    (pattern in _OCCURRING or expression in limits or _is_part(pattern, expression.tree, node))
                     and any(node is part for part in required)
                     and known is not None
                     and known.value is None
@@ -198,6 +200,12 @@ def check_jani(context: PropertiesContext) -> Iterator[Finding]:
     """Report the same in properties in JANI."""
     for comparison in constant_comparisons(context):
         yield RULE.at(comparison.span, comparison.message)
+
+
+def _is_part(pattern: str, tree: Expr, node: Binary) -> bool:
+    """Whether a comparison is only a part of what must be absent. Alone, it may be a number that must not occur; beside
+    other parts, it makes these superfluous."""
+    return pattern == Pattern.ABSENCE.value and node is not tree and node.operator is Operator.EQUAL
 
 
 _OCCURRING = frozenset(p.value for p in Pattern) - {Pattern.ABSENCE.value, Pattern.UNIVERSALITY.value}
@@ -672,15 +680,24 @@ def check_trees(context: TreeContext) -> Iterator[Finding]:
         if result is None or len(result.truth) != 1 or not result.values:
             continue
         (holds,) = result.truth
-        if _SKIPPING.get(use.attribute.name) is not holds:
-            continue  # other constants are often settings
+        skips = _SKIPPING.get(use.attribute.name) is holds
+        is_setting = all(values.value is not None for values in result.values.values())
+        if not skips and (is_setting or use.attribute.name not in _SKIPPING or not _compares_equal(use)):
+            continue
         known = {name: values for name, values in result.values.items() if is_informative(values)}
         why = ", ".join(
             f"`{name}` is {'always ' if values.value is not None else ''}{described(values)}"
             for name, values in list(known.items())[:MAX_NAMED]
         )
-        message = f"this condition is {'always' if holds else 'never'} true{_because(why)}, so the node is never ticked"
+        effect = "the node is never ticked" if skips else "it has no effect"
+        message = f"this condition is {'always' if holds else 'never'} true{_because(why)}, so {effect}"
         yield RULE.at(use.attribute.value_span, message)
+
+
+def _compares_equal(use: ScriptUse) -> bool:
+    """Whether a script compares with `==`. An order that never holds often only excludes impossible values."""
+    script, _ = parsed(Decoded(use.attribute.value, 0))
+    return any(isinstance(part, Comparison) and "==" in part.operators for part in walk_script(script))
 
 
 _SKIPPING = {"_skipIf": True, "_failureIf": True, "_successIf": True, "_while": False}
