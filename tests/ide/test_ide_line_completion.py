@@ -90,6 +90,29 @@ def test_leaves_of_the_tree_are_offered_in_its_mocks() -> None:
     assert labels("/models/tree.mocks", "# mocks\nGr|", tree=TREE) == ["ComputePathToPose", "Grasp", "Look"]
 
 
+def test_properties_are_offered_as_names_of_expectations() -> None:
+    workspace = Workspace((), Settings(), systems=["/models/main.xml"])
+    workspace.open(
+        "/models/main.xml",
+        """<roaml><parameters><max_time value="9" unit="s" /></parameters><node_models />
+        <properties><input type="xml" src="required.xml" /></properties></roaml>""",
+    )
+    workspace.open(
+        "/models/required.xml",
+        """<properties><guarantees>
+        <property id="arrives" pattern="existence"><event>e</event><scope type="globally" /></property>
+        <property id="$(var robot)_stops" pattern="existence"><event>e</event><scope type="globally" /></property>
+        </guarantees></properties>""",
+    )
+    text = "[verify.expect]\narr"
+    for folder in ("models", "other"):
+        workspace.open(f"/{folder}/as2fm.toml", text)
+    found = complete(workspace.snapshot(), "/models/as2fm.toml", len(text))
+    assert found is not None
+    assert [(item.label, item.snippet) for item in found.items] == [("arrives", 'arrives = "$1"')]
+    assert complete(workspace.snapshot(), "/other/as2fm.toml", len(text)) is None
+
+
 OWN = '<root BTCPP_format="4"><BehaviorTree ID="A"><Own><Grasp/></Own></BehaviorTree></root>'
 
 

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Completion in files that are read line by line, and in comments: codes of rules in `as2fm: ignore[…]`, settings and
-their values in `as2fm.toml`, types in ROS interface definitions, and names of nodes and distributions in files of
-mocks."""
+"""Completion in files that are read line by line, and in comments: codes of rules in `as2fm: ignore[…]`, settings,
+their values and properties in `as2fm.toml`, types in ROS interface definitions, and names of nodes and distributions in
+files of mocks."""
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator
 
@@ -35,6 +36,7 @@ _VALUE = regex(r"^\s*([\w.-]+)\s*=[^=]*\Z", re.ASCII)
 _DURATION = regex(r":.*\sin\s+\w*\Z")
 _LIKE = regex(r"^\s*(.+?)\s*:\s*(as\s+)?\w*\Z")
 _PORT_OF_LIKE = regex(r":\s*as\s+(\w+)\s*\((?:[^)]*,)?\s*\w*\Z")
+_BARE_KEY = regex(r"[\w-]+", re.ASCII)
 _CODE_SETTINGS = ("select", "ignore", "severity")
 
 
@@ -49,7 +51,7 @@ def in_lines(analysis: Analysis, path: str, offset: int) -> tuple[Span, list[Com
     if _IN_SUPPRESSION.search(line):
         return _word(text, offset), list(_codes())
     if name_of(path) == CONFIG_FILE:
-        items = list(_in_configuration(text[:offset], line))
+        items = list(_in_configuration(analysis, path, text[:offset], line))
         return (_word(text, offset), items) if items else None
     if path.endswith(EXPERIMENT_SUFFIX):
         items = list(_in_experiment(analysis, path, text[:offset], line))
@@ -77,8 +79,9 @@ def _codes() -> Iterator[CompletionItem]:
         yield CompletionItem(rule.code, ItemKind.VALUE, detail=rule.summary)
 
 
-def _in_configuration(before: str, line: str) -> Iterator[CompletionItem]:
-    """Settings at the beginning of a line; codes and other words where a setting has them as values."""
+def _in_configuration(analysis: Analysis, path: str, before: str, line: str) -> Iterator[CompletionItem]:
+    """Settings and names of properties at the beginning of a line; codes and other words where a setting has them as
+    values."""
     section = _section(before)
     value = _VALUE.match(_statement(before))
     if value is not None:
@@ -93,6 +96,10 @@ def _in_configuration(before: str, line: str) -> Iterator[CompletionItem]:
     elif _KEY.fullmatch(line):
         if section == "severity":
             yield from _codes()
+        if section == "verify.expect":
+            for name in sorted(analysis.property_names(os.path.dirname(path))):
+                if _BARE_KEY.fullmatch(name):
+                    yield CompletionItem(name, ItemKind.ATTRIBUTE, f'{name} = "$1"', detail="property")
         for name in TABLES_OF_SETTINGS.get(section, ()):
             yield CompletionItem(name, ItemKind.ATTRIBUTE, detail=SETTING_DOCUMENTATION[_within(section, name)])
 
