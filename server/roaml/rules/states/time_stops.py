@@ -26,10 +26,12 @@ _FOR_EVER = "no time passes any more with the reaction time `instant`"
 
 def check(context: MachineContext) -> Iterator[Finding]:
     system = context.system
-    if system is None or not system.has_timer:
+    if system is None:
         return
     reaction_time = system.parameters.reaction_time
-    if reaction_time is None or not reaction_time.is_instant:
+    if not system.has_timer or reaction_time is None or not reaction_time.is_instant:
+        for chart in context.machine.charts:
+            yield from _stuck(chart)
         return
     for chart in context.machine.charts:
         yield from _eventless(context, chart)
@@ -67,6 +69,19 @@ def _eventless(context: MachineContext, chart: Chart) -> Iterator[Finding]:
                 f"condition is true, and {_FOR_EVER}"
             )
             yield RULE.at(repeated.cond.span, f"{message}; {_ADVICE}")
+
+
+def _stuck(chart: Chart) -> Iterator[Finding]:
+    """Report the transitions that repeat themselves in states without other handlers, which are wrong with each
+    reaction time."""
+    for state in chart.states:
+        repeated = _repeated(state) if all(_is_eventless(handler) for handler in state.handlers) else None
+        if repeated is not None and repeated.cond is not None:
+            message = (
+                "this transition changes nothing that its condition reads, so it is repeated for ever once the "
+                "condition is true, and the state is never left; let it lead to another state, or change the condition"
+            )
+            yield RULE.at(repeated.cond.span, message)
 
 
 _ADVICE = "let the transition wait for an event or a timer, or lead to a state that does"
