@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from roaml.diagnostics import Finding, Related, Severity
+from roaml.forest.cpp_types import ANY
 from roaml.forest.entries import BoundUse, Entries, Use
 from roaml.forest.forest import Forest
 from roaml.model.gaps import GapAct
@@ -27,6 +28,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     names = _names(entries, written)
     reported: set[Use] = set()
     misspelled: dict[Use, Use] = {}
+    overwriting: dict[Use, Use] = {}
     for key, uses in entries.by_entry.items():
         if key in written or not _is_needed(forest, entries, uses):
             continue
@@ -47,11 +49,16 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 if writer is not None and writer.path == use.path:
                     misspelled.setdefault(writer, use)
                     continue
-            if not is_hosted:
+            diverted = _diverted(forest, entries, use) if forest.system is None and not is_hosted else None
+            if diverted is not None:
+                overwriting.setdefault(diverted, use)
+            elif not is_hosted:
                 reported.add(use)
                 yield _unwritten(forest, bound, close)
     for writer, reader in misspelled.items():
         yield _unread(writer, reader)
+    for writer, reader in overwriting.items():
+        yield _overwritten(writer, reader)
 
 
 def _names(entries: Entries, written: set[str]) -> Mapping[str, Mapping[str, str]]:
@@ -127,6 +134,31 @@ def _only_written(uses: Iterable[BoundUse]) -> Use | None:
     return None if is_read or len(writers) != 1 or writers[0].script else writers[0]
 
 
+def _diverted(forest: Forest, entries: Entries, reader: Use) -> Use | None:
+    """The only output port in the tree of `reader` that probably should write its entry: it has the type of the entry,
+    but writes one that another node or the program writes, too. It also has the name of the entry, or its node reads
+    and writes the same entry."""
+    if reader.type == ANY:
+        return None
+    named: dict[Use, None] = {}
+    in_place: dict[Use, None] = {}
+    for uses in entries.by_entry.values():
+        writers = {bound.use.node for bound in uses if bound.use.writes}
+        if len(writers) < 2 and not (writers and _is_hosted(forest, uses)):
+            continue
+        readers = {bound.use.node for bound in uses if bound.use.reads and not bound.use.writes}
+        for use in (bound.use for bound in uses):
+            is_output = use.writes and not use.reads and not use.script and not use.remaps and not use.is_default
+            if not is_output or use.tree != reader.tree or use.path != reader.path or use.type != reader.type:
+                continue
+            if use.port == reader.name != use.name:
+                named[use] = None
+            elif use.node in readers and use.node is not reader.node:
+                in_place[use] = None
+    found = list(named or in_place)
+    return found[0] if len(found) == 1 else None
+
+
 def _unwritten(forest: Forest, bound: BoundUse, close: tuple[str, ...]) -> Finding:
     use, certain = bound.use, forest.system is not None
     hint = did_you_mean(close) or ("" if certain else "; the program that runs the tree must set it")
@@ -134,6 +166,18 @@ def _unwritten(forest: Forest, bound: BoundUse, close: tuple[str, ...]) -> Findi
     severity = Severity.ERROR if certain else Severity.WARNING if close else Severity.INFORMATION
     variable = bound.variable.removeprefix(bound.frame.board)
     return RULE.at(use.span, f"no node writes {described(variable, use.name)}{hint}", *fixes, severity=severity)
+
+
+def _overwritten(writer: Use, reader: Use) -> Finding:
+    """The finding at an output port that writes an entry of others, instead of the one of `reader`."""
+    hint = did_you_mean((reader.name,))
+    message = (
+        f"`{writer.port}` overwrites {described(writer.name, writer.name)}, which is also written elsewhere, and no "
+        f"node writes `{reader.name}`{hint}"
+    )
+    related = [Related(reader.span, f"`{reader.name}` is read here")]
+    fixes = replacements(writer.span, (f"{{{reader.name}}}",))
+    return RULE.at(writer.span, message, *fixes, severity=Severity.WARNING, related=related)
 
 
 def _unread(writer: Use, reader: Use) -> Finding:
