@@ -9,12 +9,13 @@ from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.expr.types import leaves, same_kind
 from roaml.interfaces.registry import NotFound
 from roaml.model.machine import Declaration
+from roaml.model.outline import InterfaceUse
 from roaml.model.syntax import Name
-from roaml.model.system import CLOCK_TOPIC, CLOCK_TYPE, Channel, System
+from roaml.model.system import CLOCK_TOPIC, CLOCK_TYPE, Channel, System, SystemAutomaton
 from roaml.model.value_types import CHANNEL_KINDS, INTERFACE_KINDS
 from roaml.roles import SymbolKind
-from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.interfaces import declared, other_kind
+from roaml.rules.rule import MachineContext, Rule, TreeContext
+from roaml.rules.support.interfaces import declared, find_use, named_by_ports, other_kind, port_span
 from roaml.rules.support.types import phrase
 from roaml.text import TextEdit
 
@@ -23,10 +24,52 @@ def check(context: MachineContext) -> Iterator[Finding]:
     if context.system is None:
         return
     for kind in CHANNEL_KINDS:
-        for declaration, _, channel in declared(context, kind):
+        for declaration, automaton, channel in declared(context, kind):
+            use = find_use(automaton, declaration)
+            if use is not None and is_misdirected(context.system, automaton, use, channel):
+                continue  # reported in the tree
             finding = _conflict(context, context.system, declaration, channel)
             if finding is not None:
                 yield finding
+
+
+def in_tree(context: TreeContext) -> Iterator[Finding]:
+    """Report the ports that name a topic, service or action of another type for a node, if other nodes of the plugin
+    name right ones: not the type is wrong then, but the name."""
+    system = context.system
+    if system is None:
+        return
+    for node, automaton, use in named_by_ports(context):
+        channel = system.channel(automaton, use)
+        if channel is None or not is_misdirected(system, automaton, use, channel):
+            continue
+        other = next(end for end in channel.endpoints if end.use.kind is other_kind(use.kind))
+        what = CHANNEL_KINDS[use.kind]
+        message = (
+            f"the {what} `{channel.name}` has the type `{other.use.type}`, but `{automaton.outline.name}` uses it as "
+            f"`{use.type}`, the type of the {what}s that its other nodes name; name another one"
+        )
+        related = [Related(other.symbol, "declared here"), Related(automaton.symbol(use), "used here")]
+        severity = Severity.WARNING if what is SymbolKind.TOPIC else Severity.ERROR
+        yield RULE.at(port_span(node, use.port), message, severity=severity, related=related)
+
+
+def is_misdirected(system: System, automaton: SystemAutomaton, use: InterfaceUse, channel: Channel) -> bool:
+    """Whether the port of a node names a topic, service or action whose other side has another type, although the same
+    declaration has the type of the other side in another node."""
+
+    def agrees(other: Channel) -> bool | None:
+        types = {normal(end.use.type) for end in other.endpoints if end.use.kind is other_kind(use.kind)}
+        return normal(use.type) in types if types else None
+
+    if not use.port or agrees(channel) is not False:
+        return False
+    for sibling in system.automata_of(automaton.path):
+        same = sibling.outline.use(use.kind, use.handle) if sibling is not automaton else None
+        of_sibling = system.channel(sibling, same) if same is not None else None
+        if of_sibling is not None and agrees(of_sibling):
+            return True
+    return False
 
 
 def _conflict(context: MachineContext, system: System, declaration: Declaration, channel: Channel) -> Finding | None:
@@ -67,6 +110,8 @@ def _others(system: System, kind: SymbolKind, channel: Channel) -> Iterator[tupl
     if is_clock:
         yield CLOCK_TYPE, (), False
     for endpoint in other:
+        if is_misdirected(system, endpoint.automaton, endpoint.use, channel):
+            continue
         yield endpoint.use.type, (Related(endpoint.symbol, "declared here"),), False
     for endpoint in channel.endpoints:
         if endpoint.use.kind is kind:
@@ -100,5 +145,6 @@ RULE = Rule(
     Severity.ERROR,
     "A topic, service or action is declared with different types.",
     machine=check,
+    tree=in_tree,
     whole=True,
 )
