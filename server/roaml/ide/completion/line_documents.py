@@ -5,7 +5,6 @@ files of mocks."""
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Iterator
 
@@ -20,7 +19,7 @@ from roaml.model.config_files import CONFIG_FILE
 from roaml.model.kinds import EXPERIMENT_SUFFIX, MOCKS_EXTENSION, FileKind
 from roaml.model.tree import nodes
 from roaml.project.analysis import Analysis
-from roaml.project.paths import name_of
+from roaml.project.paths import folder_of, name_of
 from roaml.project.settings import SETTING_DOCUMENTATION, SEVERITIES, TABLES_OF_SETTINGS, VALUES_OF_SETTINGS
 from roaml.regex import regex
 from roaml.roles import SymbolKind
@@ -97,7 +96,7 @@ def _in_configuration(analysis: Analysis, path: str, before: str, line: str) -> 
         if section == "severity":
             yield from _codes()
         if section == "verify.expect":
-            for name in sorted(analysis.property_names(os.path.dirname(path))):
+            for name in sorted(analysis.property_names(folder_of(path))):
                 if _BARE_KEY.fullmatch(name):
                     yield CompletionItem(name, ItemKind.ATTRIBUTE, f'{name} = "$1"', detail="property")
         for name in TABLES_OF_SETTINGS.get(section, ()):

@@ -39,7 +39,7 @@ from roaml.project.analysis.tree_files import TreeFiles
 from roaml.project.analysis.values import ReachedValues
 from roaml.project.configuration import missing_folders, unknown_expectations
 from roaml.project.files import MAX_CHARACTERS
-from roaml.project.paths import slashed
+from roaml.project.paths import folder_of, slashed
 from roaml.project.ros_types import Interfaces
 from roaml.record import Record
 from roaml.rules.rule import (
@@ -410,7 +410,7 @@ class _Reader:
         configuration = self.rooms.sources.configuration(self.path)
         if configuration is None:
             return ()
-        names = self.rooms.systems.property_names(os.path.dirname(self.path)) if configuration.expected else ()
+        names = self.rooms.systems.property_names(folder_of(self.path)) if configuration.expected else ()
         unknown = unknown_expectations(self.source, configuration, names)
         return (*configuration.findings, *missing_folders(configuration), *unknown)
 

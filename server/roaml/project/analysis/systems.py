@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 
@@ -14,7 +13,7 @@ from roaml.model.system_file import ListedFile, SystemInput, SystemSection, requ
 from roaml.project.analysis.sources import SourceFiles
 from roaml.project.analysis.tree_files import TreeFiles
 from roaml.project.files import MAX_CHARACTERS
-from roaml.project.paths import resolve
+from roaml.project.paths import is_below, resolve
 
 
 class Systems:
@@ -141,5 +140,5 @@ class Systems:
 
     def property_names(self, folder: str) -> frozenset[str]:
         """The names of the properties of all systems in a folder."""
-        inside = (system for system in self.paths if system.startswith(os.path.join(folder, "")))
+        inside = (system for system in self.paths if is_below(system, folder))
         return frozenset(name for system in inside for name, _ in self.names_before("", system))

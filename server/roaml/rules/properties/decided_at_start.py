@@ -31,7 +31,7 @@ from roaml.model.values.domain import FALSE, TRUE, ValueSet
 from roaml.model.values.evaluate import Evaluator
 from roaml.observers.properties import Pattern, ScopeKind
 from roaml.rules.rule import PropertiesContext, Rule
-from roaml.rules.support.jani_places import operator_at
+from roaml.rules.support.jani_formulas import operator_at
 from roaml.scxml.names import flagged_by
 from roaml.text import TextEdit
 

@@ -40,7 +40,7 @@ from roaml.rules.rule import (
 from roaml.rules.support.assignments import is_unchanged
 from roaml.rules.support.entries import entries_of
 from roaml.rules.support.forest import trees_of
-from roaml.rules.support.jani_comparisons import constant_comparisons
+from roaml.rules.support.jani_formulas import constant_comparisons
 from roaml.rules.support.message_constants import wrong_fields
 from roaml.rules.support.steps import step_of
 from roaml.script.tree import Comparison

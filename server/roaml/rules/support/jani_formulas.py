@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The comparisons in properties in JANI that have the same result for all values of a variable."""
+"""Formulas of properties in JANI: the comparisons that have the same result for all values of a variable, and the
+places of operators."""
 
 from __future__ import annotations
 
@@ -19,13 +20,13 @@ from roaml.jani.properties import (
     UnaryPathOperator,
     walk,
 )
+from roaml.json_syntax import JsonArray, JsonObject, JsonString, JsonValue
 from roaml.model.values.describe import described
 from roaml.model.values.domain import MAX_LISTED, TRUE, exactly
 from roaml.model.values.evaluate import compared
 from roaml.model.values.global_values import GlobalValues
 from roaml.record import Record
 from roaml.rules.rule import PropertiesContext
-from roaml.rules.support.jani_places import operator_at
 from roaml.text import Span
 
 _OPERATORS = {
@@ -134,3 +135,18 @@ def _joined(formula: Formula) -> Iterator[Formula]:
         yield node
         if isinstance(node, (Binary, BinaryFormula)) and node.operator is BinaryOperator.AND:
             stack += (node.left, node.right)
+
+
+def operator_at(value: JsonValue, place: Span) -> JsonString | None:
+    """The operator of the formula at `place` in a file."""
+    stack = [value]
+    while stack:
+        inner = stack.pop()
+        if isinstance(inner, JsonObject):
+            operator = inner.get("op")
+            if inner.span == place and isinstance(operator, JsonString):
+                return operator
+            stack += [member.value for member in inner.members if member.value is not None]
+        elif isinstance(inner, JsonArray):
+            stack += inner.items
+    return None
