@@ -96,7 +96,7 @@ def _in_configuration(analysis: Analysis, path: str, before: str, line: str) -> 
         if section == "severity":
             yield from _codes()
         if section == "verify.expect":
-            for name in sorted(analysis.property_names(folder_of(path))):
+            for name in sorted(analysis.property_names_below(folder_of(path))):
                 if _BARE_KEY.fullmatch(name):
                     yield CompletionItem(name, ItemKind.ATTRIBUTE, f'{name} = "$1"', detail="property")
         for name in TABLES_OF_SETTINGS.get(section, ()):

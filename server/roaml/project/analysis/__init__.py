@@ -136,7 +136,7 @@ class Analysis:
         self.executed_trees = systems.executed_trees
         self.files_of = systems.files_of
         self.systems_of = systems.systems_of
-        self.property_names = systems.property_names
+        self.property_names_below = systems.property_names_below
         self.structs = machines.structs
         self.interface_files_of = machines.interface_files_of
         self.gaps = gaps.gaps

@@ -410,7 +410,7 @@ class _Reader:
         configuration = self.rooms.sources.configuration(self.path)
         if configuration is None:
             return ()
-        names = self.rooms.systems.property_names(folder_of(self.path)) if configuration.expected else ()
+        names = self.rooms.systems.property_names_below(folder_of(self.path)) if configuration.expected else ()
         unknown = unknown_expectations(self.source, configuration, names)
         return (*configuration.findings, *missing_folders(configuration), *unknown)
 

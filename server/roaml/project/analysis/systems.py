@@ -138,7 +138,7 @@ class Systems:
             ):
                 yield from ((written.id.value, file) for written in before.properties if written.id is not None)
 
-    def property_names(self, folder: str) -> frozenset[str]:
+    def property_names_below(self, folder: str) -> frozenset[str]:
         """The names of the properties of all systems in a folder."""
         inside = (system for system in self.paths if is_below(system, folder))
         return frozenset(name for system in inside for name, _ in self.names_before("", system))
