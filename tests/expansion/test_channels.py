@@ -93,6 +93,10 @@ def test_delay(main: Path, delay: str, in_time: float) -> None:
     with_channel(main, f'<channel topic="level" delay="{delay}" step="100 ms" />')
     # With a probability of exp(-12), an exponential delay is above 1.2 s, so that the next message waits.
     assert value(main, "in_time") == pytest.approx(in_time, abs=1e-5)
+    options = api.Options(method=api.EstimationMethod.FIXED, max_traces=1000, confidence=0.99999)
+    (sampled,) = api.verify(api.load(str(main)), ["in_time"], options, only_uniform=True)
+    assert sampled.answer is not None
+    assert sampled.answer.bounds.lower - 1e-9 <= in_time <= sampled.answer.bounds.upper + 1e-9
 
 
 @pytest.mark.parametrize(("unit", "step"), [("ms", ""), ("s", ' step="100 ms"')])
