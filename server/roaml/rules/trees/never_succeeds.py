@@ -65,11 +65,14 @@ def check_machine(context: MachineContext) -> Iterator[Finding]:
     returned = [(s, s.status) for s in statements if isinstance(s, ReturnStatus) and s.status is not None]
     failing = [(statement, status) for statement, status in returned if status.value == "FAILURE"]
     calls = any(isinstance(statement, CallChild) for statement in statements)
-    is_known = all(status.value in ("FAILURE", "RUNNING") for _, status in returned)
+    is_known = {status.value for _, status in returned} == {"FAILURE", "RUNNING"}  # one that only fails is a dummy
     if plugins(context) and not calls and len(failing) == 1 and is_known and failing[0][0].element in alone:
         span = failing[0][1].span
         message = "the plugin returns FAILURE here and SUCCESS nowhere; did you mean `SUCCESS`?"
         yield RULE.at(span, message, *replacements(span, ("SUCCESS",)))
+    handlers = (handler for chart in context.machine.charts for state in chart.states for handler in state.handlers)
+    if all(handler.trigger in (None, ProtocolPart.GOAL, ProtocolPart.CANCEL) for handler in handlers):
+        return  # a dummy, too
     results: dict[str, list[RosSend]] = {}
     for statement in statements:
         if isinstance(statement, RosSend) and statement.part is ProtocolPart.RESULT and statement.handle is not None:
