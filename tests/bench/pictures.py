@@ -68,8 +68,9 @@ def machine(name: str, graph: Graph) -> str:
     for state in range(count):
         lines.append(f'    <state id="{states[state]}">')
         targets = [target for source, target in edges if source == state]
+        start = chance.randrange(len(EVENTS))
         for number, target in enumerate(targets):
-            event = chance.choice(EVENTS) if number else "done"
+            event = EVENTS[(start + number) % len(EVENTS)] if number else "done"
             # The events of a state with many transitions have different names.
             event = f"{event}.{number}" if len(targets) > 3 else event
             condition = escape(chance.choice(CONDITIONS)) if number and chance.random() < 0.4 else ""
@@ -88,7 +89,7 @@ def pictures(folder: Path) -> Iterator[Shown]:
         file.write_text(machine(title, graph), encoding="utf-8")
         yield Shown(name.replace(" ", "-"), f"state machine, {graph[0]} states, {name.split()[0]}", "machine", file)
     yield Shown("arm", "state machine with ROS actions", "machine", EXAMPLES / "assembly_robot/arm.ascxml")
-    yield Shown("mover", "state machine with action threads", "machine", EXAMPLES / "case_study/nodes/mover.ascxml")
+    yield Shown("mover", "state machine with random choice", "machine", EXAMPLES / "case_study/nodes/mover.ascxml")
     yield Shown("machines", "all machines of a system", "system", EXAMPLES / "assembly_robot/main.xml")
     large = TREES / "navigate_through_poses_w_replanning_and_recovery.xml"
     yield Shown("nav2-tree", "large Nav2 tree without system", "tree", large)

@@ -13,6 +13,8 @@ from bench.check import opened
 from bench.experiments import write_robot
 from bench.generate import FIRST, write_system
 from bench.keystrokes import keys, word_keys
+from bench.layouts import graphs
+from bench.pictures import machine
 from bench.planted import groups, judged, mistakes
 from bench.report import Row, percentile, seconds, table
 from bench.requests import REQUESTS, REST, idle_times
@@ -20,6 +22,7 @@ from bench.server import started
 from bench.trees import NODES, WORDS, write_tree
 from roaml import api
 from roaml.diagnostics import Severity
+from roaml.ide.diagrams import DiagramKind, picture_of
 from roaml.project.configuration import find_settings
 from roaml.project.settings import Settings
 from roaml.project.workspace import Workspace
@@ -33,6 +36,19 @@ def test_a_generated_system_has_no_findings(tmp_path: Path, files: int, lines: i
     assert len(result.files) == len(list(tmp_path.iterdir())) == files
     written = (tmp_path / FIRST).read_text(encoding="utf-8").count("\n")
     assert abs(written - lines) <= 35
+
+
+@pytest.mark.parametrize("name", ["ring 12", "star 12", "random 24"])
+def test_a_machine_to_draw_has_the_shape_of_its_graph(tmp_path: Path, name: str) -> None:
+    path = tmp_path / "machine.ascxml"
+    path.write_text(machine("Machine", graphs()[name]), encoding="utf-8")
+    result = api.check([str(path)], settings=Settings())
+    assert [d for d in result.diagnostics if d.severity is Severity.ERROR] == []
+    picture = picture_of(DiagramKind.MACHINE, result.snapshot.analysis, str(path))
+    assert picture is not None
+    places = {node.id: number for number, node in enumerate(picture.nodes)}
+    ends = sorted((places[edge.source], places[edge.target]) for edge in picture.edges)
+    assert (len(picture.nodes), ends) == (graphs()[name][0], sorted(graphs()[name][1]))
 
 
 def test_a_generated_tree_has_300_nodes_and_no_mistakes(tmp_path: Path) -> None:
