@@ -30,8 +30,9 @@ MAX_RATIO = 2.5
 than the ratio that a drawing may have, which is 3."""
 WRAPPED_RATIO = 1.3
 """The desired ratio of height to width after wrapping."""
-MIN_WRAPPED = 12
-"""The minimum number of nodes of a part that is wrapped."""
+MIN_LINE, MIN_WRAPPED = 12, 20
+"""The minimum numbers of nodes of a line or ring in columns, and of another part that is wrapped. Smaller parts are
+easier to follow if they are not wrapped, and suit a page in one of the two directions."""
 MAX_ATTEMPTS = 6
 DIVISION = 1.2
 """The maximum number of attempts to wrap a part, and the minimum factor by which layers become narrower in each."""
@@ -95,7 +96,7 @@ def _part(
     Args:
         aspect: the desired ratio of width to height of a long line or ring.
     """
-    line = find_line(names, indexes, links) if len(names) >= MIN_WRAPPED else None
+    line = find_line(names, indexes, links) if len(names) >= MIN_LINE else None
     if line is not None:
         return in_columns(line, sizes, links, aspect)
 
