@@ -128,6 +128,15 @@ def test_long_lines_are_read_like_text(
     assert len(rows[-1]) <= len(rows[0])
 
 
+def test_layers_of_small_graphs_are_not_divided() -> None:
+    """The leaves of a small star are in one layer, those of a large one in several."""
+    for count, is_small in ((12, True), (30, False)):
+        nodes = {str(number): Extent(110, 40) for number in range(count)}
+        links = [Link("0", str(number), Extent(60, 25)) for number in range(1, count)]
+        boxes = layered(nodes, links, LayoutDirection.DOWN, 1.5).nodes
+        assert (len({middle(boxes[str(number)]) for number in range(1, count)}) == 1) is is_small
+
+
 def middle(box: Box) -> float:
     return box.y + box.height / 2
 
