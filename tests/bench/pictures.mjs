@@ -105,9 +105,28 @@ const KINDS = {
     ros: "ROS",
     bt: "behavior tree",
 };
-const NAMED = { onlyResults: "Only Results", showAll: "Show All", outline: "Outline", search: "Search", zoomIn: "Zoom in" };
-const CAPTIONS = { zoomOut: "Zoom out", fit: "Fit", saveSvg: "Save as SVG", savePng: "Save as PNG", savePdf: "Save as PDF" };
-const OTHERS = { nothing: "No results", help: "", byChance: "random", mocks: "Mocks", verify: "Verify", outlineHint: "" };
+const NAMED = {
+    onlyResults: "Only Results",
+    showAll: "Show All",
+    outline: "Outline",
+    search: "Search",
+    zoomIn: "Zoom in",
+};
+const CAPTIONS = {
+    zoomOut: "Zoom out",
+    fit: "Fit",
+    saveSvg: "Save as SVG",
+    savePng: "Save as PNG",
+    savePdf: "Save as PDF",
+};
+const OTHERS = {
+    nothing: "No results",
+    help: "",
+    byChance: "random",
+    mocks: "Mocks",
+    verify: "Verify",
+    outlineHint: "",
+};
 const COVERAGE = { show: "Coverage", hint: "" };
 
 function page(theme) {
@@ -134,7 +153,9 @@ for (const theme of Object.keys(COLORS)) {
         const tab = await context.newPage();
         if (picture) {
             await tab.goto(pathToFileURL(path.resolve(file)).href);
-            const kinds = Object.fromEntries([...picture.nodes, ...picture.edges].map(({ kind }) => [kind, KINDS[kind] ?? kind]));
+            const kinds = Object.fromEntries(
+                [...picture.nodes, ...picture.edges].map(({ kind }) => [kind, KINDS[kind] ?? kind]),
+            );
             for (const { interface: kind } of picture.edges) if (kind) kinds[kind] = KINDS[kind] ?? kind;
             const words = { ...NAMED, ...CAPTIONS, ...OTHERS, coverage: COVERAGE, kinds };
             const part = { matching: "", around: "" };
