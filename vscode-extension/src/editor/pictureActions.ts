@@ -15,7 +15,7 @@ const LASTING = { ignoreFocusOut: true };
 
 export class PictureActions implements vscode.Disposable {
     private readonly commands: readonly vscode.Disposable[];
-    /** The file that was changed last. */
+    /** The file that was changed last from a picture. */
     private changed: vscode.Uri | undefined;
 
     constructor(
@@ -61,7 +61,7 @@ export class PictureActions implements vscode.Disposable {
 
     /** Undo or redo in the text, where VS Code keeps the changes, and return to the picture. */
     private async changeBack(source: PictureSource, which: "undo" | "redo"): Promise<void> {
-        const uri = this.changed ?? source.uri;
+        const uri = this.changed;
         if (!uri) return;
         await vscode.window.showTextDocument(uri, { viewColumn: columnFor(uri) });
         await vscode.commands.executeCommand(which);

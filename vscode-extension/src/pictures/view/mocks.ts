@@ -36,6 +36,12 @@ export class MockPane {
         this.pane.hidden = !this.pane.hidden;
     }
 
+    /** Open the pane, and give its first field the focus. */
+    focus(): void {
+        this.pane.hidden = false;
+        this.list.querySelector("input")?.focus();
+    }
+
     /** Show the mocks; `opens` also opens the pane. */
     show(mocks: MockFields | null, busy: boolean, opens: boolean): void {
         if (mocks === null) this.pane.hidden = true;

@@ -771,7 +771,10 @@ export class PictureView {
         else if (key === "Enter")
             this.jump(this.picture?.edges[this.selectedEdge] ?? this.picture?.nodes[this.selected], false);
         else if (key === "b") this.toggleBreakpoint(this.selectedPart);
-        else if (key === "t" || key === "T") this.selectNextEdge(shiftKey ? -1 : 1);
+        else if (key === "m" && !this.mocksButton.hidden) {
+            this.mocks.focus();
+            this.showMocksState();
+        } else if (key === "t" || key === "T") this.selectNextEdge(shiftKey ? -1 : 1);
         else if (key === " ") {
             if (!this.collapse(this.selected)) this.surround(this.selected);
         } else if (key === "+" || key === "=") this.zoom(ZOOM);
