@@ -26,8 +26,8 @@ export function journeys(stage: Stage): void {
             await window.answer("Which property?"); // the first one is that which fails
             await page.locator(".part.panel .pane-header", { hasText: "never_empty" }).waitFor();
             await page.locator('.tab.active[data-resource-name="battery.ascxml"]').waitFor();
-            await window.press("Control+1");
-            await window.becomes(async () => (await window.caretLine(0)).includes("ros_rate_callback"), true);
+            await window.repeat(() => window.press("Control+1"), window.focusedEditor);
+            await window.statusItem(window.positionOf(BATTERY, "<ros_rate_callback")).waitFor();
 
             // The picture receives the focus, and says which node its keys have selected.
             await window.run("AS2FM: Show State Machine");
