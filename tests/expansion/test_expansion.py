@@ -72,6 +72,20 @@ def test_an_instance_keeps_handles_that_are_names_of_interfaces(folder: Path) ->
     assert jani(folder / "main.xml") == named
 
 
+def test_names_of_the_node_without_a_namespace(folder: Path) -> None:
+    """Instances with names do not share `~/level`, as in ROS 2. A file without a name keeps it as it is written."""
+    main, battery = folder / "main.xml", folder / "battery.ascxml"
+    main.write_text(main.read_text().replace(' namespace="left"', "").replace(' namespace="right"', ""))
+    battery.write_text(battery.read_text().replace('topic="level"', 'topic="~/level"'))
+    monitor = folder / "monitor.ascxml"
+    monitor.write_text(monitor.read_text().replace('topic="level"', 'topic="~/level"'))
+    main.write_text(main.read_text().replace('from="level"', 'from="~/level"'))
+    system = jani(main)
+    assert "topic_left__level_msg" in system
+    assert "topic_right__level_msg" in system
+    assert "~" not in system
+
+
 def test_values_in_python(folder: Path) -> None:
     system = api.load(str(folder / "main.xml"), parameters={"capacity": 80, "loss": 0.25, "left.period": 2})
     assert system.parameters == {"capacity": "80", "loss": "0.25", "left.period": "2"}

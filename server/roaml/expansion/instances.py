@@ -213,7 +213,7 @@ def instance_edits(document: Document, instance: ListedInstance, used: set[Remap
     own = root.get("name")
     if instance.name is not None and own is not None:
         yield TextEdit(own.value_span, instance.name.value)
-    if not instance.namespace and not instance.remaps:
+    if instance.name is None and not instance.namespace and not instance.remaps:
         return
     names = InstanceNames(instance, own.value if own else "")
     for element in root.walk():
