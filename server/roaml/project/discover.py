@@ -54,12 +54,13 @@ def candidates(roots: Iterable[str], exclude: Exclude = NOTHING, within: Roots |
                         return
 
 
-def is_candidate(path: str, roots: Iterable[str], exclude: Exclude = NOTHING) -> bool:
-    """Whether `candidates` returns `path` if the file exists."""
+def is_candidate(path: str, roots: Iterable[str], exclude: Exclude = NOTHING, *, any_name: bool = False) -> bool:
+    """Whether `candidates` returns `path` if the file exists; with `any_name`, also if its name is not that of a
+    supported file."""
     for root in roots:
         if is_below(path, root):
             *folders, name = relative(path, root).split("/")
-            if not any(map(_is_skipped, folders)) and _may_be_ours(name):
+            if not any(map(_is_skipped, folders)) and (any_name or _may_be_ours(name)):
                 return not exclude.covers(path, root)
     return False
 
@@ -83,10 +84,10 @@ class SystemIndex:
         return tuple(path for path in paths if self._is_system(path, files))
 
     def _is_system(self, path: str, files: Files) -> bool:
-        if not path.lower().endswith(".xml"):
-            return False
         if path in files.open_files:
             return kind_of(path, files.open_files[path].text) is FileKind.SYSTEM
+        if not path.lower().endswith(".xml"):
+            return False
         status = status_of(path)
         if isinstance(status, UnreadableReason):
             return False

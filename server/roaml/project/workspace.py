@@ -160,7 +160,8 @@ class Workspace:
         if self._listed is None:
             self._listed = tuple(candidates(self.roots, self.settings.exclude, self._disk.roots))
         new = [path for path in opened if is_candidate(path, self.roots, self.settings.exclude)]
-        systems = (*self._named, *self._index.systems(dict.fromkeys((*self._listed, *new)), files))
+        shown = [path for path in opened if is_candidate(path, self.roots, self.settings.exclude, any_name=True)]
+        systems = (*self._named, *self._index.systems(dict.fromkeys((*self._listed, *shown)), files))
         registry = self._registry.reading(files.text)
         listed, settings = (*self._listed, *new), self.settings
         overrides = replace(
