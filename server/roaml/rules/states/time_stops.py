@@ -31,7 +31,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     reaction_time = system.parameters.reaction_time
     if not system.has_timer or reaction_time is None or not reaction_time.is_instant:
         for chart in context.machine.charts:
-            yield from _stuck(chart)
+            yield from _stuck(context, chart)
         return
     for chart in context.machine.charts:
         yield from _eventless(context, chart)
@@ -71,12 +71,15 @@ def _eventless(context: MachineContext, chart: Chart) -> Iterator[Finding]:
             yield RULE.at(repeated.cond.span, f"{message}; {_ADVICE}")
 
 
-def _stuck(chart: Chart) -> Iterator[Finding]:
-    """Report the transitions that repeat themselves in states without other handlers, which are wrong with each
-    reaction time."""
+def _stuck(context: MachineContext, chart: Chart) -> Iterator[Finding]:
+    """Report the first transitions that repeat themselves in states without other handlers, which are wrong with each
+    reaction time. Conditions with another mistake are not judged."""
+    mistaken = {value.value.span for value in context.typed.values if value.problems}
     for state in chart.states:
         repeated = _repeated(state) if all(_is_eventless(handler) for handler in state.handlers) else None
-        if repeated is not None and repeated.cond is not None:
+        if repeated is None or repeated is not state.handlers[0] or repeated.cond is None:
+            continue
+        if repeated.cond.span not in mistaken:
             message = (
                 "this transition changes nothing that its condition reads, so it is repeated for ever once the "
                 "condition is true, and the state is never left; let it lead to another state, or change the condition"

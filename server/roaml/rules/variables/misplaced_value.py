@@ -73,6 +73,7 @@ def _received(context: MachineContext, chart: Chart) -> Iterator[Finding]:
 def _ports(context: MachineContext) -> Iterator[Finding]:
     """The ports that are read into the variable with the name of another port, which is never read."""
     read = {key.value for key in reads(context.machine, context.typed)}
+    declared = {port.key.value for port in context.machine.ports if port.key is not None}
     unread = {
         port.key.value: port.key
         for port in context.machine.ports
@@ -87,7 +88,9 @@ def _ports(context: MachineContext) -> Iterator[Finding]:
         ]
         targets += [(data.id.value, data.value) for data in chart.data if data.id is not None]
         for name, value in targets:
-            if isinstance(value, PortRead) and value.key is not None and name in unread and value.key.value != name:
+            if not isinstance(value, PortRead) or value.key is None or value.key.value not in declared:
+                continue  # undeclared-port reports a misspelled name
+            if name in unread and value.key.value != name:
                 message = (
                     f"`{name}` gets the value of the port `{value.key.value}`, and nothing reads the port `{name}`"
                 )
