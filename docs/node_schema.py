@@ -16,7 +16,7 @@ END = "  <!-- End of the nodes -->\n"
 _TYPES = {"int": "int32", "unsigned": "uint32", "double": "float64", "script": "string", "NodeStatus": "string"}
 """The type of a port in HL-SCXML, if it differs from the type of BehaviorTree.CPP."""
 
-_REGISTERED_BY_PROGRAMS = ("PopFromQueue", "QueueSize", "EntryUpdatedAction")
+_REGISTERED_BY_PROGRAMS = ("EntryUpdatedAction",)
 """Names that a plugin of a system may have."""
 
 

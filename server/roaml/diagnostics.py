@@ -103,7 +103,8 @@ class Fix(PartlyCompared, frozen=True):
 class Finding(Record, frozen=True):
     """A problem at a span. Without `severity`, the default severity of the rule applies.
 
-    `facts` is the data for fixes that change other files. The message is for people only.
+    `facts` is the data for fixes that change other files. The message is for people only. `tolerated`: the parser of
+    BehaviorTree.CPP accepts this violation of XML.
     """
 
     code: str
@@ -114,6 +115,7 @@ class Finding(Record, frozen=True):
     related: tuple[Related, ...] = ()
     tags: tuple[Tag, ...] = ()
     facts: Facts | None = None
+    tolerated: bool = False
 
 
 class RelatedPlace(PartlyCompared, frozen=True):

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
@@ -279,3 +280,71 @@ def test_a_path_with_share_leads_to_the_folder_of_the_package(tmp_path: Path) ->
     findings = found(tmp_path, files)
     assert [code for _, code, _ in findings] == ["missing-include"]
     assert "`../../robot/trees/sub.xml` is read instead" in findings[0][2]
+
+
+TREE = '<BehaviorTree ID="Main">{}</BehaviorTree>'
+ESCAPE = chr(27)
+
+
+@pytest.mark.parametrize(
+    ("before", "attribute", "inside"),
+    [
+        ("", "", "<!-- ------ trees ------ -->"),
+        ("", "", "<!------ trees ------>"),
+        ("", "", "<!-- trees --->"),
+        ('\n \n<?xml version="1.0"?>\n', "", ""),
+        ("", 'name="x"', ""),
+        ("", ' name="&nbsp;a"', ""),
+        ("", ' name="a & b <c"', ""),
+        ("", f' name="a{ESCAPE}[0m"', ""),
+        ("", "", '<A _description="a && b << c"/>' * 60),
+    ],
+)
+def test_xml_that_only_the_parser_of_the_library_accepts(
+    before: str, attribute: str, inside: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    content = f"<Sequence>{inside}<A/><B/></Sequence>"
+    text = f'{before}<root BTCPP_format="4"{attribute}>{TREE.format(content)}</root>'
+    assert {severity for severity, code, _ in found(tmp_path, {"tree.xml": text}) if "unknown" not in code} == {
+        "WARNING"
+    }
+    path = tmp_path / "tree.xml"
+    assert success(capsys, path, "--mock", "*: 1") == 1.0
+    assert run(["format", str(path)]) == 0
+    assert {finding[0] for finding in found(tmp_path, {}) if "unknown" not in finding[1]} <= {"WARNING"}
+    assert run(["--check", "--fix", str(path)]) == 0
+    if "nbsp" not in text and ESCAPE not in text:  # these need a decision
+        ElementTree.fromstring(path.read_bytes())
+    capsys.readouterr()
+    library = pytest.importorskip("behaviortreepy")
+    for version in (text, path.read_text(encoding="utf-8")):
+        factory = library.BehaviorTreeFactory()
+        for node in "AB":
+            factory.register_simple_action(node, lambda *_: library.NodeStatus.SUCCESS)
+        factory.create_tree_from_text(version)
+
+
+def test_the_same_xml_is_an_error_in_a_machine(tmp_path: Path) -> None:
+    machine = '<ascxml name="Fan" version="1.0" initial="off"><!-- a -- b --><state id="off"/></ascxml>'
+    findings = found(tmp_path, {"fan.ascxml": machine})
+    assert ("ERROR", "xml-syntax", "`--` is not allowed inside a comment") in findings
+
+
+def test_a_tree_that_is_never_created_may_contain_itself(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    recursive = '<BehaviorTree ID="Other"><Fallback><A/><SubTree ID="Other"/></Fallback></BehaviorTree>'
+    head = '<root BTCPP_format="4" main_tree_to_execute="{}">'
+    text = f"{head.format('Main')}{TREE.format('<A/>')}{recursive}</root>"
+    findings = found(tmp_path, {"tree.xml": text})
+    assert ("WARNING", "tree-structure", "a tree cannot contain itself: Other → Other") in findings
+    assert success(capsys, tmp_path / "tree.xml", "--mock", "*: 1") == 1.0
+    executed = f"{head.format('Other')}{TREE.format('<A/>')}{recursive}</root>"
+    assert "ERROR" in {severity for severity, code, _ in found(tmp_path, {"tree.xml": executed})}
+
+
+@pytest.mark.parametrize("name", ["QueueSize", "PopFromQueue"])
+def test_a_class_template_that_programs_register(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    node = f'<{name} queue="{{q}}"/>'
+    text = f'<root BTCPP_format="4">{TREE.format(node)}</root>'
+    findings = found(tmp_path, {"tree.xml": text})
+    assert {severity for severity, _, _ in findings} <= {"INFORMATION"}
+    assert success(capsys, tmp_path / "tree.xml", "--mock", "*: 1") == 1.0

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from functools import partial
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.record import replace
 from roaml.rules.rule import FileContext, Rule
 from roaml.text import TextEdit
 
@@ -20,20 +21,35 @@ _ESCAPES = ("&amp;", "&lt;")
 
 
 def xml_syntax(context: FileContext) -> Iterator[Finding]:
-    """The violations of well-formedness. Characters that must be escaped are one warning in a tree that only
-    BehaviorTree.CPP reads, because its parser accepts them."""
-    findings = list(parser_findings("xml-syntax", context))
-    unescaped = [finding for finding in findings if context.is_lone_tree and _is_unescaped(finding)]
-    yield from (finding for finding in findings if finding not in unescaped)
-    if unescaped:
-        edits = tuple(edit for finding in unescaped for edit in finding.fixes[0].edits)
-        characters = "a character is" if len(edits) == 1 else f"{len(edits)} characters are"
-        message = (
-            f"not well-formed XML: {characters} not escaped; BehaviorTree.CPP accepts this, other programs do not; "
-            "write `&amp;` for `&` and `&lt;` for `<`"
-        )
-        fix = Fix("Escape all characters of the file", edits, safe=True)
-        yield XML_SYNTAX.at(unescaped[0].span, message, fix, severity=Severity.WARNING)
+    """The violations of well-formedness. In a tree that only BehaviorTree.CPP reads, those that its parser accepts are
+    warnings: one for all characters that must be escaped, and one for all others with the same message."""
+    groups: dict[str, list[Finding]] = {}
+    for finding in parser_findings("xml-syntax", context):
+        if not (context.is_lone_tree and finding.tolerated):
+            yield finding
+        else:
+            groups.setdefault(_UNESCAPED if _is_unescaped(finding) else finding.message, []).append(finding)
+    for message, findings in groups.items():
+        if message is _UNESCAPED:
+            characters = "a character is" if len(findings) == 1 else f"{len(findings)} characters are"
+            message = f"{characters} not escaped"  # noqa: PLW2901 - the same message with its number
+            advice, title = "; write `&amp;` for `&` and `&lt;` for `<`", "Escape all characters of the file"
+        else:
+            advice = f" (also at {len(findings) - 1} other places)" if len(findings) > 1 else ""
+            title = findings[0].fixes[0].title if findings[0].fixes else ""
+        text = f"not well-formed XML: {message}; BehaviorTree.CPP accepts this, other programs do not{advice}"
+        edits = tuple(edit for finding in findings for fix in finding.fixes[:1] for edit in fix.edits)
+        fixes = (Fix(title, edits, safe=True),) if edits else ()
+        yield XML_SYNTAX.at(findings[0].span, text, *fixes, severity=Severity.WARNING)
+
+
+def undefined_entity(context: FileContext) -> Iterator[Finding]:
+    """The entities that XML does not define; BehaviorTree.CPP keeps their text."""
+    severity = Severity.WARNING if context.is_lone_tree else None
+    return (replace(finding, severity=severity) for finding in parser_findings("undefined-entity", context))
+
+
+_UNESCAPED = "unescaped"
 
 
 def _is_unescaped(finding: Finding) -> bool:
@@ -73,8 +89,11 @@ REPEATED_CONSTANT = _parser_rule(
 )
 REPEATED_MOCK = _parser_rule("repeated-mock", Severity.WARNING, "A file contains two mocks for the same nodes.")
 TOML_SYNTAX = _parser_rule("toml-syntax", Severity.ERROR, "A configuration file is not valid TOML.")
-UNDEFINED_ENTITY = _parser_rule(
-    "undefined-entity", Severity.ERROR, "An entity is not one of the five predefined entities."
+UNDEFINED_ENTITY = Rule(
+    "undefined-entity",
+    Severity.ERROR,
+    "An entity is not one of the five predefined entities.",
+    file=undefined_entity,
 )
 UNKNOWN_EXPECTATION = _parser_rule(
     "unknown-expectation", Severity.WARNING, "A configuration file names a property that no system has."

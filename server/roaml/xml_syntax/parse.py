@@ -28,7 +28,11 @@ MAX_DEPTH = 100
 """The maximum nesting depth; deeper elements are reported and left out of the tree."""
 
 MAX_FINDINGS = 100
-"""The maximum number of errors; a text with more is unlikely to be XML and is not read further."""
+"""The maximum number of errors; a text with more is unlikely to be XML and is not read further. Those that
+BehaviorTree.CPP tolerates do not count."""
+
+MAX_TOLERATED = 1000
+"""The maximum number of reported errors that BehaviorTree.CPP tolerates."""
 
 _MAX_SKIPPED_DEPTH = 10_000
 """The maximum number of open elements that are left out of the tree; a text with more is not read further."""
@@ -57,6 +61,7 @@ _UNQUOTED = regex(r"[^\s<>/\"']*")
 _SWALLOWED = regex(rf"\s{_NAME}\s*=\s*\Z")
 _NEXT_ATTRIBUTE = regex(rf"{_NAME}\s*=")
 _AFTER_VALUE = regex(r"[\s/>?]|\Z")
+_DASHES = regex(r"--+")
 _DOCTYPE_MARK = regex(r"<!--|<\?|[\[\]>\"']")
 _DOCTYPE_CLOSERS = {"<!--": "-->", "<?": "?>", '"': '"', "'": "'"}
 _XML_DECLARATION = regex(
@@ -75,6 +80,7 @@ class _Parser:
     def __init__(self, text: str) -> None:
         self.text = text
         self.findings: list[Finding] = []
+        self.reported = {True: 0, False: 0}  # the numbers of findings that BehaviorTree.CPP tolerates, and of others
         self.nodes: list[Node] = []
         self.stack: list[Element] = []
         self.names: list[str] = []  # of the elements in `stack`, including prefixes
@@ -193,7 +199,7 @@ class _Parser:
             self.check_space(at, name_span.start)
         else:
             insert = Fix("Insert a space", (TextEdit(Span(at, at), " "),), safe=True)
-            self.report(name_span, "a space is missing before this attribute", insert)
+            self.report(name_span, "a space is missing before this attribute", insert, tolerated=True)
         if equals is not None:
             self.check_space(*match.span(2))
         else:
@@ -239,7 +245,7 @@ class _Parser:
                     break
                 place = Span._make(less.span())
                 escape = Fix("Write `&lt;`", (TextEdit(place, "&lt;"),), safe=True)
-                self.report(place, "`<` in an attribute value must be written `&lt;`", escape)
+                self.report(place, "`<` in an attribute value must be written `&lt;`", escape, tolerated=True)
             self.check_references(value_span)
             raw = text[start:close]
             return Attribute(name, unescape(raw), name_span, value_span, Span(name_span.start, close + 1))
@@ -454,9 +460,17 @@ class _Parser:
             self.report(Span(at, at + 4), "the comment is never closed with `-->`")
         content_end = end if close < 0 else close
         if (double := self.text.find("--", at + 4, content_end + 1)) >= 0:
-            self.report(Span(double, double + 2), "`--` is not allowed inside a comment")
+            self.dashes(Span(double, double + 2), Span(double, content_end))
         self.add(Comment(self.text[at + 4 : content_end], Span(at, end)))
         return end
+
+    def dashes(self, first: Span, rest: Span) -> None:
+        """Report the first `--` in a comment; `rest` is the comment from there to its end."""
+        edits = [TextEdit(span_of(run.span()), "=" * len(run[0])) for run in _DASHES.finditer(self.text, *rest)]
+        if self.text[rest.start : rest.end].endswith("-") and (not edits or edits[-1].span.end < rest.end):
+            edits.append(TextEdit(Span(rest.end - 1, rest.end), "="))
+        fix = Fix("Write `=` for each of these dashes", tuple(edits), safe=True)
+        self.report(first, "`--` is not allowed inside a comment", fix, tolerated=True)
 
     def cdata(self, at: int) -> int:
         close = self.text.find("]]>", at)
@@ -516,7 +530,9 @@ class _Parser:
 
     def check_characters(self) -> None:
         if bad := FORBIDDEN.search(self.text):
-            self.report(Span(*bad.span()), f"the character U+{ord(bad[0]):04X} is not allowed in XML")
+            # BehaviorTree.CPP reads a text only up to U+0000.
+            message = f"the character U+{ord(bad[0]):04X} is not allowed in XML"
+            self.report(Span(*bad.span()), message, tolerated="\0" not in self.text)
 
     def check_references(self, span: Span) -> None:
         for match in _AMPERSAND.finditer(self.text, span.start, span.end):
@@ -525,14 +541,14 @@ class _Parser:
             reference = REFERENCE.match(self.text, match.start(), span.end)
             if reference is None:
                 escape = Fix("Write `&amp;`", (TextEdit(Span(*match.span()), "&amp;"),), safe=True)
-                self.report(Span(*match.span()), "a literal `&` must be written `&amp;`", escape)
+                self.report(Span(*match.span()), "a literal `&` must be written `&amp;`", escape, tolerated=True)
                 continue
             decimal, hexadecimal, name = reference.groups()
             place = Span(*reference.span())
             if name and name not in PREDEFINED:
                 escape = Fix("Write `&amp;`", (TextEdit(Span(*match.span()), "&amp;"),), preferred=False)
                 message = f"the entity `&{name};` is not defined; entities are not expanded"
-                self.report(place, message, escape, code="undefined-entity")
+                self.report(place, message, escape, code="undefined-entity", tolerated=True)
             elif not name and not is_character(int(decimal) if decimal else int(hexadecimal, 16)):
                 self.report(place, f"`{reference[0]}` is not a character that XML allows")
 
@@ -574,7 +590,11 @@ class _Parser:
         if not name:
             self.report(span, "a processing instruction must begin with a name")
         elif name == "xml" and span.start > 0:
-            self.report(span, "the XML declaration must be at the very beginning of the file")
+            before = Span(0, span.start)
+            is_blank = not self.text[: span.start].strip(SPACE)
+            drop = (Fix("Remove the white space before it", (TextEdit(before, ""),), safe=True),) if is_blank else ()
+            message = "the XML declaration must be at the very beginning of the file"
+            self.report(span, message, *drop, tolerated=is_blank)
         elif name == "xml":
             self.check_declaration(content, span)
 
@@ -630,10 +650,13 @@ class _Parser:
         *fixes: Fix,
         code: str = "xml-syntax",
         related: tuple[Related, ...] = (),
+        tolerated: bool = False,
     ) -> None:
-        if len(self.findings) < MAX_FINDINGS:
-            self.findings.append(Finding(code, span, message, fixes=fixes, related=related))
-        elif not self.hopeless:
+        self.reported[tolerated] += 1
+        if self.reported[tolerated] <= (MAX_TOLERATED if tolerated else MAX_FINDINGS):
+            finding = Finding(code, span, message, fixes=fixes, related=related, tolerated=tolerated)
+            self.findings.append(finding)
+        elif not tolerated and not self.hopeless:
             self.hopeless = True
             self.findings.append(Finding("xml-syntax", span, "too many errors: the file is not read from here on"))
 

@@ -20,12 +20,15 @@ from roaml.xml_syntax import CData, Comment, Document, Element, Instruction, Nod
 from roaml.xml_syntax.names import SPACE
 
 _HARMLESS = {"duplicate-attribute", "undefined-entity", "document-type"}
+"""The codes of findings that do not prevent formatting, besides those about what BehaviorTree.CPP tolerates."""
 _MARKERS = {"else", "elseif"}
 
 
 def gaps(document: Document, layout: FileLayout) -> Iterator[Spacing]:
     """The new white space of a document; empty if the document has syntax errors."""
-    if document.root is not None and all(finding.code in _HARMLESS for finding in document.findings):
+    if document.root is not None and all(
+        finding.tolerated or finding.code in _HARMLESS for finding in document.findings
+    ):
         yield from _Formatter(document.text, layout).document(document)
 
 

@@ -85,7 +85,16 @@ def _subtree(
             return
         cycle = _cycle(own, name.value, uses)
         if cycle:
-            yield RULE.at(name.span, f"a tree cannot contain itself: {' → '.join(cycle)}")
+            message = f"a tree cannot contain itself: {' → '.join(cycle)}"
+            yield RULE.at(name.span, message, severity=Severity.WARNING if _is_never_created(context, own) else None)
+
+
+def _is_never_created(context: TreeContext, name: str) -> bool:
+    """Whether a tree is not part of the executed one, so that BehaviorTree.CPP reads it but does not create it."""
+    forest, main = context.forest, context.file.main
+    if context.system is not None or forest is None or forest.is_included or main is None:
+        return False
+    return main.value in forest.trees and name not in forest.reached(main.value)
 
 
 def _closing(context: TreeContext, uses: Mapping[str, Iterable[str]]) -> Set[tuple[str, str]]:
