@@ -246,11 +246,12 @@ class _Builder:
 
     def outputs(self, node: ExecutedNode, board: Board) -> list[tuple[BoardEntry, tuple[Known, ...]]]:
         """The entries that a mock writes, with their possible values. A mock writes the entries of the ports that may
-        be outputs, if the tree reads these entries."""
+        be outputs, if the tree reads these entries. A port that no model declares is an input if scripts compute its
+        entry from entries, as they count."""
         written = []
         for port, entry, _, _ in node.ports():
             declared = node.known.port(port) if node.known else None
-            writes = declared is None or declared.direction.writes
+            writes = entry not in board.computed if declared is None else declared.direction.writes
             if entry is not None and writes and entry in board.entries:
                 values = board.values[entry]
                 is_bool = declared is not None and port_type(declared) == "bool"

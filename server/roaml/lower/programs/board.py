@@ -44,6 +44,7 @@ class Board(Record, frozen=True, eq=False):
         values: entry -> the values that mocks may write to it.
         read: the names of the entries that programs and scripts read.
         written: the names of the entries that nodes and scripts write.
+        computed: the names of the entries that scripts compute from entries, such as counters.
         in_system: whether the tree is part of a system.
         version: the version of BehaviorTree.CPP that executes the tree.
     """
@@ -54,6 +55,7 @@ class Board(Record, frozen=True, eq=False):
     values: Mapping[str, tuple[int | float | str, ...]]
     read: frozenset[str]
     written: frozenset[str]
+    computed: frozenset[str]
     in_system: bool
     version: Version
 
@@ -126,6 +128,12 @@ def _facts(script: Script) -> _ScriptFacts:
     return _ScriptFacts(typed, tuple(dict.fromkeys(names)))
 
 
+def _is_computed(assignment: Assignment) -> bool:
+    """Whether an assignment computes its value from entries."""
+    parts = walk(Script(assignment.span, (assignment.value,)))
+    return assignment.operator not in _PLAIN_ASSIGNMENTS or any(isinstance(part, Name) for part in parts)
+
+
 class _Reader(Record):
     tree: ExecutedTree
     given: Mapping[str, str]
@@ -135,6 +143,7 @@ class _Reader(Record):
     readers: set[str] = field(default_factory=set)
     stored: set[str] = field(default_factory=set)
     writers: set[str] = field(default_factory=set)
+    computed: set[str] = field(default_factory=set)
     texts: dict[str, list[str]] = field(default_factory=dict)
     mentioned: dict[str, list[int | float | str]] = field(default_factory=dict)
     observed: dict[int, str] = field(default_factory=dict)
@@ -264,6 +273,8 @@ class _Reader(Record):
             full = node.frame.entry(expr.target.name)
             self.writers.add(full)
             self.stored.add(full)  # a computed value must be stored
+            if _is_computed(expr):
+                self.computed.add(full)
             if expr.operator in _PLAIN_ASSIGNMENTS:
                 self.add(full, _KIND.get(type_of(expr.value, entry)))
         for name in facts.read:
@@ -314,8 +325,8 @@ class _Reader(Record):
                 flags.setdefault(name, []).append(flag_of[number])
         values = {name: self.values(name, entry.kind) for name, entry in entries.items()}
         observers = {name: tuple(known) for name, known in flags.items()}
-        read, written = frozenset(self.readers), frozenset(self.writers)
-        return Board(entries, observers, flag_of, values, read, written, self.typed is not None, self.tree.version)
+        used = frozenset(self.readers), frozenset(self.writers), frozenset(self.computed)
+        return Board(entries, observers, flag_of, values, *used, self.typed is not None, self.tree.version)
 
     def constant_text(self, name: str) -> str | None:
         """The text of an entry that a `<SubTree>` sets and nothing else writes, if the version stores it as a text."""
