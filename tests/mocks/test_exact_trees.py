@@ -188,3 +188,26 @@ def test_times_are_those_of_the_editor() -> None:
     assert [moment(time) for time in times] == texts
     short = ["0 s", "0.933 s", "0.063 s", "0.001 s", "1 s", "2 s", "100 s", "12345.678 s"]
     assert [short_moment(time) for time in times] == short
+
+
+@pytest.mark.parametrize("count", [2, 3, 5])
+def test_the_order_in_which_entries_are_set_is_no_choice(count: int, tmp_path: Path) -> None:
+    names = [f"entry{number}" for number in range(count)]
+    script = "; ".join(f"{name} := {number}" for number, name in enumerate(names))
+    check = " &amp;&amp; ".join(f"{name} == {number}" for number, name in enumerate(names))
+    content = f'<Sequence><Script code="{script}"/><Drive/><ScriptCondition code="{check}"/></Sequence>'
+    outcome = exact(loaded(tree(tmp_path, content), "Drive: 0.7 in 1 s"))
+    assert outcome.success.value == pytest.approx(0.7, abs=1e-12)
+    assert outcome.time is not None
+    assert outcome.time.value == pytest.approx(1.1, abs=1e-12)
+    assert [found.value for found in outcome.influences] == pytest.approx([1.0], abs=1e-7)
+
+
+@pytest.mark.parametrize(("script", "expected"), [("n += 1", 0.0), ("n := n + 1", 0.0), ("n := 1", None)])
+def test_a_leaf_without_a_model_does_not_write_what_scripts_compute(
+    script: str, expected: float | None, tmp_path: Path
+) -> None:
+    count = f'<Sequence><ScriptCondition code="n != 3"/><Show text="{{n}}"/><Script code="{script}"/></Sequence>'
+    content = f'<Sequence><Script code="n := 0"/><KeepRunningUntilFailure>{count}</KeepRunningUntilFailure></Sequence>'
+    outcome = exact(loaded(tree(tmp_path, content), "Show: 1", max_time=3))
+    assert outcome.failure.value == pytest.approx(1.0 if expected == 0.0 else 0.0, abs=1e-12)

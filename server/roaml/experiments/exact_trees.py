@@ -3,9 +3,9 @@
 
 The goal of a search is that the tree has ended. It also reads one counter of the model, which therefore is part of each
 state. What a search leaves out depends only on the variables that its goal reads, so the states that are left serve for
-each of the goals that the tree has ended while the counter has some value. If no choice is left in them, they are a
-Markov chain, and each of its last states is reached with the same probability under all schedulers. The counters of
-the last states give the mean, the time and its quantiles.
+each of the goals that the tree has ended while the counter has some value. If no choice that is left makes a difference
+(`confluence`), they are a Markov chain, and each of its last states is reached with the same probability under all
+schedulers. The counters of the last states give the mean, the time and its quantiles.
 
 An influence is a derivative of the probability of success (`derivatives`), for which the probability of each mock is
 a constant of the model.
@@ -16,6 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 
+from roaml.experiments.confluence import Branches, merged_choices
 from roaml.experiments.derivatives import NoDerivativeError, derivative
 from roaml.experiments.parametric import constant_chances, parametric_space
 from roaml.experiments.visits import SlowChainError, expected_visits
@@ -182,20 +183,23 @@ def _space(model: Model, root: int, limits: StateLimits) -> Space | None:
 
 
 def _visits(space: Space) -> dict[int, float] | None:
-    """The expected number of visits of each state, which for a last state is the probability of reaching it; `None` if
-    a state has several choices."""
+    """The expected number of visits of states, which for a last state is the probability of reaching it; `None` if
+    that depends on choices."""
+    search = space.search
+
+    def choices_of(state: int) -> list[Branches]:
+        is_ended = search.label[state] & codes.STATUS != UNKNOWN
+        return [] if is_ended else [branches for _, _, branches in search.choices_of(state)]
+
+    chain = merged_choices(choices_of, space.roots[0])
+    if chain is None:
+        return None
     chances: list[float] = []
     steps: dict[int, Sequence[tuple[int, int]]] = {}
-    for state in range(space.states):
-        is_ended = space.search.label[state] & codes.STATUS != UNKNOWN
-        choices = [] if is_ended else space.search.choices_of(state)
-        if len(choices) > 1:
-            return None
-        steps[state] = ()
-        for _, _, branches in choices:
-            first = len(chances)
-            chances += [chance for chance, _ in branches]
-            steps[state] = [(successor, first + place) for place, (_, successor) in enumerate(branches)]
+    for state, branches in chain.items():
+        first = len(chances)
+        chances += [chance for chance, _ in branches]
+        steps[state] = [(successor, first + place) for place, (_, successor) in enumerate(branches)]
     try:
         return expected_visits(steps, space.roots[0], chances.__getitem__)
     except SlowChainError:
