@@ -250,3 +250,22 @@ def test_a_delay_ends_with_the_time(tmp_path: Path, capsys: pytest.CaptureFixtur
     assert run(["verify", str(file)]) == 0
     shown = capsys.readouterr().out
     assert "it fails, for example, if `worker` is delayed from 0 s until the end" in shown
+
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+
+
+def test_a_tree_that_has_finished_is_not_stuck(capsys: pytest.CaptureFixture[str]) -> None:
+    """The guards of a reaction time let the clock begin a step where the tree waits, and count in variables of their
+    own, which no story shows."""
+    path = str(EXAMPLES / "assembly_robot" / "main_with_bug.xml")
+    sampled = ("--property", "block_placed", "--method", "fixed", "--max-traces", "20")
+    assert run(["verify", path, "--reaction-time", "20 ms", *sampled, "--explain"]) == 0
+    text = capsys.readouterr().out
+    assert "got stuck" not in text
+    assert "the tree ends with SUCCESS" in text
+    assert "as2fm__" not in text
+    assert run(["verify", path, "--reaction-time", "20 ms", *sampled, "--format", "json"]) == 0
+    (result,) = json.loads(capsys.readouterr().out)["results"]
+    assert result["ends"]["stuck"] == 0
+    assert result["ends"]["tree_finished"] == result["failed"] > 0

@@ -34,6 +34,11 @@ class ModelType(enum.Enum):
     SHA = "sha"
 
 
+PREFIX, VARIABLES = "__as2fm__", "as2fm__"
+"""The beginnings of the names of the actions and variables that express a reaction time (`roaml.jani.reaction`). Storm
+rejects variables that begin with `__`."""
+
+
 class Clock(Node, frozen=True):
     """The automaton that advances the time of a translated system (docs/spec/jani.md#clock-metadata).
 

@@ -19,13 +19,24 @@ from typing import TypeAlias
 
 from roaml.durations import ReactionTime
 from roaml.jani.expressions import Binary, Boolean, Conditional, Expression, Integer, Name, Unary
-from roaml.jani.model import Action, Assignment, Automaton, Clause, Clock, Destination, Edge, Model, Sync, Variable
+from roaml.jani.model import (
+    PREFIX,
+    VARIABLES,
+    Action,
+    Assignment,
+    Automaton,
+    Clause,
+    Clock,
+    Destination,
+    Edge,
+    Model,
+    Sync,
+    Variable,
+)
 from roaml.jani.operators import BinaryOperator, UnaryOperator
 from roaml.jani.types import BasicType, BoundedType
 from roaml.record import Record, replace
 
-PREFIX, VARIABLES = "__as2fm__", "as2fm__"
-"""The beginnings of the names of actions and of variables. Storm rejects variables that begin with `__`."""
 ON_SEND, ON_RECEIVE = "_on_send", "_on_receive"
 """The ends of the names of actions that send and receive events (docs/spec/jani.md#names)."""
 MAX_COMBINATIONS = 1024

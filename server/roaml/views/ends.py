@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from roaml.jani.expressions import Expression, Name
-from roaml.jani.model import Automaton, Model
+from roaml.jani.model import PREFIX, Automaton, Model
 from roaml.jani.properties import identifiers
 from roaml.scxml.names import (
     ASKED,
@@ -60,7 +60,9 @@ def _mark(automaton: Automaton, location: str) -> End:
         return End.TIME if location == TIME_IS_OVER else End.STUCK
     if automaton.name.startswith(TREE_ROOT_PREFIX):
         # With several trees, the root of one that has ended still takes ticks, and does not end the trace.
-        is_last = location == TREE_HAS_FINISHED and all(edge.source != location for edge in automaton.edges)
+        # Loops with which an automaton lets the clock begin a step (`roaml.jani.reaction`) are no ticks.
+        own = (edge for edge in automaton.edges if not (edge.action or "").startswith(PREFIX))
+        is_last = location == TREE_HAS_FINISHED and all(edge.source != location for edge in own)
         return End.FINISHED if is_last else End.QUIET
     return End.STUCK if location == RECEIVED and is_event(automaton) else End.QUIET
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from roaml.jani.model import Automaton
+from roaml.jani.model import VARIABLES, Automaton
 from roaml.jani.node import Origin
 from roaml.jani.semantics import Value
 from roaml.record import Record, field
@@ -343,8 +343,8 @@ class _Reader:
                 yield change
 
     def _is_others(self, name: str) -> bool:
-        """Whether a variable of the model belongs to an event or an observer."""
-        return self._events.carries_event(name) or name.startswith(self._observer_prefixes)
+        """Whether a variable of the model belongs to an event, an observer or the reaction time."""
+        return self._events.carries_event(name) or name.startswith((*self._observer_prefixes, VARIABLES))
 
 
 def is_inner(automaton: Automaton) -> bool:
