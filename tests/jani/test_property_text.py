@@ -156,3 +156,40 @@ def test_names_are_checked() -> None:
         asking(target, ["P=? [ F y=1 ]"])
     with pytest.raises(PropertyTextError):
         asking(target, ["P=? [ F x ]"])
+
+
+@pytest.mark.parametrize(
+    ("text", "remark"),
+    [
+        ("P=? [ F<=5 a ]", "A bound without a unit counts steps of the model, not seconds; `F<=5 s` has one."),
+        ("P=? [ F<=5 s a ]", ""),
+        ("P=? [ F a ]", ""),
+        ("P=? [ a | b U c ]", ""),
+        ("P=? [ F a || G b ]", "Only traces that satisfy `G b`, because `||` before F, G or X begins a condition."),
+        ('R{"time"}=? [ F a ]', "The time is in s."),
+        ('R{"steps"}=? [ F a ]', ""),
+    ],
+)
+def test_what_a_reader_may_mistake(text: str, remark: str) -> None:
+    assert read_property_text(text, CLOCK).remark == remark
+
+
+def test_a_model_without_a_clock_has_only_steps() -> None:
+    assert read_property_text("P=? [ F<=5 a ]").remark == ""
+
+
+@pytest.mark.parametrize(
+    ("text", "instead"),
+    [
+        ("Tmin=? [ F a ]", 'the expected time is `R{"time"}min=? [ F … ]`'),
+        ("E=? [ F a ]", "an expected value is `R{…}min=? [ F … ]`"),
+        ("Smax=? [ a ]", "probabilities in the long run are not supported"),
+        ("p: P=? [ F a ]", "before `p` (column 1)"),
+    ],
+)
+def test_properties_of_other_notations(text: str, instead: str) -> None:
+    """They are not taken for names of properties, of which the model has none like that."""
+    assert is_property_text(text)
+    with pytest.raises(PropertyTextError) as caught:
+        read_property_text(text, CLOCK)
+    assert instead in str(caught.value)

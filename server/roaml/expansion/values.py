@@ -99,7 +99,10 @@ def read_value(text: str, type_: str, scope: Scope) -> ParameterValue | str:
     content = None if findings else evaluate(tree, scope)
     if content is None or isinstance(content, str) or isinstance(content, bool) != (kind is ScalarKind.BOOL):
         wanted = {ScalarKind.BOOL: "`true`, `false`", ScalarKind.INT: "an integer"}.get(kind, "a number")
-        return f"`{text}` is not {wanted} or an expression of constants and parameters with this result"
+        several = (
+            "; `as2fm-lsp experiment` computes properties for several values" if ":" in text or "," in text else ""
+        )
+        return f"`{text}` is not {wanted} or an expression of constants and parameters with this result{several}"
     if isinstance(content, Fraction) and kind is ScalarKind.INT:
         least, most = INTEGER_RANGES[type_]
         if content.denominator != 1:

@@ -40,9 +40,19 @@ _TIME = "time"
 """The reward that is the time of the model, in s."""
 _GIVEN = "||"
 """The text of the token `||` that precedes the condition under which a property is asked."""
+_ASKED = regex(r"(?:=\s*\?|[<>]=?\s*[\d.]+)\s*\[")
+"""What a property in this notation contains, whatever it asks for."""
+_OTHER_HEADS = {
+    "T": 'the expected time is `R{"time"}min=? [ F … ]`',
+    "E": 'an expected value is `R{…}min=? [ F … ]`, with the reward in braces, such as `"steps"` or `"time"`',
+    "S": "probabilities in the long run are not supported",
+}
+"""The first letter of a property in the notations of other tools -> what to write instead."""
 _TEMPORAL = frozenset("FGXUWR")
 _BINARY_LEVELS = (("<=>",), ("=>",), ("|",), ("&",))
 _RELATIONS = frozenset(("=", "!=", "<", "<=", ">", ">="))
+_STEPS = "A bound without a unit counts steps of the model, not seconds; `F<=5 s` has one."
+"""The remark on the bounds of a system with a clock."""
 MAX_DEPTH = 100
 
 
@@ -67,8 +77,8 @@ class _Bound(Record, frozen=True):
 
 
 def is_property_text(text: str) -> bool:
-    """Whether a text is a property in this notation, and not the name of one."""
-    return "[" in text and _HEAD.match(text.strip()) is not None
+    """Whether a text is meant as a property in this notation, and not as the name of one."""
+    return "[" in text and (_HEAD.match(text.strip()) is not None or _ASKED.search(text) is not None)
 
 
 class ReadProperty(Record, frozen=True):
@@ -77,11 +87,14 @@ class ReadProperty(Record, frozen=True):
     Attributes:
         given: the probability of the path that the considered traces satisfy; `None` if all traces are considered.
         reward: the name in quotes that is the whole reward; "" if it is another expression.
+        remark: what a reader of the text may mistake, in sentences: the unit of its value or of its bounds, and that
+            it has a condition; "" for nothing.
     """
 
     expression: Json
     given: Json | None
     reward: str
+    remark: str
 
 
 def read_property_text(text: str, clock: tuple[str, str] | None = None) -> ReadProperty:
@@ -124,6 +137,7 @@ class _Parser:
         self.tokens = list(_tokens(text))
         self.place = 0
         self.depth = 0
+        self.remarks: list[str] = []
 
     # ------------------------------------------------------------ tokens
 
@@ -148,11 +162,12 @@ class _Parser:
         if not self.takes(mark):
             raise self.problem(f"expected `{mark}`")
 
-    def problem(self, problem: str) -> PropertyTextError:
+    def problem(self, problem: str, instead: str = "") -> PropertyTextError:
         token = self.token
         where = f"before `{token.text}`" if token.text else "at the end"
         raise PropertyTextError(
             f"`{self.text.strip()}` is not a property: {problem} {where} (column {token.start + 1})"
+            f"{'; ' if instead else ''}{instead}"
         )
 
     # ------------------------------------------------------------ properties
@@ -162,7 +177,8 @@ class _Parser:
         match = _HEAD.fullmatch(head.text)
         if match is None:
             self.place = 0
-            raise self.problem("expected `P`, `Pmin`, `Pmax`, `R`, `Rmin` or `Rmax`")
+            instead = _OTHER_HEADS.get(head.text.removesuffix("min").removesuffix("max"), "")
+            raise self.problem("expected `P`, `Pmin`, `Pmax`, `R`, `Rmin` or `Rmax`", instead)
         is_reward, extreme = match["kind"] == "R", match["extreme"] or ""
         is_quoted = is_reward and self.tokens[self.place + 1].kind == "quoted"
         reward = self.reward() if is_reward else None
@@ -172,14 +188,22 @@ class _Parser:
             extreme = "max" if relation in ("<", "<=") else "min"
         self.expect("[")
         value = self.expectation(f"E{extreme}", reward) if is_reward else {"op": f"P{extreme}", "exp": self.path()}
+        begin = self.token.start + len(_GIVEN)
         given = self.path() if self.takes(_GIVEN) else None
+        if given is not None:
+            path = self.text[begin : self.token.start].strip()
+            self.remarks.insert(
+                0, f"Only traces that satisfy `{path}`, because `||` before F, G or X begins a condition."
+            )
         self.expect("]")
         if self.token.text:
             raise self.problem("unexpected text")
         values = value if relation == "" else _operation(relation, value, threshold)
         function = "values" if relation == "" else "∀"
         condition = None if given is None else _filter("values", {"op": "Pmin", "exp": given})
-        return ReadProperty(_filter(function, values), condition, str(reward) if is_quoted else "")
+        return ReadProperty(
+            _filter(function, values), condition, str(reward) if is_quoted else "", " ".join(self.remarks)
+        )
 
     def asked(self) -> tuple[str, Json]:
         """The comparison with a number; "" for `=?`."""
@@ -220,6 +244,7 @@ class _Parser:
         if reward != _TIME:
             return {**value, "reach": reach}
         seconds, nanoseconds = self.known_clock()
+        self.remarks.append("The time is in s.")
         fraction = {"op": "/", "left": nanoseconds, "right": 10**9}
         return _at_reach(operator, {"op": "+", "left": seconds, "right": fraction}, reach)
 
@@ -265,6 +290,8 @@ class _Parser:
         if bound is None:
             return {"op": operator, "left": left, "right": right}
         if bound.unit_ns == 0:
+            if self.clock is not None and _STEPS not in self.remarks:
+                self.remarks.append(_STEPS)
             interval: Json = {}
             if bound.lower is not None:
                 interval["lower"] = bound.lower

@@ -149,7 +149,7 @@ def asking(target: VerificationTarget, names: Iterable[str]) -> VerificationTarg
                 model = with_counter(model, written.reward)
             except CounterError as error:
                 raise PropertyTextError(f"`{text}`: {error}") from None
-        added.append(_checked(model, text, text, written.expression))
+        added.append(replace(_checked(model, text, text, written.expression), comment=written.remark or None))
         if written.given is not None:
             assumptions[text] = _checked(model, text, assumptions_of(text), written.given)
             added.append(assumptions[text])
@@ -180,5 +180,7 @@ def _checked(model: Model, text: str, name: str, expression: object) -> Property
     properties, findings = read_properties(value)
     findings += tuple(finding for property_ in properties for finding in check_property(property_, model_scope(model)))
     if findings:
-        raise PropertyTextError(f"`{text}`: {findings[0].message}")
+        named = next((p.name for p in model.properties if f"`{p.name}`" in findings[0].message), None)
+        other = "" if named is None else f"; the property `{named}` is no condition, because it has not the form `F c`"
+        raise PropertyTextError(f"`{text}`: {findings[0].message}{other}")
     return properties[0]
