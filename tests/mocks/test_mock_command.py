@@ -178,7 +178,17 @@ def test_what_users_read(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     for part in ("succeeds: = 0.375", "time until success: mean", "failed attempts of RetryUntilSuccessful",
                  "trace without success", "ticked at 10 Hz, for at most 600 s"):  # fmt: skip
         assert part in text
-    assert re.search(r"raising IsReady \(.*tree\.xml:\d+\) from 0\.5 to 0\.51 adds 0\.0075\n", text)
+    assert re.search(r"raising IsReady \(.*tree\.xml:\d+\) from 0\.5 to 0\.51 adds 0\.0075[;\n]", text)
+
+
+def test_a_tree_that_cannot_succeed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """No leaf has an influence, and that the tree may not end within 600 s has no probability worth a line."""
+    path = tree(tmp_path, "<KeepRunningUntilFailure><Drive/></KeepRunningUntilFailure>")
+    assert run(["verify", path, "--mock", "*: 0.5 in 1 s"]) == 0
+    text = capsys.readouterr().out
+    assert "\n  influence of the leaves: none, because the tree does not succeed, whatever they return\n" in text
+    assert "raising" not in text
+    assert "not ended" not in text
 
 
 def test_means_of_equal_values(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -189,7 +199,7 @@ def test_means_of_equal_values(tmp_path: Path, capsys: pytest.CaptureFixture[str
     run(["verify", path, *mocks])
     text = capsys.readouterr().out
     assert "time until success: 2.1 s in all traces that succeed; " in text
-    assert re.search(r"failed attempts of RetryUntilSuccessful \(.*\): 2 in all traces$", text, re.MULTILINE)
+    assert re.search(r"average: in all traces 2 failed attempts of RetryUntilSuccessful \(.*\)$", text, re.MULTILINE)
     assert "inf" not in text.replace("influence", "")
     measured = verified(capsys, path, *mocks)["tree"]
     assert isinstance(measured, dict)

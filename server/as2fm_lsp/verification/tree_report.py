@@ -6,7 +6,7 @@ from __future__ import annotations
 import bisect
 import itertools
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from as2fm_lsp.verification.status_table import status_table
@@ -22,7 +22,10 @@ from roaml.verification.tree_outcome import COUNTERS, Influence, Measured, TreeO
 from roaml.views.cause import cause
 from roaml.views.turns import Turn, turns
 
-MAX_LEAVES = 10
+MAX_LEAVES, MAX_COUNTERS = 2, 2
+"""The numbers of influences, and of recoveries and failed attempts, that a report states unless it is whole."""
+NEVER = 1e-9
+"""The probability below which an exact report does not state that the tree may still run at the end of the time."""
 MIN_NORMAL_TRACES = 30
 """If fewer traces than this succeed, or fewer fail, the intervals of influences are only approximate."""
 RAISED_BY = 0.01
@@ -42,7 +45,8 @@ PlaceOf = Callable[[Location], str]
 
 def as_text(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf, *, is_whole: bool = False) -> str:
     """The measurements of a tree for users. The probability of success is not among them, because it is reported as the
-    result of a property. `is_whole` selects all leaves; otherwise, at most `MAX_LEAVES` are listed."""
+    result of a property. `is_whole` selects all leaves and counters, each in its own line; otherwise, each kind has one
+    line with the first of them."""
     return "".join(f"{line}\n" for line in _lines(mocked, outcome, place_of, is_whole))
 
 
@@ -86,34 +90,51 @@ def _likes(mocked: MockedTree) -> str:
 
 
 def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf, is_whole: bool) -> Iterator[str]:
-    if outcome.unfinished.value or outcome.exceptions.value:
+    is_unfinished = outcome.unfinished.value > NEVER
+    if is_unfinished or outcome.exceptions.value:
         yield f"  the tree fails: {_interval(outcome.failure)}"
-    if outcome.unfinished.value:
+    if is_unfinished:
         yield f"  not ended when the time ends: {_interval(outcome.unfinished)}"
     if outcome.exceptions.value:
         yield f"  ended by an exception of the library: {_interval(outcome.exceptions)}"
     if outcome.time is not None:
         yield f"  time until success: {_time(outcome.time)}; {', '.join(_quantiles(outcome))}"
-    for node, counter, value in outcome.counts:
-        mean = f"{value.value:g} in all traces" if _is_constant(value) else f"{_interval(value)} in a run, on average"
-        yield f"  {counter.replace('_', ' ')} of {node.name} ({place_of(node.origin)}): {mean}"
+    counts = [
+        f"{_count(value)} {counter.replace('_', ' ')} of {node.name} ({place_of(node.origin)})"
+        for node, counter, value in outcome.counts
+        if value.value or is_whole
+    ]
+    yield from _listed("in a run, on average", counts, MAX_COUNTERS, is_whole)
     if not outcome.influences and not outcome.is_exact and any(0 < leaf.probability < 1 for leaf in mocked.leaves):
         yield (
             "  the influence of the leaves cannot be estimated, because all traces had the same outcome; more traces "
             "(--max-traces) may have other outcomes"
         )
-    if outcome.influences:
+    if outcome.influences and outcome.is_exact and outcome.success.value == 0:
+        yield "  influence of the leaves: none, because the tree does not succeed, whatever they return"
+    elif outcome.influences:
         note = (
             f" (only {outcome.rare} traces differ from the others: the intervals are approximate)"
             if outcome.rare is not None and outcome.rare < MIN_NORMAL_TRACES
             else ""
         )
-        yield f"  influence of the leaves on the probability of success{note}:"
-        for influence in outcome.influences[: None if is_whole else MAX_LEAVES]:
-            yield f"    {_influence(influence, place_of)}"
-        more = len(outcome.influences) - MAX_LEAVES
-        if more > 0 and not is_whole:
-            yield f"    … {more} more leaves (--verbose) …"
+        influences = [_influence(influence, place_of) for influence in outcome.influences]
+        yield from _listed(f"influence on the probability of success{note}", influences, MAX_LEAVES, is_whole)
+
+
+def _listed(title: str, parts: Sequence[str], most: int, is_whole: bool) -> Iterator[str]:
+    """Some parts with a title: the first ones in one line, or all of them, each in its line, if the report is whole."""
+    if is_whole and len(parts) > 1:
+        yield f"  {title}:"
+        yield from (f"    {part}" for part in parts)
+    elif parts:
+        more = len(parts) - most
+        end = f"; … {more} more (--verbose)" if more > 0 else ""
+        yield f"  {title}: {'; '.join(parts[:most])}{end}"
+
+
+def _count(value: Measured) -> str:
+    return f"in all traces {value.value:g}" if _is_constant(value) else _interval(value)
 
 
 def _quantiles(outcome: TreeOutcome) -> Iterator[str]:
@@ -190,7 +211,9 @@ def story_as_text(
     rows = []
     for turn in leaf_turns:
         node = nodes[turn.automaton]
-        seconds = bisect.bisect(ticks, turn.number) / float(mocked.options.rate)
+        # Only a trace of a reduced state space has no clock.
+        counted = float(bisect.bisect(ticks, turn.number) * mocked.options.tick_time)
+        seconds = counted if turn.time is None else turn.time
         rows.append((moment(seconds), node.name, turn.status, place_of(node.origin)))
     widths = [max((len(row[i]) for row in rows), default=0) for i in range(3)]
     lines = [

@@ -88,8 +88,8 @@ def measure_exactly(mocked: MockedTree, target: VerificationTarget, limits: Stat
     influences = _influences(mocked, target, limits)
     if influences is None:
         return None
-    rate = float(mocked.options.rate)
-    times = {ticks / rate: share for ticks, share in ends.successes.items() if share > 0}
+    tick_time = mocked.options.tick_time
+    times = {float(ticks * tick_time): share for ticks, share in ends.successes.items() if share > 0}
     success = math.fsum(times.values())
     mean = math.fsum(time * share for time, share in times.items()) / success if times else None
     return TreeOutcome(

@@ -38,7 +38,7 @@ from roaml.mocks.mock import Mock, MockError, drawn_ticks, mock_for
 from roaml.mocks.proposal import MockableLeaf, leaves_of
 from roaml.mocks.unfolding import unfold
 from roaml.model.drawn_durations import DrawnDuration
-from roaml.model.timing import period
+from roaml.model.timing import NANOSECONDS_PER_SECOND, period
 from roaml.record import Record, field
 from roaml.scxml.events import EventRole, Role, ScxmlEvent
 from roaml.scxml.model import Assign, Automaton, Data, Network, Send, State, Statement, Target, Transition
@@ -74,6 +74,12 @@ class MockOptions(Record, frozen=True):
     max_time: int = DEFAULT_MAX_TIME
     counts: bool = False
     reaction_time: ReactionTime | None = None
+
+    @property
+    def tick_time(self) -> Fraction:
+        """The time from a tick to the next one in the model, in s. It is that of the timer, so that all reports of a
+        run agree: the inverse of the rate, rounded down (`roaml.model.timing.period`)."""
+        return Fraction(period(self.rate).nanoseconds, NANOSECONDS_PER_SECOND)
 
 
 class MockedLeaf(Record, frozen=True, eq=False):

@@ -200,7 +200,7 @@ class _Measuring:
             answers.append(answer)
             stuck += is_stuck
             if answer == SUCCESS:
-                times.append(float(self.integer(self.ticks) / self.mocked.options.rate))
+                times.append(float(self.integer(self.ticks) * self.mocked.options.tick_time))
             elif shortest is None or steps < shortest[1]:
                 shortest = (trace, steps)
             means = [mean.add(self.integer(s)) for mean, (_, _, s) in zip(means, counters, strict=True)]
@@ -237,7 +237,8 @@ class _Measuring:
             raise ValueError(f"trace {number} executes an undefined operation")
         answer = self.integer(self.status) if verdict == TRUE else 0
         is_stuck = (
-            verdict == FALSE and self.clock_time() < self.mocked.options.max_time / 1e9 - 2 / self.mocked.options.rate
+            verdict == FALSE
+            and self.clock_time() < self.mocked.options.max_time / 1e9 - 2 * self.mocked.options.tick_time
         )
         return answer, self.kernel.outcome()[0], is_stuck
 
