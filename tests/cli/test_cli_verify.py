@@ -547,7 +547,7 @@ def test_a_search_for_schedulers_shows_how_far_it_is_and_can_be_interrupted(tmp_
         running.send_signal(signal.SIGINT)
         out, _ = running.communicate(timeout=TIMEOUT_S)
     os.close(ours)
-    assert re.search(rb"p, least probability: round \d+ of \d+, [\d,]+ of [\d,]+ schedulers tried", seen)
+    assert re.search(rb"p, minimum probability: round \d+ of \d+, [\d,]+ of [\d,]+ schedulers tried", seen)
     assert running.returncode == 130
     assert "interrupted" in out
     assert "seed 0" in out
@@ -555,15 +555,15 @@ def test_a_search_for_schedulers_shows_how_far_it_is_and_can_be_interrupted(tmp_
 
 def test_progress_bar_of_a_search() -> None:
     question, state = Question("p", "Pmin", False, None, ()), Search(rounds=9)
-    assert search_line(question, state, Options()) == "p, least probability …"
+    assert search_line(question, state, Options()) == "p, minimum probability …"
     state.round, state.left, state.done, state.best = 2, 160, 40, 0.125
     text = search_line(question, state, Options())
-    assert text == "p, least probability: round 2 of 9, 40 of 160 schedulers tried, best so far 0.125"
+    assert text == "p, minimum probability: round 2 of 9, 40 of 160 schedulers tried, best so far 0.125"
     state.selected[Side.LEAST] = SelectedScheduler(7, Tally(traces=250, successes=100))
     text = search_line(question, state, Options(method=EstimationMethod.FIXED, max_traces=1000))
-    assert text.startswith("p, least probability ━━━━━───────────────  25%  250 traces  0.4 [0.29")
+    assert text.startswith("p, minimum probability ━━━━━───────────────  25%  250 traces  0.4 [0.29")
     state.side = Side.GREATEST
-    assert search_line(question, state, Options()).startswith("p, greatest probability: round 2 of 9")
+    assert search_line(question, state, Options()).startswith("p, maximum probability: round 2 of 9")
 
 
 def test_progress_bar() -> None:
@@ -639,9 +639,9 @@ def test_schedulers(command: Command, tmp_path: Path) -> None:
     result = rows(command("verify", name, *options, "--format", "json").out)["heads"]
     assert result["least"]["probability"] == pytest.approx(0.3, abs=0.05)
     assert result["greatest"]["probability"] == pytest.approx(0.8, abs=0.05)
-    assert command("verify", name, *options).out.startswith("heads: least probability found 0.")
+    assert command("verify", name, *options).out.startswith("heads: minimum probability found 0.")
     out = command("verify", name, *options[:-1], "Pmax=? [ F x=1 ]").out
-    assert re.match(r"Pmax.*: greatest probability found 0\.(.|\n)*\nPmax.*: least probability found 0\.", out)
+    assert re.match(r"Pmax.*: maximum probability found 0\.(.|\n)*\nPmax.*: minimum probability found 0\.", out)
 
 
 def test_expected_rewards(command: Command, tmp_path: Path) -> None:

@@ -377,7 +377,7 @@ def test_schedulers_that_were_looked_for_have_all_that_results_have(command: Com
     name = write(tmp_path, starving(length=3))
     options = ("--scheduler", "lss", "--epsilon", "0.1", "--seed", "7")
     out = command("verify", name, *options, "--verbose").out
-    first, sentence = r"p: (least|greatest) probability found .* failed\n", r"  `done` holds at some time\.\n"
+    first, sentence = r"p: (minimum|maximum) probability found .* failed\n", r"  `done` holds at some time\.\n"
     rest = r"  by sampled scheduler \d+, which .*\n  ends: .*\n"
     assert re.match(
         rf"{first}{sentence}{rest}{first}{rest}  [\d,]+ schedulers were tried, \d+\.\d s; others may be more extreme\n",
@@ -462,7 +462,7 @@ def test_expectations_of_sampled_schedulers(command: Command, tmp_path: Path) ->
     met = r"met by the [\d,]+ sampled schedulers; another one may miss it"
     assert re.search(rf"  expected ≥ 0: {met}\n", command("verify", name, *options).out)
     assert re.search(
-        rf"\| least probability found 0 in .*; greatest probability found 1 in .* \| ≥ 0 \| {met} \|",
+        rf"\| minimum probability found 0 in .*; maximum probability found 1 in .* \| ≥ 0 \| {met} \|",
         command("verify", name, *options, "--format", "markdown").out,
     )
     table = command("verify", name, *options, "--format", "csv").out

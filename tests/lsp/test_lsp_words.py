@@ -7,6 +7,7 @@ from __future__ import annotations
 import json
 import re
 import shutil
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote, urlsplit
@@ -25,6 +26,9 @@ from roaml.verification.headline import NOT_KNOWN
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 EPSILON = 0.2
 LIMITED = {"epsilon": EPSILON, "silent": True}
+FLAGS = {"epsilon": "--epsilon", "maxSteps": "--max-steps"}
+KINDS = {"exact": {"silent": True}, "cut": {**LIMITED, "maxSteps": 150}, "few cut": {**LIMITED, "maxSteps": 300}}
+"""Kinds of results -> the options with which a system has them: minimum and maximum differ; traces are undecided."""
 SYSTEMS = ("assembly_robot/main.xml", "assembly_robot/main_with_bug.xml", "case_study/main.xml", "grid_world/main.xml")
 
 NUMBER = re.compile(r"(?<![\w.])\d[\d,]*(?:\.\d+)?(?:e-?\d+)?(?![\w])")
@@ -77,18 +81,25 @@ async def hinted(client: Client, path: Path) -> dict[str, str]:
     return {str(hint.label): str(hint.tooltip) for hint in shown if hint.tooltip is not None}
 
 
-async def compare(main: Path, capsys: pytest.CaptureFixture[str], ros_path: str = "") -> list[str]:
-    """The contradictions between all places that show the results of a system."""
+async def compare(
+    main: Path, capsys: pytest.CaptureFixture[str], ros_path: str = "", limits: Mapping[str, Any] = LIMITED
+) -> list[str]:
+    """The contradictions between all places that show the results of a system.
+
+    Args:
+        limits: the options of the editor's call. Those in `FLAGS` are also given to the command.
+    """
     options = ["--ros-path", ros_path] if ros_path else []
-    run(["verify", str(main), "--epsilon", str(EPSILON), *options])
+    options += [text for name, flag in FLAGS.items() if name in limits for text in (flag, str(limits[name]))]
+    run(["verify", str(main), *options])
     report = capsys.readouterr().out
-    run(["verify", str(main), "--epsilon", str(EPSILON), *options, "--format", "json"])
+    run(["verify", str(main), *options, "--format", "json"])
     rows = {row["property"]: row for row in json.loads(capsys.readouterr().out)["results"]}
     by_name = blocks(report, list(rows))
     wrong: list[str] = []
     settings: Any = {"rosPath": [ros_path]} if ros_path else {}
     async with connect(main.parent, options={"settings": settings}) as client:
-        await verify(client, main, None, LIMITED)
+        await verify(client, main, None, dict(limits))
         listed = await ask(client, PROPERTIES, {"textDocument": {"uri": main.as_uri()}})
         (own,) = (system for system in listed if system["uri"] == main.as_uri())
         properties = {row["name"]: row for row in own["properties"] if "view" in row}
@@ -123,6 +134,25 @@ async def test_examples(name: str, tmp_path: Path, capsys: pytest.CaptureFixture
         if other != main and "<roaml" in other.read_text(encoding="utf-8"):
             other.unlink()
     assert await compare(main, capsys) == []
+
+
+@pytest.mark.parametrize("kind", KINDS)
+async def test_kinds_of_results(kind: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for folder in ("battery", "delivery_robot"):
+        shutil.copytree(EXAMPLES / folder, tmp_path / folder)
+    (tmp_path / "delivery_robot" / "main.xml").unlink()
+    assert await compare(tmp_path / "battery" / "main.xml", capsys, limits=KINDS[kind]) == []
+
+
+async def test_an_exact_value_names_its_extreme(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """If the minimum and the maximum differ, a number alone would not say which of both it is."""
+    for folder in ("battery", "delivery_robot"):
+        shutil.copytree(EXAMPLES / folder, tmp_path / folder)
+    main = tmp_path / "battery" / "main.xml"
+    async with connect(tmp_path) as client:
+        await verify(client, main, ["all_delivered"], {"silent": True})
+        hints = await hinted(client, tmp_path / "delivery_robot" / "properties.jani")
+    assert any(label.startswith("= minimum < 1, exact") for label in hints)
 
 
 @pytest.mark.parametrize("seed", [0, 2])

@@ -356,15 +356,17 @@ def test_vacuous_traces_and_those_that_fail_at_the_end_of_time_are_counted() -> 
     assert rows["answered"]["failed_at_end_of_time"] == rows["answered"]["failed"] > 0
     assert rows["dead"]["vacuous"] == {"scope_not_judged": 0, "not_triggered": 300}
     untested = "the property is vacuous, that is, met only because nothing has tested it:"
-    assert warning(results["dead"]) == f"{untested} it was not triggered in any trace"
+    assert (
+        warning(results["dead"]) == f"{untested} the event that makes it require something did not occur in any trace"
+    )
     assert rows["unopened"]["vacuous"] == {"scope_not_judged": 300, "not_triggered": 0}
-    assert warning(results["unopened"]) == f"{untested} its scope was not evaluated in any trace"
+    assert warning(results["unopened"]) == f"{untested} the event of its scope did not occur in any trace"
     assert rows["opened"]["vacuous"]["scope_not_judged"] / 300 == pytest.approx(0.7**6, abs=0.1)
     assert rows["opened"]["vacuous"]["not_triggered"] == 0
     assert rows["opened"]["failed"] > 0
     text = one_as_text(results["scoped"], str)
-    assert re.search(r"\n  its scope was not evaluated in [0-9]+ of 300 traces \(", text)
-    assert re.search(r"\n  it was not triggered in [0-9]+ of 300 traces \(", text)
+    assert re.search(r"\n  the event of its scope did not occur in [0-9]+ of 300 traces \(", text)
+    assert re.search(r"\n  the event that makes it require something did not occur in [0-9]+ of 300 traces \(", text)
     assert "failed traces fail when the time ends (max_time)" in text
 
 

@@ -15,7 +15,7 @@ from roaml.exhaustive import Vocabulary, assert_never
 from roaml.experiments.changes import ValueChange, ValueVerdict
 from roaml.experiments.enough import Met
 from roaml.experiments.points import ExperimentPoint, PointKind
-from roaml.experiments.results import ESTIMATE_NOTE, EXACT_NOTES, UNKNOWN_EXTREME, cell
+from roaml.experiments.results import ESTIMATE_NOTE, UNKNOWN_EXTREME, cell, exact_note
 from roaml.figures.plot import page
 from roaml.ide.diagrams.changes import PartChange
 from roaml.ide.diagrams.diagram import Change
@@ -191,10 +191,8 @@ def _notes(report: ComparisonReport) -> list[str]:
         if side.has_values is False
     ]
     points = [point for value in report.values for point in (value.old, value.new) if point is not None]
-    exact = {point.schedulers for point in points if point.kind is PointKind.EXACT}
-    if exact:
-        meanings = "; ".join(note for schedulers, note in EXACT_NOTES.items() if schedulers in exact)
-        notes.append(f"exact values from all states: {meanings}")
+    if any(point.kind is PointKind.EXACT for point in points):
+        notes.append(exact_note(points))
     if any(point.kind is PointKind.ESTIMATE for point in points):
         unknown = "" if report.only_uniform else UNKNOWN_EXTREME
         notes.append(

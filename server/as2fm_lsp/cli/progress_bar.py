@@ -108,7 +108,7 @@ def line(question: Question, options: Options, tally: Tally, seconds: float, fir
 def search_line(question: Question, search: Search, options: Options) -> str:
     """The line during a search for schedulers: the round and the best probability so far; after the search, the
     estimate."""
-    text = f"{question.name}, {search.side} probability"
+    text = f"{question.name}, {search.side.extreme} probability"
     side = search.selected.get(search.side)
     if side is not None and side.tally.traces:
         return line(replace(question, name=text), options, side.tally, 0)

@@ -245,6 +245,8 @@ class _Verification:
                     self.interrupts.ignore()
                     interrupted = True
         if not interrupted and self.options.quantiles:
+            if not any(result.question is not None and result.question.is_reward for result in self.results):
+                note('--quantiles has no effect: no property is an expected value, such as R{"time"}=? [ F … ]')
             self.results = [self._with_quantiles(result) for result in self.results]
         answered = Answered(
             self.options, self.verifier, tuple(self.results), tuple(self.faults), self.stuck_result, self.tree

@@ -31,7 +31,7 @@ examples:
   as2fm-lsp verify main.xml --property alarm --explain   also show the shortest trace in which it fails
   as2fm-lsp verify main.xml --expect "alarm >= 0.95" --format junit
   as2fm-lsp verify model.jani --confidence 0.99 --epsilon 0.001 --jobs 8 --resume state.json
-  as2fm-lsp verify main.xml --scheduler lss              the least and the greatest probability of sampled schedulers
+  as2fm-lsp verify main.xml --scheduler lss              the minimum and maximum probability of sampled schedulers
   as2fm-lsp verify main.xml --property stuck --explain   the probability of getting stuck, and the automata that wait
   as2fm-lsp verify tree.xml --mock "*: 0.9 in 1 s"       a tree without a system: success, time, recoveries
   as2fm-lsp verify model.jani --property "Pmax=? [ F<=100 done ]" --format csv

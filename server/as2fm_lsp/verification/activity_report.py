@@ -12,6 +12,8 @@ from roaml.smc.tally import Tally
 
 _UNTESTED = "these are among the passed traces, but do not test it"
 _NEVER_TESTED = "the property is vacuous, that is, met only because nothing has tested it:"
+_NOT_TRIGGERED = "the event that makes it require something did not occur"
+_NOT_OPENED = "the event of its scope did not occur"
 NONE_ACCEPTED = "no trace satisfies the assumptions, so there is no value"
 
 
@@ -33,9 +35,9 @@ def remarks(answer: Answer, *, are_examples: bool = False) -> list[str]:
         lines.append(f"warning: {warning(answer)}")
     else:
         if tally.closed:
-            lines.append(f"its scope was not evaluated in {_share(tally.closed, tally.traces)}: {_UNTESTED}")
+            lines.append(f"{_NOT_OPENED} in {_share(tally.closed, tally.traces)}: {_UNTESTED}")
         if tally.idle:
-            lines.append(f"it was not triggered in {_share(tally.idle, tally.traces)}: {_UNTESTED}")
+            lines.append(f"{_NOT_TRIGGERED} in {_share(tally.idle, tally.traces)}: {_UNTESTED}")
     if tally.late:
         of = f" (of {tally.traces:,} random examples)" if are_examples else ""
         share = "all" if tally.late == answer.failures else f"{tally.late:,} of"
@@ -65,9 +67,7 @@ def warning(answer: Answer) -> str:
         return f"{NONE_ACCEPTED}: {tally.rejected:,} traces violate them"
     if tally.traces == 0 or tally.closed + tally.idle < tally.traces:
         return ""
-    if tally.idle == 0:
-        return f"{_NEVER_TESTED} its scope was not evaluated in any trace"
-    return f"{_NEVER_TESTED} it was not triggered in any trace"
+    return f"{_NEVER_TESTED} {_NOT_TRIGGERED if tally.idle else _NOT_OPENED} in any trace"
 
 
 def row(answer: Answer) -> dict[str, Any]:

@@ -7,7 +7,8 @@ from __future__ import annotations
 from roaml.scxml.names import FIELD_PREFIX, flag_of
 from roaml.smc.end import End
 from roaml.smc.goal import Question
-from roaml.verification.results import Computed, Result
+from roaml.smc.tally import Tally
+from roaml.verification.results import Computed, Result, Traces
 
 CAN_GET_STUCK = (
     "the system can get stuck before the property is decided, and then F is false and G is true; `verify` without "
@@ -21,13 +22,29 @@ def doubts(result: Result) -> list[str]:
     question = _question_decided_at_once(result)
     if question is not None:
         reasons.append(f"the initial state decides the property, before any step{_default_values(question)}")
-    rounds = 0 if result.answer is None else result.answer.tally.ended(End.ROUND)
-    if rounds and result.answer is not None and result.traces is not None and result.traces.target.clock is not None:
-        reasons.append(
-            f"time stops in {rounds:,} of {result.answer.tally.traces:,} traces: machines exchange events for ever, so "
-            "no timer ticks any more"
-        )
+    if result.answer is not None and result.traces is not None:
+        reasons += _stopped_time(result.answer.tally, result.traces)
     return reasons
+
+
+def _stopped_time(tally: Tally, traces: Traces) -> list[str]:
+    """That time stops in some traces, with the machines that take steps for ever in the shortest one."""
+    if End.ROUND not in tally.ends or traces.target.clock is None:
+        return []
+    from roaml.durations import moment  # noqa: PLC0415 - time seldom stops
+    from roaml.verification.repetition import repetition  # noqa: PLC0415
+
+    rounds, shortest = tally.ends[End.ROUND].count, tally.ends[End.ROUND].shortest
+    repeated = repetition(traces, shortest.trace, shortest.steps)
+    if repeated.is_after_end:
+        return []
+    who = " and ".join(repeated.names) if repeated.names else "machines"
+    verb = "takes" if len(repeated.names) == 1 else "take"
+    where = "" if repeated.time is None else f", in trace {shortest.trace} at {moment(repeated.time)}"
+    return [
+        f"time stops in {rounds:,} of {tally.traces:,} traces{where}: {who} {verb} steps for ever, so no timer "
+        "ticks any more; let a timer or an event of another machine end them"
+    ]
 
 
 def can_get_stuck(result: Result) -> bool:

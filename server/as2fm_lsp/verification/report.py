@@ -70,6 +70,7 @@ def as_text(
         (estimated.answer.question, estimated.choices or Choices())
         for estimated in (result.outcome for result in results)
         if isinstance(estimated, Estimated)
+        and (estimated.answer.tally.traces or not estimated.is_interrupted)
         and may_differ(estimated.choices)
         and not estimated.answer.question.asks_for_extreme_state
     ]
@@ -125,7 +126,7 @@ def _block(
             lines = [f"{result.name}: undecided: {reason}, {result.seconds:.1f} s", *_growing_lines(growing)]
         case CutShort(states=states, growing=growing):
             after = f" after {states:,} states, {result.seconds:.1f} s" if states else ""
-            lines = [f"{result.name}: interrupted{after}; there is no result so far", *_growing_lines(growing)]
+            lines = [f"{result.name}: interrupted{after}; {_NOTHING_SO_FAR}", *_growing_lines(growing)]
         case Computed() as computed:
             lines = _computed_lines(result, computed, is_whole=is_whole)
         case Estimated() as estimated:
@@ -189,6 +190,7 @@ def _heading(name: str, question: Question) -> str:
     return f"{name} ({what})" if what else name
 
 
+_SO_FAR, _NOTHING_SO_FAR = "this is the result so far", "there is no result so far"
 _INFINITE = "infinite: some traces never reach the condition up to which the reward is accumulated"
 
 
@@ -232,6 +234,8 @@ def _estimated_lines(
     is_stuck = answer.question.is_stuck
     name = _heading(result.name, answer.question)
     words = headline(result).text if answer.tally.traces else _estimate(answer)
+    if words == NO_TRACES and estimated.is_interrupted:
+        return [f"{name}: interrupted; {_NOTHING_SO_FAR}"]
     lines = [f"{name}: {words}, {result.seconds:.1f} s"]
     if estimated.stuck is not None and not is_stuck:
         lines += _stuck_lines(estimated.stuck, place_of, level, shown)
@@ -240,8 +244,8 @@ def _estimated_lines(
         about = scheduler_report.below_headline(answer.question, choices)
         lines += [f"  {about}"] if about else []
     if estimated.is_interrupted:
-        lines.append("  interrupted; this is the result so far")
-    elif answer.is_too_wide:
+        lines.append(f"  interrupted; {_SO_FAR if answer.tally.traces else _NOTHING_SO_FAR}")
+    elif answer.is_too_wide and answer.tally.traces:
         lines.append("  the interval is wider than requested (--epsilon)")
     return lines
 
@@ -251,7 +255,7 @@ def _sampled_lines(
 ) -> list[str]:
     lines = []
     for extreme in sorted(sampled.extremes, key=_is_other_side):
-        lines.append(f"{result.name}: {extreme.side} probability found {_estimate(extreme.answer)}")
+        lines.append(f"{result.name}: {extreme.side.extreme} probability found {_estimate(extreme.answer)}")
         lines.append(f"  by {extreme.words}")
         if extreme.stuck is not None and not extreme.answer.question.is_stuck:
             lines += _stuck_lines(extreme.stuck, place_of, level, shown)
@@ -259,7 +263,7 @@ def _sampled_lines(
     if sampled.tried:
         lines.append(f"  {sampled.tried:,} schedulers were tried, {result.seconds:.1f} s; others may be more extreme")
     if sampled.is_interrupted:
-        clause = "this is the result so far" if sampled.extremes else "there is no result so far"
+        clause = _SO_FAR if sampled.extremes else _NOTHING_SO_FAR
         lines.append(f"  interrupted; {clause}" if lines else f"{result.name}: interrupted; {clause}")
     return lines
 

@@ -31,6 +31,22 @@ EXACT_NOTES = {
 }
 
 
+def exact_note(points: Sequence[ExperimentPoint]) -> str:
+    """What the exact values among points mean. If they are minima of some properties and maxima of others, the note
+    names these properties."""
+    names: dict[Schedulers, dict[str, None]] = {}
+    for point in points:
+        if point.kind is PointKind.EXACT and point.schedulers is not None:
+            names.setdefault(point.schedulers, {})[point.name] = None
+    has_both = Schedulers.MINIMUM in names and Schedulers.MAXIMUM in names
+    meanings = [
+        f"{note} ({', '.join(names[schedulers])})" if has_both and schedulers is not Schedulers.ALL else note
+        for schedulers, note in EXACT_NOTES.items()
+        if schedulers in names
+    ]
+    return f"exact values from all states: {'; '.join(meanings)}"
+
+
 class ExperimentResult(Record, frozen=True):
     """The points of an experiment. A notebook shows the plot.
 
@@ -142,9 +158,7 @@ class ExperimentResult(Record, frozen=True):
         kinds = {point.kind for point in self.points}
         notes = []
         if PointKind.EXACT in kinds:
-            asked = {point.schedulers for point in self.points if point.kind is PointKind.EXACT}
-            meanings = (EXACT_NOTES[schedulers] for schedulers in Schedulers if schedulers in asked)
-            notes.append(f"exact values from all states: {'; '.join(meanings)}")
+            notes.append(exact_note(self.points))
         if PointKind.ESTIMATE in kinds:
             sampling = self.options.sampling
             notes.append(

@@ -105,10 +105,15 @@ def candidates(
 
 
 class Side(Vocabulary):
-    """The probability that is searched for."""
+    """The probability that is searched for. Its value is its name in JSON."""
 
     LEAST = "least"
     GREATEST = "greatest"
+
+    @property
+    def extreme(self) -> str:
+        """The word of reports: `minimum` or `maximum`."""
+        return "minimum" if self is Side.LEAST else "maximum"
 
 
 class SelectedScheduler(NamedTuple):

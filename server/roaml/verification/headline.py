@@ -59,7 +59,7 @@ class Headline(Record, frozen=True):
 def headline(result: Result) -> Headline:
     match result.outcome:
         case Computed() as computed:
-            return Headline(short=f"{exact_text(computed)}, exact")
+            return Headline(short=f"{_asked_extreme(computed)}{exact_text(computed)}, exact")
         case Estimated(answer=answer, choices=choices):
             return of_answer(answer, choices)
         case Undecided():
@@ -77,9 +77,16 @@ def of_sampled(extremes: Sequence[SampledResult]) -> Headline:
     ordered = sorted(
         extremes, key=lambda extreme: (extreme.side is Side.LEAST) is not extreme.answer.question.is_minimised
     )
-    long = [f"{extreme.side} probability found {estimate_text(extreme.answer)}" for extreme in ordered]
-    short = [f"{extreme.side} found {_short(extreme.answer)}" for extreme in ordered]
+    long = [f"{extreme.side.extreme} probability found {estimate_text(extreme.answer)}" for extreme in ordered]
+    short = [f"{extreme.side.extreme} found {_short(extreme.answer)}" for extreme in ordered]
     return Headline("", "; ".join(long), "; ".join(short))
+
+
+def _asked_extreme(computed: Computed) -> str:
+    """The asked extreme, such as `minimum `; "" if all schedulers agree, or uniform choices are asked."""
+    if computed.exact.agrees:
+        return ""
+    return "" if computed.is_uniform else f"{extreme_of(computed.question)} "
 
 
 def exact_text(computed: Computed) -> str:
