@@ -28,9 +28,9 @@ def remarks(answer: Answer, *, are_examples: bool = False) -> list[str]:
     if answer.question.is_conditional and tally.traces:
         share = _share(tally.traces, tally.simulated)
         if answer.question.is_reward:
-            lines.append(f"given that its condition is reached, as in {share}; under uniform choices")
+            lines.append(f"given that its condition is reached, as in {share}")
         else:
-            lines.append(f"given its assumptions, which {share} satisfy; under uniform choices")
+            lines.append(f"given its assumptions, which {share} satisfy")
     if tally.traces and tally.closed + tally.idle == tally.traces:
         lines.append(f"warning: {warning(answer)}")
     else:

@@ -104,6 +104,9 @@ def of_answer(answer: Answer, choices: Choices | None = None) -> Headline:
     """
     estimate, short = estimate_text(answer), _short(answer)
     claim = claim_for_all(answer.question, choices) if answer.tally.traces else ""
+    if not claim and answer.question.is_conditional and answer.tally.traces:
+        # The minimum and the maximum under a condition are not computed.
+        return Headline("", f"under uniform choices: {estimate}", f"uniform {short}")
     if not claim:
         return Headline("", estimate, short)
     brief = claim
