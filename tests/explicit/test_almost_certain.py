@@ -68,7 +68,7 @@ def test_a_value_that_is_only_enclosed_is_not_shown_as_equal() -> None:
     (first, *_) = exact_report.lines("p", exact, 0.0)
     assert first.startswith("p: minimum 0.25, maximum 0.2500008, between them under uniform choices, exact")
     (first, *_) = exact_report.lines("p", exact, 0.0, only_uniform=True)
-    assert first.startswith("p: between 0.25 and 0.2500008 under uniform choices, exact")
+    assert first.startswith("p: between 0.25 and 0.2500008 under uniform choices, the exact minimum and maximum, ")
 
 
 def test_rounding_is_no_difference() -> None:

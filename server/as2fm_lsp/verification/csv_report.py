@@ -11,7 +11,7 @@ from as2fm_lsp.verification.report import conditional_texts, warning
 from roaml.experiments.results import csv_text
 from roaml.smc.lss import Side
 from roaml.verification.headline import headline
-from roaml.verification.results import Refused, Result, Sampled, Undecided
+from roaml.verification.results import Estimated, Refused, Result, Sampled, Undecided
 
 COLUMNS = (
     "property", "kind", "value", "low", "high", "minimum", "maximum", "uniform", "traces", "passed", "failed",
@@ -57,6 +57,12 @@ def _row(result: Result) -> dict[str, Any]:
                 "note": f"{tried:,} schedulers were tried; others may be more extreme",
             }
         case _:
-            notes = (headline(result).claim, *conditional_texts(result), warning(result))
+            is_given = isinstance(result.outcome, Estimated) and result.outcome.answer.question.is_conditional
+            notes = (
+                "under uniform choices" if is_given else "",
+                headline(result).claim,
+                *conditional_texts(result),
+                warning(result),
+            )
             row["note"] = "; ".join(filter(None, notes))
     return row

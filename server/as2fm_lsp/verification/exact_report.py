@@ -55,7 +55,10 @@ def lines(
         value = _below_one(exact) or f"= {_number(exact.minimum)}"
         shown.append(f"{name}: {value} for all schedulers, {quality}, {end}")
     elif only_uniform and exact.uniform is not None:
-        value = f"between {' and '.join(_distinct(exact))}" if _is_enclosed(exact) else f"= {_number(exact.uniform)}"
+        if _is_enclosed(exact):
+            value, quality = f"between {' and '.join(_distinct(exact))}", f"the {quality} minimum and maximum"
+        else:
+            value = f"= {_number(exact.uniform)}"
         shown.append(f"{name}: {value} under uniform choices, {quality}, {end}")
     else:
         both = _extremes(exact, question)
