@@ -56,7 +56,9 @@ def test_every_sentence_makes_a_property_without_findings(files: str) -> None:
         conditions = {name: known[i % len(known)] for i, name in enumerate(sentence.conditions)}
         made = new_property(snapshot.analysis, MAIN, sentence.pattern, sentence.scope, conditions, "3")
         after = snapshot.with_texts(applied(snapshot, made.change))
-        assert {(d.code, d.path) for d in found(after)} <= before, sentence
+        # The only event of the first system is both events of a sentence.
+        expected = {("repeated-operand", made.path)} if len(known) < len(conditions) else set()
+        assert {(d.code, d.path) for d in found(after)} <= before | expected, sentence
         (property_,) = (p for p in verifiable(after.analysis, MAIN) if p.name == made.name)
         assert property_.path == made.path
         assert _is_said(sentence, property_.comment, [event.clause for event in conditions.values()])
