@@ -31,7 +31,6 @@ from roaml.project.memo import Memo
 from roaml.project.settings import Settings
 from roaml.project.suppress import Suppression, covering, suppressions
 from roaml.record import replace
-from roaml.regex import regex
 from roaml.rules import BY_CODE, RULES
 from roaml.rules.elements import invalid_value
 from roaml.rules.files import file_too_large, unused_suppression
@@ -47,6 +46,7 @@ from roaml.rules.rule import (
     TreeContext,
     replacements,
 )
+from roaml.rules.states.constant_condition import ConstantCondition
 from roaml.rules.support.end_tags import without_misnamed_ends
 from roaml.rules.support.impossible_targets import ImpossibleTarget
 from roaml.suggest import close_names
@@ -187,10 +187,8 @@ class RuleRunner:
             assert varied is not None
             others = self._mapped_findings(varied, path, system)
             of_variants = [
-                [f for f in findings if _own_severity(f) is Severity.ERROR or _without_values(f) in always]
-                for findings, always in zip(
-                    of_variants, ({_without_values(f) for f in fs} for fs in others), strict=True
-                )
+                [f for f in findings if _own_severity(f) is Severity.ERROR or _stated(f) in always]
+                for findings, always in zip(of_variants, ({_stated(f) for f in fs} for fs in others), strict=True)
             ]
         findings = [
             finding
@@ -287,13 +285,10 @@ def _in_all_copies(text: ExpandedText, findings: tuple[Finding, ...]) -> tuple[F
     return tuple(kept.values())
 
 
-_VALUES = regex(r"`[^`]*`|\d+(?:\.\d+)?")
-"""The parts of a message that may contain the value of a parameter."""
-
-
-def _without_values(finding: Finding) -> tuple[str, Span, str]:
-    """What a finding states and where, without the values in its message: `always true` and `never true` differ."""
-    return finding.code, finding.span, _VALUES.sub("", finding.message)
+def _stated(finding: Finding) -> tuple[str, Span, bool | None]:
+    """What a finding states and where: `always true` and `never true` differ, and the values of parameters do not."""
+    facts = finding.facts
+    return finding.code, finding.span, facts.is_true if isinstance(facts, ConstantCondition) else None
 
 
 _OF_VALUES = (invalid_value.RULE.code,)

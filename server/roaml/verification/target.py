@@ -176,11 +176,13 @@ def _checked(model: Model, text: str, name: str, expression: object) -> Property
     from roaml.verification.labels import with_labels  # noqa: PLC0415
 
     labelled = with_labels(expression, model)
-    value, _ = parse(json.dumps({"properties": [{"name": name, "expression": labelled}]}))
+    source = json.dumps({"properties": [{"name": name, "expression": labelled}]})
+    value, _ = parse(source)
     properties, findings = read_properties(value)
     findings += tuple(finding for property_ in properties for finding in check_property(property_, model_scope(model)))
     if findings:
-        named = next((p.name for p in model.properties if f"`{p.name}`" in findings[0].message), None)
+        span = findings[0].span
+        named = next((p.name for p in model.properties if p.name == source[span.start : span.end].strip('"')), None)
         other = "" if named is None else f"; the property `{named}` is no condition, because it has not the form `F c`"
         raise PropertyTextError(f"`{text}`: {findings[0].message}{other}")
     return properties[0]

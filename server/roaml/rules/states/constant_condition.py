@@ -12,6 +12,7 @@ from roaml.expr.infer import constant
 from roaml.expr.operators import MIRRORED, Operator, OperatorKind, UnaryOperator
 from roaml.expr.tree import Binary, Boolean, Expr, Member, Name, String, Unary, walk
 from roaml.expr.types import INTEGER_RANGES, Scalar
+from roaml.facts import Facts
 from roaml.forest.scripts import ScriptUse, parsed, scripts_of
 from roaml.interruption import checkpoint
 from roaml.model.behavior.explore import condition_facts
@@ -64,6 +65,12 @@ MAX_TRIED = 8
 
 MAX_NAMED = 3
 """The maximum number of variables whose values a message states."""
+
+
+class ConstantCondition(Facts, frozen=True):
+    """What a condition always is."""
+
+    is_true: bool
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -466,11 +473,11 @@ def _compared_with_sent(
     what = f"the values that machines send are {described(known)}"
     if result == FALSE:
         if not _is_reported_at_sender(context, number.value):
-            yield RULE.at(node.span, f"this comparison is never true: {what}")
+            yield RULE.at(node.span, f"this comparison is never true: {what}", facts=ConstantCondition(False))
     elif result == TRUE and node.operator is not Operator.NOT_EQUAL:
         conditions = chart.conditions.get(tree.span)
         if conditions is None or (node is tree and conditions.alone == TRUE):
-            yield RULE.at(node.span, f"this comparison is always true: {what}")
+            yield RULE.at(node.span, f"this comparison is always true: {what}", facts=ConstantCondition(True))
 
 
 def _findings(context: MachineContext, machine: MachineValues) -> dict[Span, Finding]:
@@ -535,11 +542,13 @@ def _first(
         if results.alone == FALSE or contradicts:
             effect = "transition is never taken" if what == "transition" else "branch is never executed"
             why = _why(values, cond.tree) or ("its parts contradict each other" if contradicts else "")
-            yield RULE.at(cond.span, f"this condition is never true{_because(why)}, so the {effect}")
+            message = f"this condition is never true{_because(why)}, so the {effect}"
+            yield RULE.at(cond.span, message, facts=ConstantCondition(False))
         elif results.alone == TRUE:
             why = _why(values, cond.tree)
             after = "has no effect; later ones are never tested"
-            yield RULE.at(cond.span, f"this condition is always true{_because(why)}, so it {after}")
+            message = f"this condition is always true{_because(why)}, so it {after}"
+            yield RULE.at(cond.span, message, facts=ConstantCondition(True))
             return
 
 
@@ -691,7 +700,7 @@ def check_trees(context: TreeContext) -> Iterator[Finding]:
         )
         effect = "the node is never ticked" if skips else "it has no effect"
         message = f"this condition is {'always' if holds else 'never'} true{_because(why)}, so {effect}"
-        yield RULE.at(use.attribute.value_span, message)
+        yield RULE.at(use.attribute.value_span, message, facts=ConstantCondition(holds))
 
 
 def _compares_equal(use: ScriptUse) -> bool:
@@ -713,4 +722,5 @@ RULE = Rule(
     properties=check_jani,
     xml_properties=check_properties,
     whole=True,
+    facts=ConstantCondition,
 )
