@@ -811,3 +811,13 @@ def test_uniform_choices_have_a_narrower_limit_unless_the_model_has_no_others() 
     assert most(nondeterministic, only_uniform=False) == SHARED_LIMITS.transitions
     assert most(deterministic, only_uniform=True) == SHARED_LIMITS.transitions
     assert most(nondeterministic, only_uniform=True, limits=SHARED_LIMITS) == SHARED_LIMITS.transitions
+
+
+def test_a_property_that_is_no_condition_is_named(command: Command, tmp_path: Path) -> None:
+    always = {"stays": probability(op("G", op("=", "x", 0)))}
+    steps = [edge("s", way("e", 0.3, x=1), way("e", 0.7))]
+    written = write(tmp_path, document(automaton("a", "s e", steps), variables=[variable("x")], properties=always))
+    result = command("verify", written, "--property", "P=? [ F stays ]")
+    assert result.status == 2
+    assert "the property `stays` is no condition" in result.err
+    assert "is no condition" not in command("verify", written, "--property", "P=? [ F other ]").err

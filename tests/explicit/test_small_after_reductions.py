@@ -283,7 +283,7 @@ def test_the_editor_shows_the_extreme_that_is_asked_for() -> None:
     (result,) = api.verify(model(counters(CHOICE)), exact_if_small=True)
     assert isinstance(result.outcome, api.Computed)
     assert result.outcome.has_uniform_estimate
-    assert short(result) == "0, exact"
+    assert short(result) == "minimum 0, exact"
     assert result.answer is not None
     assert result.answer.is_complete
     assert suggestions(result) == ("<= 0",)
