@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import subprocess
 import xml.etree.ElementTree as ET
@@ -72,6 +73,10 @@ def test_formats(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert "+ 0.7" in texts
     _, html, _ = called(capsys, *asked, "--format=html")
     assert html.count("<svg") == 2
+    assert "<tr class='changed'><td>block_dropped</td>" in html
+    assert "<th>expected</th>" not in html, "there is no expectation"
+    assert "<code>arm.ascxml</code>" in html
+    assert "`" not in re.sub("<svg.*?</svg>", "", html, flags=re.DOTALL)
     report = json.loads(called(capsys, *asked, "--format=json")[1])
     (value,) = report["properties"]
     assert (value["result"], value["difference"]) == ("changed", pytest.approx(-0.2))

@@ -98,7 +98,10 @@ def test_files(command: Command, tmp_path: Path) -> None:
         {"variable": "holding", "automaton": "Arm", "value": False},
     ]
     assert Path(names["mermaid"]).read_text(encoding="utf-8").startswith("sequenceDiagram\n")
-    assert "<table>" in Path(names["html"]).read_text(encoding="utf-8")
+    page = Path(names["html"]).read_text(encoding="utf-8")
+    assert f"<h1>{ROBOT.parent.name}/{ROBOT.name}</h1>" in page
+    assert ">plugins/pick_up.ascxml:11</small>" in page
+    assert ">receives the tick of its timer <code>step</code> in moving" in page
 
 
 def test_a_saved_run_is_repeated(command: Command, tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import html
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -18,7 +19,7 @@ from roaml.smc.story import Story, build_story
 from roaml.text import Location
 from roaml.views.cause import cause
 from roaml.views.folding import LeftOut, Repetition, folded, without_middle
-from roaml.views.story import as_html, as_mermaid, as_text, lines
+from roaml.views.story import MAX_COLUMNS, as_html, as_mermaid, as_text, lines
 from roaml.views.turns import turns
 
 HERE = Path(__file__).parent
@@ -49,13 +50,35 @@ def test_as_a_whole(bug: tuple[Story, PlaceOf], name: str, notation: Callable[[S
     assert notation(*bug) == (HERE / name).read_text(encoding="utf-8")
 
 
-def test_the_page_has_a_column_for_each_who(bug: tuple[Story, PlaceOf]) -> None:
+def rows_of(page: str) -> list[list[tuple[str, str]]]:
+    """The rows of the first table: the attributes and the texts of its cells, without those that are empty."""
+    table = page.partition("<tbody>")[2].partition("</tbody>")[0]
+    rows = [re.findall(r"<t[hd]([^>]*)>(.*?)</t[hd]>", row) for row in table.split("</tr>") if row]
+    return [[(attributes, re.sub("<[^>]*>", "", text)) for attributes, text in row if text] for row in rows]
+
+
+def test_a_page_with_many_automata_has_a_column_of_names(bug: tuple[Story, PlaceOf]) -> None:
     story, place_of = bug
     page = as_html([story], place_of, "why <now>")
     assert "why &lt;now&gt;" in page
-    for who in {line.who for line in lines(story, place_of) if line.who}:
-        assert page.count(f"<th scope='col'>{who}</th>") == 1
+    assert "<th scope='col'>who</th><th scope='col'>what</th></tr>" in page
+    shown = lines(story, place_of)
+    assert len({line.who for line in shown if line.who}) > MAX_COLUMNS
+    named = [[text for attributes, text in row if "who" in attributes] for row in rows_of(page)]
+    assert named == [[html.escape(line.who)] if line.who else [] for line in shown]
     assert "<ul></ul>" not in page  # screen readers announce it
+
+
+def test_a_page_with_few_automata_has_a_column_for_each() -> None:
+    subject = api.as_target(api.load(str(ROBOT.parent / "battery" / "main.xml")))
+    ready = api.checker(subject.model, ["all_delivered"])
+    story = build_story(Recorder(ready, ready.compiled_properties[0], 0, 10_000), DROPPED, subject.clock)
+    shown = lines(story, lambda _: "a`b")
+    names = {line.who for line in shown if line.who}
+    page = as_html([story], lambda _: "main.xml:1", "t", file_of=lambda _: "/all of it's path/main.xml:1")
+    assert 1 < len(names) <= MAX_COLUMNS
+    assert all(page.count(f"<th scope='col'>{name}</th>") == 1 for name in names)
+    assert "<small title='/all of it&#x27;s path/main.xml:1'>main.xml:1</small>" in page
 
 
 def test_forwarding_steps_are_omitted() -> None:
@@ -122,6 +145,11 @@ def test_repetitions_are_folded() -> None:
     story_lines = [(line.step, line.what, line.details) for line in lines(story, lambda _: "")]
     assert story_lines == [(1, "s", ("x: 0 → 1",)), (2, "… 7 more times …", ()), (9, "s", ("x: 8 → 9",))]
     assert "… 7 more times …" in as_mermaid(story, lambda _: "")
+    assert [row[-1][1] for row in rows_of(as_html([story], lambda _: "", "t"))] == [
+        "sx: 0 → 1",
+        "… 7 more times …",
+        "sx: 8 → 9",
+    ]
     assert as_text(story, lambda _: "a.jani").startswith("p holds: a s and x: 8 → 9")
 
 

@@ -21,6 +21,7 @@ from roaml.ide.diagrams.changes import PartChange
 from roaml.ide.diagrams.diagram import Change
 from roaml.record import Record
 from roaml.verification.number_text import number
+from roaml.views.marked import marked
 
 _SIGNS: Mapping[Change, str] = {Change.ADDED: "+", Change.REMOVED: "−", Change.CHANGED: "~", Change.SAME: " "}
 _MET: Mapping[Met, str] = {Met.YES: "met", Met.NO: "NOT MET", Met.OPEN: "open"}
@@ -121,18 +122,27 @@ def _diff_sign(change: PartChange) -> str:
 
 
 def _html(report: ComparisonReport) -> str:
-    head = "".join(f"<th>{text}</th>" for text in _HEAD)
-    rows = "".join(f"<tr>{''.join(f'<td>{escape(text)}</td>' for text in _row(value))}</tr>" for value in report.values)
+    # A column in which no row says anything is left out.
+    is_expected = any(value.expected_before or value.expected_now for value in report.values)
+    shown = len(_HEAD) if is_expected else len(_HEAD) - 1
+    head = "".join(f"<th>{text}</th>" for text in _HEAD[:shown])
+    rows = "".join(_html_row(value, shown) for value in report.values)
     parts = [f"<table><tr>{head}</tr>{rows}</table>"] if report.values else []
-    parts += [f"<p>{escape(note)}</p>" for note in _notes(report)]
+    parts += [f"<p>{marked(note)}</p>" for note in _notes(report)]
     pictures = {picture.title: picture for picture in report.structure.pictures}
     if report.structure.is_empty:
         parts.append("<p>the structure is the same</p>")
     for title, changes in _sections(report.structure):
-        listed = "".join(f"<li>{_SIGNS[change.change]} {escape(change.text)}</li>" for change in changes)
+        listed = "".join(f"<li>{_SIGNS[change.change]} {marked(change.text)}</li>" for change in changes)
         figure = f"<figure>{pictures[title].svg()}</figure>" if title in pictures else ""
         parts.append(f"<h2>{escape(title)}</h2>{figure}<ul>{listed}</ul>")
     return page(report.title, "\n".join(parts))
+
+
+def _html_row(value: ValueChange, shown: int) -> str:
+    """The first `shown` cells of a row. The row of a value that has changed is marked."""
+    cells = "".join(f"<td>{escape(text)}</td>" for text in _row(value)[:shown])
+    return f"<tr class='changed'>{cells}</tr>" if value.differs or value.is_newly_missed else f"<tr>{cells}</tr>"
 
 
 def _sections(structure: StructuralChanges) -> Iterator[tuple[str, tuple[PartChange, ...]]]:

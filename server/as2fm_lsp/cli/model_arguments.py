@@ -140,10 +140,10 @@ def report_of(diagnostics: Iterable[Diagnostic], source_of: Callable[[str], Sour
     return CheckReport(entries, count, color=takes_color(sys.stderr))
 
 
-def line_of(target: VerificationTarget, origin: Origin | None) -> str:
-    """File and line of an origin; "" if they are not known."""
+def line_of(target: VerificationTarget, origin: Origin | None, folder: str = os.curdir) -> str:
+    """File and line of an origin; "" if they are not known. The path is relative to `folder`."""
     place = target.place(origin)
-    return "" if place is None else f"{shown_path(place.path)}:{place.line}"
+    return "" if place is None else f"{shown_path(place.path, folder)}:{place.line}"
 
 
 def fault_text(target: VerificationTarget, fault: FaultError) -> str:

@@ -139,7 +139,8 @@ def _advance(options: argparse.Namespace, session: Session, target: Verification
 
 
 def _write(options: argparse.Namespace, outputs: OutputFiles, session: Session, target: VerificationTarget) -> None:
-    from roaml.views.story import as_html, as_mermaid, as_text  # noqa: PLC0415
+    from as2fm_lsp.cli.story_page import story_page  # noqa: PLC0415
+    from roaml.views.story import as_mermaid, as_text  # noqa: PLC0415
 
     def place_of(origin: Origin) -> str:
         return line_of(target, origin)
@@ -148,7 +149,7 @@ def _write(options: argparse.Namespace, outputs: OutputFiles, session: Session, 
     if options.save is not None:
         write_output(outputs, options.save, session.save().to_json())
     if options.html is not None:
-        write_output(outputs, options.html, as_html([story], place_of, shown_path(options.main)))
+        write_output(outputs, options.html, story_page([story], target, options.main))
     if options.mermaid is not None:
         write_output(outputs, options.mermaid, as_mermaid(story, place_of))
     if options.svg is not None:

@@ -8,8 +8,8 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from as2fm_lsp.cli.formats import Format
-from as2fm_lsp.cli.formats.report import shown_path
 from as2fm_lsp.cli.output import complain, print_text
+from as2fm_lsp.cli.story_page import story_page
 from as2fm_lsp.cli.verify_report import Answered
 from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, OutputFiles
 from as2fm_lsp.verification.node_names import explained
@@ -20,7 +20,7 @@ from roaml.verification.counterexample import MAX_SEARCHED_TRACES, random_trace,
 from roaml.verification.nearest import Nearest, nearest
 from roaml.verification.results import Computed, Exact, Result, Sampled, Traces
 from roaml.views.parting import parting_text
-from roaml.views.story import as_html, as_mermaid, waits_of
+from roaml.views.story import as_mermaid, waits_of
 from roaml.views.story import as_text as story_text
 
 if TYPE_CHECKING:
@@ -138,7 +138,7 @@ class Explanations:
 
         if file.endswith(".html"):
             near = {name: (near.parting, near.story) for name, near in self.partings.items()}
-            text = as_html(stories, self.place, shown_path(self.options.main), near)
+            text = story_page(stories, self.target, self.options.main, near)
         elif file.endswith(".mmd"):
             text = "\n".join(as_mermaid(story, self.place) for story in stories)
         else:

@@ -19,7 +19,7 @@ from roaml.figures.pdf import pdf_file
 from roaml.figures.scales import Scale, ScaleKind, number_label, scale_of
 from roaml.figures.svg import PLOT_STYLES, svg_file
 from roaml.figures.text import LINE_HEIGHT, MEDIUM, SMALL, text_width, wrap
-from roaml.figures.themes import AUTOMATIC
+from roaml.figures.themes import AUTOMATIC, THEMES
 from roaml.record import Record, replace
 
 WIDTH, HEIGHT = 560.0, 300.0
@@ -168,7 +168,14 @@ def page(title: str, body: str) -> str:
     )
 
 
-_PAGE_STYLE = """\
+_PAGE_STYLE = f"""\
+<style>
+:root {{ background: {THEMES["light"]["background"]}; }}
+@media (prefers-color-scheme: dark) {{ :root {{ background: {THEMES["dark"]["background"]}; }} }}
+</style>
+"""
+"""The background of pages is that of their pictures."""
+_PAGE_STYLE += """\
 <meta name="viewport" content="width=device-width"><meta name="color-scheme" content="light dark">
 <style>
 body { font-family: system-ui, sans-serif; margin: 2rem auto; max-width: 60rem; padding: 0 1rem; line-height: 1.45; }
@@ -176,6 +183,7 @@ figure { margin: 1rem 0; } svg { max-width: 100%; height: auto; }
 table { border-collapse: collapse; }
 th, td { padding: 0.2rem 0.8rem; text-align: left; border-bottom: 1px solid #8886; }
 td { font-variant-numeric: tabular-nums; }
+.changed td { font-weight: 700; background: #e5c45438; } .changed td:first-child { box-shadow: inset 4px 0 #bf8700; }
 </style>
 """
 

@@ -19,6 +19,7 @@ from roaml.smc.story import Story
 from roaml.views.cause import cause
 from roaml.views.event_words import message_phrases
 from roaml.views.folding import LeftOut, Repetition, Shown, folded, without_middle
+from roaml.views.marked import marked
 from roaml.views.observed import reads_observer
 from roaml.views.parting import Parting
 from roaml.views.trace_names import trace_name
@@ -28,6 +29,8 @@ from roaml.views.waiting import Wait, help_line, waits
 
 FIRST, LAST = 30, 50
 """The numbers of lines that are shown at the beginning and at the end. The lines between them are folded."""
+MAX_COLUMNS = 5
+"""The maximum number of automata that have a column each in a page. So many columns with a path fit 1200 pixels."""
 _NUMBER = regex(r"-?\d+(\.\d+)?")
 
 PlaceOf = Callable[[Origin], str]
@@ -220,48 +223,64 @@ def as_html(
     place_of: PlaceOf,
     title: str,
     near: Mapping[str, tuple[Parting, Story]] = MappingProxyType({}),
+    file_of: PlaceOf | None = None,
 ) -> str:
     """A self-contained HTML page. Each line of an explanation contains the place of its turn in the sources.
 
     Args:
         near: name of a property -> where its trace parts from one with the opposite verdict, and that trace.
+        file_of: the place that is shown while the mouse is over that of `place_of`, such as one with the whole path;
+            `None` to show nothing.
     """
-    parts = [_section(story, place_of, near.get(story.property)) for story in stories]
+    parts = [_section(story, place_of, file_of, near.get(story.property)) for story in stories]
     return _PAGE.format(title=html.escape(title), body="\n".join(parts))
 
 
-def _section(story: Story, place_of: PlaceOf, near: tuple[Parting, Story] | None) -> str:
-    table = lines(story, place_of)
-    lanes = list(dict.fromkeys(row.who for row in table if row.who))
-    head = "".join(f"<th scope='col'>{html.escape(name)}</th>" for name in lanes)
-    rows = []
-    for row in table:
-        cells = []
-        for name in lanes:
-            if name == row.who:
-                place = f"<small>{html.escape(row.place)}</small>"
-                details = "".join(f"<li>{html.escape(detail)}</li>" for detail in row.details)
-                effects = f"<ul>{details}</ul>" if details else ""
-                cells.append(f"<td class='at'>{html.escape(row.what)}{place}{effects}</td>")
-            else:
-                cells.append("<td></td>")
-        numbers = f"<th scope='row'>{row.step}</th><th scope='row'>{html.escape(row.time)}</th>"
-        rows.append(f"<tr>{numbers}{''.join(cells)}</tr>")
+def _section(story: Story, place_of: PlaceOf, file_of: PlaceOf | None, near: tuple[Parting, Story] | None) -> str:
     return (
-        f"<h2>{html.escape(story.property)}</h2><p>{html.escape(story.comment)}</p>"
-        f"<p><strong>{html.escape(cause(story, place_of, near))}</strong></p><p>{html.escape(heading(story))}</p>"
-        f"<table><thead><tr><th scope='col'>step</th><th scope='col'>time</th>{head}</tr></thead>"
-        f"<tbody>{''.join(rows)}</tbody></table>"
+        f"<h2>{html.escape(story.property)}</h2><p>{marked(story.comment)}</p>"
+        f"<p><strong>{marked(cause(story, place_of, near))}</strong></p><p>{marked(heading(story))}</p>"
+        f"{_table(lines(story, place_of), file_of)}"
         f"<details><summary>Mermaid</summary><pre>{html.escape(as_mermaid(story, place_of))}</pre></details>"
     )
+
+
+def _table(table: Sequence[StoryLine], file_of: PlaceOf | None) -> str:
+    """The lines with a column for each automaton or, if these are too many for a page, with a column of names."""
+    lanes = list(dict.fromkeys(row.who for row in table if row.who))
+    has_lanes = len(lanes) <= MAX_COLUMNS
+    columns = ["step", "time", *(lanes if has_lanes else ("who", "what"))]
+    widths = "<col class='step'><col class='time'>" + ("" if has_lanes else "<col class='who'>")
+    rows = []
+    for row in table:
+        cell = _cell(row, file_of)
+        if not row.who:  # it is about several automata
+            cells = f"<td colspan='{len(columns) - 2}'>{cell}</td>"
+        elif has_lanes:
+            cells = "".join(f"<td class='at'>{cell}</td>" if name == row.who else "<td></td>" for name in lanes)
+        else:
+            cells = f"<th scope='row' class='who'>{html.escape(row.who)}</th><td>{cell}</td>"
+        numbers = f"<th scope='row'>{row.step}</th><th scope='row'>{html.escape(row.time)}</th>"
+        rows.append(f"<tr>{numbers}{cells}</tr>")
+    head = "".join(f"<th scope='col'>{html.escape(name)}</th>" for name in columns)
+    return f"<table><colgroup>{widths}</colgroup><thead><tr>{head}</tr></thead><tbody>{''.join(rows)}</tbody></table>"
+
+
+def _cell(row: StoryLine, file_of: PlaceOf | None) -> str:
+    whole = "" if row.origin is None or file_of is None else f" title='{html.escape(file_of(row.origin))}'"
+    place = f"<small{whole}>{html.escape(row.place)}</small>" if row.place else ""
+    details = "".join(f"<li>{marked(detail)}</li>" for detail in row.details)
+    return marked(row.what) + place + (f"<ul>{details}</ul>" if details else "")
 
 
 _PAGE = """<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>{title}</title><style>
 body {{ font: 14px/1.4 system-ui, sans-serif; margin: 2em; color: #1f2328; background: #fff; }}
-table {{ border-collapse: collapse; }} thead th {{ position: sticky; top: 0; background: #fff; }}
+table {{ border-collapse: collapse; table-layout: fixed; width: 100%; overflow-wrap: anywhere; }}
+.step {{ width: 4.5em; }} .time {{ width: 7em; }} .who {{ width: 16em; }}
+thead th {{ position: sticky; top: 0; background: #fff; }}
 th, td {{ border-right: 1px dotted #bbb; padding: .25em .7em; text-align: left; vertical-align: top; }}
-tbody th {{ font-weight: normal; color: #666; white-space: nowrap; }}
+tbody th {{ font-weight: normal; color: #666; }} tbody .who {{ color: inherit; }}
 .at {{ background: #eef4ff; border-left: 3px solid #1f6feb; }} small {{ display: block; color: #666; }}
 ul {{ margin: .2em 0 0; padding-left: 1.2em; }} pre {{ background: #f6f8fa; padding: 1em; overflow: auto; }}
 @media (prefers-color-scheme: dark) {{ body, thead th {{ background: #0d1117; color: #e6edf3; }}

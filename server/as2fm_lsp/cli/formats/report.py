@@ -114,10 +114,10 @@ def place_of(source: SourceFile, span: Span) -> LineRange:
     return LineRange(start.line + 1, start.column + 1, end.line + 1, end.column + 1)
 
 
-def shown_path(path: str) -> str:
-    """`path` relative to the working directory; unchanged if it is on another drive or more than two folders above."""
+def shown_path(path: str, folder: str = os.curdir) -> str:
+    """`path` relative to a folder; unchanged if it is on another drive or more than two folders above."""
     try:
-        relative = os.path.relpath(path)
+        relative = os.path.relpath(path, folder)
     except ValueError:  # on another drive
         return path
     return path if relative.count(os.pardir + os.sep) > 2 else relative
