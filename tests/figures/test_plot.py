@@ -10,7 +10,7 @@ import xml.etree.ElementTree as ET
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roaml.figures.drawing import Area, Polyline, TextItem
+from roaml.figures.drawing import Area, Polyline, Shape, TextItem
 from roaml.figures.plot import (
     HeatMap,
     LinePlot,
@@ -100,6 +100,33 @@ def test_the_name_of_a_guide_does_not_cover_that_of_the_axis() -> None:
         texts = [item for group in drawing.groups for item in group.items if isinstance(item, TextItem)]
         axis = next(item for item in texts if item.text == "probability")
         assert name.y - axis.y >= SMALL
+
+
+def test_a_line_under_equal_ones_is_wider_than_these() -> None:
+    points = ((0, 0.5), (1, 0.6), (2, 0.9))
+    lines = (line(*points), line((0, 0.5), (1, 0.7), (2, 0.9)), line(*points), line(*points))
+    drawing = drawing_of(LinePlot("t", PlotAxis("x"), PlotAxis("y"), lines))
+    assert [group.kind for group in drawing.groups if group.role == "series"] == ["covered-2", "", "covered-1", ""]
+    marks = [item for group in drawing.groups if group.role == "point" for item in group.items]
+    first, third = marks[0], marks[6]
+    assert isinstance(first, Shape)
+    assert isinstance(third, Area)
+    assert first.box.width > max(p.x for p in third.points) - min(p.x for p in third.points)
+
+
+def test_six_lines_have_six_marks() -> None:
+    lines = tuple(line((0, number), (1, number + 1)) for number in range(6))
+    drawing = drawing_of(LinePlot("t", PlotAxis("x"), PlotAxis("y"), lines))
+    forms = set()
+    for group in drawing.groups:
+        if group.role == "legend":
+            mark = group.items[1]
+            if isinstance(mark, Shape):
+                forms.add(str(mark.outline))
+            elif isinstance(mark, Area):
+                first = mark.points[0]
+                forms.add(str([(round(p.x - first.x, 3), round(p.y - first.y, 3)) for p in mark.points]))
+    assert len(forms) == 6
 
 
 def test_points_lie_inside_the_drawing() -> None:

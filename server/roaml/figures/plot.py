@@ -29,7 +29,17 @@ MAX_MARKS = 40
 HEAT_LEVELS = 10
 MAX_DESCRIBED = 12
 """The maximum number of points of a line that its description lists; they are chosen at equal distances."""
+MAX_COVERS = 3
+"""The maximum number of equal lines over a line for which the line becomes wider."""
 _MARK = 4.0
+_Corners: TypeAlias = tuple[tuple[float, float], ...]
+_CROSS: _Corners = tuple(
+    (x * 1.4, y * 1.4)
+    for x, y in (
+        *((-0.3, -1.0), (0.3, -1.0), (0.3, -0.3), (1.0, -0.3), (1.0, 0.3), (0.3, 0.3)),
+        *((0.3, 1.0), (-0.3, 1.0), (-0.3, 0.3), (-1.0, 0.3), (-1.0, -0.3), (-0.3, -0.3)),
+    )
+)
 _Placed: TypeAlias = Callable[[float, float], Point]
 _TONES = (Tone.SERIES_1, Tone.SERIES_2, Tone.SERIES_3, Tone.SERIES_4, Tone.SERIES_5, Tone.SERIES_6)
 
@@ -261,11 +271,12 @@ def _lines(plot: LinePlot) -> Drawing:
             )
     clipped = [(series, _clipped(series, x, y)) for series in plot.series]
     for number, (series, points) in enumerate(clipped):
+        covers = _covers(points, [later for _, later in clipped[number + 1 :]], placed)
         tone = _TONES[number % len(_TONES)]
         bands = tuple(_bands(series, points, placed))
         if bands:
             groups.append(Group("bands", tone, bands))
-        groups += _curve(plot, series, number, points, placed)
+        groups += _curve(plot, series, number, points, placed, covers)
     foot, bottom = _foot(plot.notes, left, area.bottom + 44)
     return Drawing(Extent(area.right + 12, bottom), (*groups, *foot), {})
 
@@ -306,21 +317,38 @@ def _bands(series: Series, points: Sequence[PlotPoint], placed: _Placed) -> Iter
                 yield Polyline(ends, role="whisker")
 
 
+def _covers(points: Sequence[PlotPoint], later: Sequence[Sequence[PlotPoint]], placed: _Placed) -> int:
+    """How many of the lines that are drawn later cover a whole line; at most `MAX_COVERS`."""
+    heights = _heights(points, placed)
+    covering = 0
+    for line in later if heights else ():
+        others = _heights(line, placed)
+        covering += all(abs(others.get(x, math.inf) - height) < 1 for x, height in heights.items())
+    return min(covering, MAX_COVERS)
+
+
+def _heights(points: Sequence[PlotPoint], placed: _Placed) -> dict[float, float]:
+    """The numbers on the horizontal axis -> the vertical positions of the points that have a value, in pixels."""
+    return {p.x: placed(p.x, p.y).y for p in points if not math.isnan(p.y)}
+
+
 def _curve(
-    plot: LinePlot, series: Series, number: int, points: Sequence[PlotPoint], placed: _Placed
+    plot: LinePlot, series: Series, number: int, points: Sequence[PlotPoint], placed: _Placed, covers: int
 ) -> Iterator[Group]:
+    """A line with its marks; they are wider if others cover it, so that they are seen below these."""
     tone = _TONES[number % len(_TONES)]
     if series.has_line:
         for run in _runs(points, lambda p: not math.isnan(p.y)):
             line = _path([(p.x, p.y) for p in run], is_stepped=series.is_stepped)
             if len(line) > 1:
                 path = Polyline(tuple(placed(*p) for p in line), role="curve", is_round=False)
-                yield Group("series", tone, (path,), kind="dashed" if series.is_dashed else "")
+                kinds = (*(["dashed"] if series.is_dashed else []), *([f"covered-{covers}"] if covers else []))
+                yield Group("series", tone, (path,), kind=" ".join(kinds))
     if series.has_marks and len(points) <= MAX_MARKS:
         for point in points:
             if not math.isnan(point.y):
                 hint = point.note or f"{series.name}: {_point_text(plot, point)}"
-                mark = _mark(number, placed(point.x, point.y))
+                mark = _mark(number, placed(point.x, point.y), 1 + 0.5 * covers)
                 yield Group("point", tone, (mark,), hint=hint, key=point.key)
 
 
@@ -346,23 +374,25 @@ def _runs(points: Sequence[PlotPoint], has_value: Callable[[PlotPoint], bool]) -
         yield run
 
 
-def _mark(number: int, at: Point) -> Item:
+def _mark(number: int, at: Point, scale: float = 1.0) -> Item:
     """The mark of a point: its form names the line without colors."""
-    size = 2 * _MARK
-    box = Box(at.x - _MARK, at.y - _MARK, size, size)
-    match number % 4:
+    half = _MARK * scale
+    box = Box(at.x - half, at.y - half, 2 * half, 2 * half)
+    corners: _Corners
+    match number % len(_TONES):
         case 0:
             return Shape(box, Outline.PILL, "mark")
         case 1:
             return Shape(box, Outline.RECTANGLE, "mark")
         case 2:
-            return _polygon(at, ((0.0, -1.4), (1.3, 0.9), (-1.3, 0.9)))
+            corners = ((0.0, -1.4), (1.3, 0.9), (-1.3, 0.9))
+        case 3:
+            corners = ((0.0, -1.4), (1.4, 0.0), (0.0, 1.4), (-1.4, 0.0))
+        case 4:
+            corners = ((0.0, 1.4), (1.3, -0.9), (-1.3, -0.9))
         case _:
-            return _polygon(at, ((0.0, -1.4), (1.4, 0.0), (0.0, 1.4), (-1.4, 0.0)))
-
-
-def _polygon(at: Point, corners: Sequence[tuple[float, float]]) -> Area:
-    return Area(tuple(Point(at.x + _MARK * x, at.y + _MARK * y) for x, y in corners), "mark")
+            corners = _CROSS
+    return Area(tuple(Point(at.x + half * x, at.y + half * y) for x, y in corners), "mark")
 
 
 def _axes(plot: LinePlot, area: Box, x: Scale, y: Scale) -> Iterator[Item]:
