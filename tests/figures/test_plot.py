@@ -114,6 +114,12 @@ def test_a_line_under_equal_ones_is_wider_than_these() -> None:
     assert first.box.width > max(p.x for p in third.points) - min(p.x for p in third.points)
 
 
+def test_a_line_that_the_title_names_has_no_legend() -> None:
+    for title, has_legend in (("line by x", False), ("p by x", True)):
+        plot = LinePlot(title, PlotAxis("x"), PlotAxis("y"), (line((0, 0.5), (1, 0.6)),))
+        assert any(group.role == "legend" for group in drawing_of(plot).groups) == has_legend
+
+
 def test_six_lines_have_six_marks() -> None:
     lines = tuple(line((0, number), (1, number + 1)) for number in range(6))
     drawing = drawing_of(LinePlot("t", PlotAxis("x"), PlotAxis("y"), lines))

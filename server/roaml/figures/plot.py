@@ -247,7 +247,8 @@ def _lines(plot: LinePlot) -> Drawing:
     x, y = _scales(plot)
     labels = [number_label(tick) for tick in y.ticks] if not plot.y.words else list(plot.y.words)
     left = max(text_width(label, SMALL) for label in labels) + 10
-    head, top = _head(plot.title, plot.series, left, plot.y.name)
+    is_named = len(plot.series) == 1 and plot.series[0].name in plot.title  # a legend would repeat the title
+    head, top = _head(plot.title, () if is_named else plot.series, left, plot.y.name)
     area = Box(left, top, WIDTH, HEIGHT)
 
     def placed(across: float, up: float) -> Point:
