@@ -14,7 +14,7 @@ from roaml.model.syntax import Expression
 from roaml.model.values.evaluate import place_of
 from roaml.rules.rule import MachineContext, Rule, replacements
 from roaml.rules.support.alternatives import handlers_by_trigger
-from roaml.rules.support.words import words_of
+from roaml.rules.support.words import NEGATIVE, words_of
 from roaml.text import Span, TextEdit
 
 SUCCESS, FAILURE, RUNNING = "SUCCESS", "FAILURE", "RUNNING"
@@ -37,10 +37,19 @@ _OK = frozenset(("ok", "success", "succeeded", "successful"))
 _DONE = frozenset(("complete", "completed", "done", "finished"))
 """Words in the names of received fields that are false as long as nothing has succeeded."""
 
+_ASKING = (["are"], ["has"], ["is"], ["needs"])
+"""First words in the names of conditions, which may ask for the opposite of a success, as in `IsBatteryLow`."""
+
+_POSITIVE = _OK | _DONE | {"available", "free", "ready", "reachable", "reached", "valid"}
+"""Words in the names of conditions that ask for a success."""
+
 _RECEIVED = ("_res.", "_msg.", "_feedback.", "_wrapped_result.", "_event.data.")
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
+    name = words_of(context.machine.name.value) if context.machine.name is not None else []
+    if not NEGATIVE.isdisjoint(name) or (name[:1] in _ASKING and _POSITIVE.isdisjoint(name)):
+        return
     for chart in context.machine.charts:
         yield from _states(chart)
         outcomes = {state.id.value: outcome for state in chart.states if state.id and (outcome := _outcome(state))}

@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.expr.infer import constant
-from roaml.expr.operators import Operator
-from roaml.expr.tree import Binary, Expr
+from roaml.expr.operators import Operator, UnaryOperator
+from roaml.expr.tree import Binary, Boolean, Expr, Unary
 from roaml.model.values.analyse import ChartValues
 from roaml.model.values.evaluate import place_of
 from roaml.rules.rule import MachineContext, Rule, replacements
@@ -34,11 +34,12 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 class _Comparison(NamedTuple):
-    """A place and the integer with which an alternative compares it."""
+    """A place and the integer with which an alternative compares it, and all parts of the alternative."""
 
     number: int
     literal: Expr
     place: Expr
+    parts: Sequence[Expr]
 
 
 def _compared(group: Sequence[Expr]) -> Mapping[str, Sequence[_Comparison]]:
@@ -48,12 +49,12 @@ def _compared(group: Sequence[Expr]) -> Mapping[str, Sequence[_Comparison]]:
     parts = [joined(tree, Operator.AND) for tree in group]
     if len({len(part) for part in parts}) != 1 or len(parts[0]) < 2:
         return compared  # if nothing else is tested, shadowed-branch and shadowed-transition report the second one
-    for part in (part for alternative in parts for part in alternative):
+    for in_one, part in ((alternative, part) for alternative in parts for part in alternative):
         if isinstance(part, Binary) and part.operator is Operator.EQUAL:
             for tested, literal in ((part.left, part.right), (part.right, part.left)):
                 place, number = place_of(tested), constant(literal)
                 if place is not None and isinstance(number, int):
-                    compared.setdefault(place, []).append(_Comparison(number, literal, tested))
+                    compared.setdefault(place, []).append(_Comparison(number, literal, tested, in_one))
     return compared
 
 
@@ -62,6 +63,9 @@ def _repeated(place: str, compared: Sequence[_Comparison], values: ChartValues |
     twice = [number for number, count in Counter(numbers).items() if count > 1]
     if len(twice) != 1 or len(set(numbers)) != len(numbers) - 1:
         return None
+    one, other = (comparison for comparison in compared if comparison.number == twice[0])
+    if _are_cases(one.parts, other.parts):
+        return None
     for first in (0, 1):
         missing = set(range(first, first + len(numbers))) - set(numbers)
         if len(missing) == 1 and set(numbers) <= set(range(first, first + len(numbers))):
@@ -69,6 +73,26 @@ def _repeated(place: str, compared: Sequence[_Comparison], values: ChartValues |
             if min(numbers) < number < max(numbers) or _is_known(compared, number, values):
                 return _finding(place, compared, twice[0], number)
     return None
+
+
+def _are_cases(parts: Sequence[Expr], others: Sequence[Expr]) -> bool:
+    """Whether two alternatives exclude each other, because they compare a place with different numbers, or one needs
+    the opposite of what the other needs: they are two cases of the repeated number."""
+    equal, needed = dict(map(_needed, parts)), dict(map(_needed, others))
+    return any(place is not None and needed.get(place, value) != value for place, value in equal.items())
+
+
+def _needed(part: Expr) -> tuple[str | None, object]:
+    """The place of which a part of a condition needs a value, and this value."""
+    if isinstance(part, Unary) and part.operator is UnaryOperator.NOT:
+        return place_of(part.operand), False
+    if isinstance(part, Binary) and part.operator is Operator.EQUAL:
+        for tested, literal in ((part.left, part.right), (part.right, part.left)):
+            place = place_of(tested)
+            value = literal.value if isinstance(literal, Boolean) else constant(literal)
+            if place is not None and value is not None:
+                return place, value
+    return place_of(part), True
 
 
 def _is_known(compared: Sequence[_Comparison], number: int, values: ChartValues | None) -> bool:

@@ -468,6 +468,8 @@ def _compared_with_sent(
         return
     if known.value is not None:
         return  # machines that represent the environment often send one value only
+    if node.operator is Operator.EQUAL and isinstance(constant, Name) and constant.name.isupper():
+        return  # nor do they send all values of an enumeration, such as errors
     sides = (_reached(known), number) if field is node.left else (number, _reached(known))
     result = compared(node.operator, *sides)
     what = f"the values that machines send are {described(known)}"

@@ -27,6 +27,7 @@ from roaml.model.values.evaluate import compared
 from roaml.model.values.global_values import GlobalValues
 from roaml.record import Record
 from roaml.rules.rule import PropertiesContext
+from roaml.rules.support.words import words_of
 from roaml.text import Span
 
 _OPERATORS = {
@@ -37,6 +38,10 @@ _OPERATORS = {
     BinaryOperator.GREATER: operators.Operator.GREATER,
     BinaryOperator.GREATER_EQUAL: operators.Operator.GREATER_EQUAL,
 }
+
+
+_NEVER = frozenset(("avoid", "avoids", "cannot", "never", "no", "not", "without"))
+"""Words in the names of properties that state that something does not occur, as `Pmax` of `F` being 0."""
 
 
 class ConstantComparison(Record, frozen=True):
@@ -50,7 +55,8 @@ def constant_comparisons(context: PropertiesContext) -> Iterator[ConstantCompari
     """The comparisons of a topic's integer with a number that have the same result for all values of its type; and, in
     what has to occur at some time, those of equality that hold for none of the values that machines send."""
     for property_ in context.properties:
-        expected = {id(node) for node in _expected(property_.expression)}
+        is_never = not _NEVER.isdisjoint(words_of(property_.name))
+        expected = () if is_never else {id(node) for node in _expected(property_.expression)}
         ranges = set(_ranges(property_.expression))
         for node in walk(property_.expression):
             sides = _sides(context, node)

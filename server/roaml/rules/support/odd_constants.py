@@ -5,8 +5,13 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 
-from roaml.model.machine import Chart
+from roaml.expr.infer import constant as number_of
+from roaml.expr.tree import Binary, Name, walk
+from roaml.model.machine import Assign, Chart
 from roaml.model.message_constants import named_constants
+from roaml.model.syntax import Expression
+from roaml.model.value_types import ValueUse
+from roaml.model.values.evaluate import place_of
 from roaml.rules.rule import MachineContext
 from roaml.rules.support.words import words_of
 
@@ -28,7 +33,38 @@ def odd_constants(context: MachineContext, chart: Chart) -> dict[str, tuple[int,
         if path != context.source.path and outline.named
     }
     expected = {name: _expected(name, others.values()) for name in own if _is_series(name, own)}
-    return {name: (own[name], meant) for name, meant in expected.items() if meant not in (None, own[name])}
+    odd = {name: (own[name], meant) for name, meant in expected.items() if meant not in (None, own[name])}
+    return {name: numbers for name, numbers in odd.items() if not _is_internal(context, chart, name, own)}
+
+
+def _is_internal(context: MachineContext, chart: Chart, constant: str, constants: Collection[str]) -> bool:
+    """Whether a constant is only assigned to variables and compared with them that get nothing but constants and are
+    not sent: other machines see nothing of its value."""
+    own = [
+        (value, value.value.tree)
+        for value in context.typed.values
+        if value.place.chart is chart and isinstance(value.value, Expression)
+    ]
+    known = set(constants)
+    shown = {tree.name for value, tree in own if isinstance(tree, Name) and value.use in _SHOWN}
+    for statement in chart.statements:
+        if isinstance(statement, Assign) and statement.location is not None and isinstance(statement.value, Expression):
+            name, tree = place_of(statement.location.tree), statement.value.tree
+            is_constant = (isinstance(tree, Name) and tree.name in known) or number_of(tree) is not None
+            if name is not None and not is_constant:
+                shown.add(name)
+    for value, tree in own:
+        if isinstance(tree, Name) and tree.name == constant and value.use in _SHOWN:
+            return False
+        for node in walk(tree):
+            sides = [node.left, node.right] if isinstance(node, Binary) else []
+            names = [side.name if isinstance(side, Name) else None for side in sides]
+            if constant in names and (None in names or not shown.isdisjoint(names)):
+                return False
+    return True
+
+
+_SHOWN = (ValueUse.PARAMETER, ValueUse.FIELD, ValueUse.OUTPUT)
 
 
 def _is_series(name: str, names: Collection[str]) -> bool:

@@ -10,6 +10,37 @@ _WORD = regex(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 LIMITS = frozenset(("max", "min", "maximum", "minimum", "limit", "threshold"))
 """A word in the name of a constant with which a variable is compared."""
 
+NEGATIVE = frozenset(
+    (
+        "abort",
+        "aborted",
+        "aborts",
+        "broken",
+        "error",
+        "fail",
+        "failed",
+        "failing",
+        "fails",
+        "failure",
+        "fault",
+        "faulty",
+        "jammed",
+        "never",
+        "no",
+        "not",
+        "reject",
+        "rejects",
+        "stuck",
+        "unavailable",
+        "unreachable",
+        "unsuccessful",
+    )
+)
+"""Words in the name of a machine that fails intentionally, or succeeds if something else has failed."""
+
+DUMMY = frozenset(("dummy", "fake", "mock", "stub", "test"))
+"""Words in the name of a machine that stands for another one, and may do only a part of what that one does."""
+
 
 def words_of(name: str) -> list[str]:
     """The words of a name such as `battery_level` or `BatteryLevel`, in lower case."""

@@ -32,6 +32,20 @@ _UNITS = {
 }
 """The last word in the name of a variable -> the time that it counts, in ns."""
 
+_OTHER = frozenset(
+    (
+        *("backoff", "delay", "duration", "interval", "limit", "max", "min", "period", "timeout"),  # settings
+        *("cm", "deg", "km", "m", "mm", "per", "rad", "rate", "speed", "velocity"),  # of speeds, such as `mm_s`
+        *("scaled", "sim", "simulated", "virtual"),
+    )
+)
+"""Words in the names of variables that do not count the time of a timer, although they end in a unit of time."""
+
+
+def _unit(words: Sequence[str]) -> int | None:
+    """The time in ns that a variable with these words in its name counts."""
+    return _UNITS.get(words[-1]) if words and _OTHER.isdisjoint(words) else None
+
 
 def check(context: MachineContext) -> Iterator[Finding]:
     if not context.automata:
@@ -42,7 +56,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         steps: dict[str, list[_Step]] = {}
         for name, statement, amount in _steps(chart, fixed):
             place = place_of(statement.location.tree) if statement.location is not None else None
-            unit = _UNITS.get(words_of(place)[-1]) if place is not None and words_of(place) else None
+            unit = _unit(words_of(place)) if place is not None else None
             if name in rates and place is not None and unit is not None and isinstance(statement.value, Expression):
                 steps.setdefault(name, []).append(_Step(place, statement.value.span, amount * unit))
         for name, of_timer in steps.items():

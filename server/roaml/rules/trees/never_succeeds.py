@@ -18,7 +18,7 @@ from roaml.rules.rule import MachineContext, Rule, TreeContext, replacements
 from roaml.rules.support.answers import plugins
 from roaml.rules.support.forest import trees_of
 from roaml.rules.support.settings import integer_of
-from roaml.rules.support.words import words_of
+from roaml.rules.support.words import DUMMY, NEGATIVE, words_of
 
 _FAILING = ("AlwaysFailure", "ForceFailure")
 _SEQUENCES = ("Sequence", "AsyncSequence", "SequenceWithMemory")
@@ -43,15 +43,11 @@ def check(context: TreeContext) -> Iterator[Finding]:
             yield from _of_tree(forest, tree.roots[0])
 
 
-_FAILED = frozenset(("error", "fail", "failing", "fails", "failure", "never", "reject"))
-"""Words in the name of a machine that fails intentionally."""
-
-
 def check_machine(context: MachineContext) -> Iterator[Finding]:
     """Report a plugin of the tree that returns FAILURE in one place and SUCCESS in none, and a server that ends the
     goals of an action in one place, as aborted."""
     words = words_of(context.machine.name.value) if context.machine.name is not None else []
-    if context.system is None or not context.automata or context.gaps or not _FAILED.isdisjoint(words):
+    if context.system is None or not context.automata or context.gaps or not (NEGATIVE | DUMMY).isdisjoint(words):
         return
     statements = [statement for chart in context.machine.charts for statement in chart.statements]
     # Beside an alternative, the answer of the other one may be missing, which other rules report.

@@ -12,6 +12,7 @@ from roaml.edit.elements import first_in
 from roaml.expr.infer import constant
 from roaml.expr.operators import Operator
 from roaml.expr.tree import Binary, Boolean, Expr, Name
+from roaml.model.behavior.knowledge import variables_in
 from roaml.model.machine import Assign, Chart, Data, Handler, If, Machine, State, Statement, bodies, statements
 from roaml.model.syntax import Expression
 from roaml.model.triggers import trigger
@@ -81,7 +82,7 @@ def _counters(chart: Chart, assigned: Mapping[str, Sequence[_Assigned]]) -> Iter
                     "enters the state again; assign the initial value"
                 )
                 related = [Related(step.statement.element.name_span, "counted here") for step in steps]
-                yield RULE.at(cond.span, message, related=related, severity=_severity(name, _POSITIONS))
+                yield RULE.at(cond.span, message, related=related, severity=_severity(name, _POSITIONS | _ONCE))
 
 
 def _loops(machine: Machine, chart: Chart, assigned: Mapping[str, Sequence[_Assigned]]) -> Iterator[Finding]:
@@ -104,7 +105,7 @@ def _loops(machine: Machine, chart: Chart, assigned: Mapping[str, Sequence[_Assi
                 "leaves the state at once; assign the initial value"
             )
             related = [Related(step.statement.element.name_span, "counted here") for step in steps]
-            yield RULE.at(limit.span, message, related=related, severity=_severity(name, _POSITIONS))
+            yield RULE.at(limit.span, message, related=related, severity=_severity(name, _POSITIONS | _ONCE))
 
 
 def _counting(machine: Machine, chart: Chart, state: State) -> Iterator[tuple[Handler, str, Expression]]:
@@ -191,22 +192,30 @@ def _next(state: State) -> list[str]:
 _RECORDS = frozenset(
     [
         "any",
+        "calibrated",
+        "configured",
+        "emergency",
         "ever",
         "failed",
         "had",
         "happened",
         "has",
+        "homed",
         "initialized",
         "known",
+        "latched",
+        "localized",
         "received",
         "seen",
+        "tripped",
         "violated",
         "visited",
         "was",
     ]
 )
 _POSITIONS = frozenset(["altitude", "angle", "floor", "height", "pos", "position", "x", "y", "z"])
-"""Words in the names of flags that record what has happened, and of what stays where it is."""
+_ONCE = frozenset(["boot", "startup", "total", "warmup"])
+"""Words in the names of flags that record what has happened, of what stays where it is, and of what is counted once."""
 
 
 def _severity(name: str, words: frozenset[str]) -> Severity | None:
@@ -215,7 +224,8 @@ def _severity(name: str, words: frozenset[str]) -> Severity | None:
 
 def _flags(machine: Machine, chart: Chart, assigned: Mapping[str, Sequence[_Assigned]]) -> Iterator[Finding]:
     """Report a flag that several handlers set and none clears. One that is set in one place, or by one event in several
-    states, may record that something has happened."""
+    states, may record that something has happened; one that each of several events sets if its data have certain
+    values may stop the machine for good."""
     for data in chart.data:
         if data.id is None or not isinstance(data.value, Expression) or not isinstance(data.value.tree, Boolean):
             continue
@@ -225,8 +235,20 @@ def _flags(machine: Machine, chart: Chart, assigned: Mapping[str, Sequence[_Assi
         events = {trigger(machine, v.handler) if v.handler is not None else None for v in values}
         states = {id(v.state) for v in values}
         is_known = len(events) == 1 and None not in events and len(states) == len(places)
-        if len(places) > 1 and not is_known and constants == {not data.value.tree.value}:
+        is_latch = len(events) == len(values) and all(_is_conditional(value) for value in values)
+        if len(places) > 1 and not is_known and not is_latch and constants == {not data.value.tree.value}:
             yield _flag(data, data.id.value, not data.value.tree.value, values)
+
+
+def _is_conditional(assigned: _Assigned) -> bool:
+    """Whether what arrives must have certain values to set a variable."""
+    if assigned.handler is None:
+        return False
+    body = [inner for target in assigned.handler.targets for inner in statements(target.body)]
+    branches = [branch for inner in body if isinstance(inner, If) for branch in inner.branches]
+    inside = [branch.cond for branch in branches if assigned.statement in statements(branch.body)]
+    conditions = [cond.tree for cond in (assigned.handler.cond, *inside) if cond is not None and not cond.broken]
+    return any(name.startswith("_") for name in variables_in(conditions))
 
 
 def _latches(context: MachineContext, chart: Chart, assigned: Mapping[str, Sequence[_Assigned]]) -> Iterator[Finding]:

@@ -6,8 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
+from roaml.expr.infer import constant
 from roaml.expr.operators import Operator
-from roaml.expr.tree import Binary, Boolean, Expr, Name
+from roaml.expr.tree import Binary, Boolean, Call, Conditional, Expr, Name
 from roaml.model.behavior.knowledge import variables_in
 from roaml.model.machine import Assign, Chart, Handler, If, RosSend, Send, SetOutput, Statement, bodies, statements
 from roaml.model.syntax import Expression
@@ -25,7 +26,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         data = _data_of_flags(chart)
         for cond, body in guarded:
             flags = _disjunction(cond)
-            read = _read(body)
+            read = _read(body, frozenset(flag.name for flag in flags)) if flags else frozenset()
             unset = [name for flag in flags for name in sorted(data.get(flag.name, frozenset()) & read)[:1]]
             if len(flags) > 1 and len(unset) == len(flags):
                 tree = cond.tree
@@ -78,7 +79,11 @@ def _data_of_flags(chart: Chart) -> Mapping[str, frozenset[str]]:
                 value = statement.value
                 handlers.setdefault(name, []).append(handler)
                 values.setdefault(name, []).append(value.tree if isinstance(value, Expression) else None)
-    received = {name for name, of_one in values.items() if all(v is not None and _is_received(v) for v in of_one)}
+    received = {
+        name
+        for name, of_one in values.items()
+        if all(v is not None and _is_received(v) for v in of_one) and not _is_marked(begin.get(name))
+    }
     data: dict[str, frozenset[str]] = {}
     for name, of_one in values.items():
         start = begin.get(name)
@@ -88,20 +93,50 @@ def _data_of_flags(chart: Chart) -> Mapping[str, frozenset[str]]:
     return data
 
 
+def _is_marked(value: object) -> bool:
+    """Whether an initial value is negative: it probably says that there is no value yet."""
+    number = constant(value.tree) if isinstance(value, Expression) and not value.broken else None
+    return number is not None and number < 0
+
+
 def _is_received(value: Expr) -> bool:
     return any(name.startswith("_") for name in variables_in((value,)))
 
 
-def _read(body: Sequence[Statement]) -> frozenset[str]:
-    """The variables that a body assigns, sends or writes to the blackboard."""
+def _read(body: Sequence[Statement], flags: frozenset[str]) -> frozenset[str]:
+    """The variables that a body assigns, sends or writes to the blackboard, without those of which the flags or the
+    values decide which one is used."""
+    tested = {
+        inner
+        for statement in statements(tuple(body))
+        if isinstance(statement, If)
+        if not flags.isdisjoint(variables_in(b.cond.tree for b in statement.branches if b.cond is not None))
+        for inner in statements((statement,))
+    }
     values: list[object] = []
     for statement in statements(tuple(body)):
         match statement:
+            case _ if statement in tested:
+                pass
             case Assign(value=value) | SetOutput(value=value):
                 values.append(value)
             case Send(params=params) | RosSend(fields=params):
                 values += [param.value for param in params]
-    return variables_in(value.tree for value in values if isinstance(value, Expression) and not value.broken)
+    trees = [value.tree for value in values if isinstance(value, Expression) and not value.broken]
+    return variables_in(tree for tree in trees if not _is_chosen(tree, flags))
+
+
+def _is_chosen(tree: Expr, flags: frozenset[str]) -> bool:
+    """Whether flags or the values decide which one of several values is used: the others may have their initial
+    values."""
+    match tree:
+        case Conditional(test=test):
+            return not flags.isdisjoint(variables_in((test,)))
+        case Binary(operator=operator):
+            return operator is Operator.OR
+        case Call(function=function):
+            return place_of(function) == "Math.max"
+    return False
 
 
 RULE = Rule(
