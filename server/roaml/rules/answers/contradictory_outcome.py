@@ -40,15 +40,17 @@ _DONE = frozenset(("complete", "completed", "done", "finished"))
 _ASKING = (["are"], ["has"], ["is"], ["needs"])
 """First words in the names of conditions, which may ask for the opposite of a success, as in `IsBatteryLow`."""
 
-_POSITIVE = _OK | _DONE | {"available", "free", "ready", "reachable", "reached", "valid"}
-"""Words in the names of conditions that ask for a success."""
+_LACKING = frozenset(
+    ("blocked", "critical", "empty", "expired", "late", "lost", "low", "missing", "occupied", "unknown")
+)
+"""Words in the names of conditions that ask for the opposite of a success."""
 
 _RECEIVED = ("_res.", "_msg.", "_feedback.", "_wrapped_result.", "_event.data.")
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
     name = words_of(context.machine.name.value) if context.machine.name is not None else []
-    if not NEGATIVE.isdisjoint(name) or (name[:1] in _ASKING and _POSITIVE.isdisjoint(name)):
+    if not NEGATIVE.isdisjoint(name) or (name[:1] in _ASKING and not _LACKING.isdisjoint(name)):
         return
     for chart in context.machine.charts:
         yield from _states(chart)
