@@ -163,6 +163,8 @@ def test_a_choice_is_a_junction_with_probabilities(tmp_path: Path) -> None:
     picture, drawing = machine(tmp_path)
     choices = [index for index, node in enumerate(picture.nodes) if node.kind.value == "choice"]
     assert [index in drawing.nodes for index in choices] == [False, True]
+    drawn = next(group for group in drawing.groups if group.node == choices[1])
+    assert [type(item).__name__ for item in drawn.items] == ["Shape", "Glyph"]
     labels = [texts(group) for group in drawing.groups if group.role == "label"]
     assert sorted(label[0] for label in labels if label[0] in ("0.25", "otherwise")) == [
         "0.25",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Symbols for the kinds of tree nodes, as strokes in the unit square, so that no font is needed."""
+"""Symbols for kinds of tree nodes and for random choices, as strokes in the unit square, so that no font is needed."""
 
 from __future__ import annotations
 
@@ -43,6 +43,9 @@ _SUBTREE = _strokes(
     [(0.24, 0.82), (0.24, 0.56), (0.76, 0.56), (0.76, 0.82)],
 )  # fmt: skip
 
+_DOTS = [(0.2, 0.2), (0.8, 0.2), (0.5, 0.5), (0.2, 0.8), (0.8, 0.8)]
+_DIE = _strokes(*([(x - 0.05, y), (x + 0.05, y)] for x, y in _DOTS))
+
 _KINDS: Mapping[DiagramNodeKind, _Strokes] = {
     DiagramNodeKind.CONTROL: _BRANCHES,
     DiagramNodeKind.DECORATOR: _DIAMOND,
@@ -52,6 +55,11 @@ _KINDS: Mapping[DiagramNodeKind, _Strokes] = {
 }
 _CONTROLS = (("Sequence", _SEQUENCE), ("Fallback", _FALLBACK), ("Parallel", _PARALLEL))
 """Parts of names of control nodes, with the symbols that publications on behavior trees use for these nodes."""
+
+
+def die(box: Box, size: float) -> Glyph:
+    """The five of a die in the middle of a box: a random choice. `size` is its width and height, in pixels."""
+    return Glyph(Box(box.x + (box.width - size) / 2, box.y + (box.height - size) / 2, size, size), _DIE)
 
 
 def badge(node: DiagramNode, x: float, y: float) -> tuple[Shape, Glyph] | None:

@@ -3,7 +3,8 @@
 
 - A state is a card with its entry and exit actions. Transitions from a state to itself are rows of its card.
 - All transitions from one state to another share a line; its label has a row for each of them.
-- A choice is a small junction. If all its targets are the state from which it comes, it is a row of the state's card.
+- A choice is a small junction with the five of a die. If all its targets are the state from which it comes, it is a row
+  of the state's card.
 - Each action thread is drawn separately, in a frame.
 """
 
@@ -19,6 +20,7 @@ from roaml.figures.layout.packing import shelves
 from roaml.ide.diagrams.diagram import DetailKind, DiagramEdge, DiagramNodeKind, EdgeKind, Picture
 from roaml.ide.diagrams.drawings.cards import Card, Row, TextLine, is_shortened, paragraph, title
 from roaml.ide.diagrams.drawings.changes import is_marked, kind_of, signed, tone_of
+from roaml.ide.diagrams.drawings.glyphs import die
 
 CARD_WIDTH, LABEL_WIDTH = 260.0, 210.0
 """The maximum widths of lines of text in cards and labels, in pixels."""
@@ -26,7 +28,7 @@ LABEL_PADDING = 7.0
 """The distance of the text of a label from its edge, in pixels."""
 MAX_GUARD_LINES, MAX_ACTION_LINES, MAX_ACTIONS = 4, 3, 6
 """The maximum numbers of lines of a condition and of an action, and of the actions of a transition that are shown."""
-_JUNCTION, _DOT = 14.0, 10.0
+_JUNCTION, _DIE, _DOT = 14.0, 9.0, 10.0
 _START = "start"
 _FRAME_MARGIN = 18.0
 _ASPECT = {LayoutDirection.RIGHT: 1.8, LayoutDirection.DOWN: 0.8}
@@ -165,7 +167,7 @@ class _Chart:
         node = self._picture.nodes[index]
         if node.kind is DiagramNodeKind.CHOICE:
             shape = Shape(box, Outline.PILL, "junction")
-            return Group("node", tone_of(node.change, Tone.CHANCE), (shape,), "choice", node=index)
+            return Group("node", tone_of(node.change, Tone.CHANCE), (shape, die(box, _DIE)), "choice", node=index)
         items: tuple[Item, ...] = (Shape(box, Outline.ROUNDED, "card"), *self._cards[node.id].items(box))
         kind = kind_of(node.change, "state initial" if node.initial else "state")
         return Group("node", tone_of(node.change, Tone.PLAIN), items, kind, node=index)
