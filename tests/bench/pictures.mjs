@@ -123,6 +123,7 @@ const OTHERS = {
     nothing: "No results",
     help: "",
     byChance: "random",
+    looks: {},
     mocks: "Mocks",
     verify: "Verify",
     outlineHint: "",

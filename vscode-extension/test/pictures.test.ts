@@ -9,6 +9,7 @@ import {
     amongOthers,
     bestDrawing,
     centered,
+    emptiestCorner,
     fit,
     fitLegibly,
     fullest,
@@ -20,6 +21,7 @@ import {
     search,
     shifts,
     withStart,
+    visiblePart,
     zoom,
 } from "../src/pictures/view/find";
 import { badgeOf, isOf, nodeCoverageWords, summaryOf } from "../src/pictures/view/coverage";
@@ -164,13 +166,48 @@ test("fitting, zooming and revealing", () => {
 
 test("a node is not left below the map", () => {
     const sight = { x: 0, y: 0, scale: 1 };
-    const map = { width: 40, height: 60 };
+    const map = { width: 40, height: 60, isLeft: false, isTop: false };
     const beside = { x: 10, y: 10, width: 40, height: 20 };
     assert.deepEqual(besideCorner(sight, beside, 100, 100, map), sight);
     assert.deepEqual(besideCorner(sight, { ...beside, x: 50, y: 10 }, 100, 100, map), sight);
     // The drawing moves to the left if the node fits beside the map, otherwise up.
     assert.deepEqual(besideCorner(sight, { ...beside, x: 50, y: 70 }, 100, 100, map), { ...sight, x: 30 });
     assert.deepEqual(besideCorner(sight, { ...beside, width: 80, y: 70 }, 100, 100, map), { ...sight, y: 50 });
+    // At the other corners, it moves the other way.
+    const opposite = { ...map, isLeft: true, isTop: true };
+    assert.deepEqual(besideCorner(sight, beside, 100, 100, opposite), { ...sight, x: -30 });
+    assert.deepEqual(besideCorner(sight, { ...beside, width: 80 }, 100, 100, opposite), { ...sight, y: -50 });
+    assert.deepEqual(besideCorner(sight, { ...beside, x: 50 }, 100, 100, opposite), sight);
+});
+
+test("the map is in the corner where it covers the least", () => {
+    const sight = { x: 100, y: 0, scale: 0.5 };
+    const size = { width: 40, height: 60 };
+    const corner = (...boxes: Box[]) => {
+        const { isLeft, isTop } = emptiestCorner(sight, boxes, 200, 200, size);
+        return `${isTop ? "top" : "bottom"} ${isLeft ? "left" : "right"}`;
+    };
+    // The window shows the drawing from (100, 0) to (500, 400).
+    const [right, left] = [box(410, 370), box(90, 370)];
+    const [rightTop, leftTop] = [box(410, 10), box(90, 10)];
+    assert.equal(corner(), "bottom right");
+    assert.equal(corner(box(300, 200), box(600, 370)), "bottom right");
+    assert.equal(corner(right), "bottom left");
+    assert.equal(corner(right, left), "top right");
+    assert.equal(corner(right, left, rightTop), "top left");
+    assert.equal(corner(right, left, rightTop, { ...leftTop, width: 15 }), "top left");
+});
+
+test("the map is for drawings of which the window shows a part", () => {
+    const drawing = { width: 300, height: 200 };
+    assert.deepEqual(visiblePart({ x: -50, y: -100, scale: 1 }, drawing, 400, 400), { x: 0, y: 0, ...drawing });
+    assert.deepEqual(visiblePart({ x: 100, y: -20, scale: 2 }, drawing, 300, 200), {
+        x: 100,
+        y: 0,
+        width: 150,
+        height: 80,
+    });
+    assert.deepEqual(visiblePart({ x: 400, y: 0, scale: 1 }, drawing, 100, 100).width, 0);
 });
 
 test("nodes glide from where they were, although other nodes were added before them", () => {
@@ -211,6 +248,21 @@ test("a picture is legible at first, and drawn in the direction that suits the w
     assert.equal(bestDrawing([wide, wide, outline], 2000, 2000), 0);
     assert.equal(bestDrawing([wide, wide, { width: 340, height: 300 }], 1000, 400), 2);
     assert.equal(bestDrawing([wide, wide, outline], 800, 600, 0.6), 0);
+    // If a little does not fit, a smaller whole is better than a part; a whole of legible size is better than that.
+    assert.equal(
+        bestDrawing(
+            [
+                { width: 500, height: 1200 },
+                { width: 1150, height: 900 },
+            ],
+            1000,
+            800,
+        ),
+        1,
+    );
+    assert.equal(bestDrawing([{ width: 1150, height: 900 }, wide, outline], 1000, 1600), 2);
+    assert.ok(Math.abs(fitLegibly({ width: 500, height: 940 }, 1000, 800).scale - 0.8) < 1e-9);
+    assert.equal(fitLegibly({ width: 500, height: 1010 }, 1000, 800).scale, 11 / 12);
     const view = fitLegibly({ width: 3000, height: 400 }, 1000, 800);
     assert.equal(view.scale, 11 / 12);
     assert.ok(view.x < 0 && view.x > -50 && view.y < -200);
@@ -242,6 +294,14 @@ test("the legend has one entry for each color", () => {
     assert.deepEqual(entries(MACHINE), ["event: event", "plain: eventless"]);
     assert.deepEqual(entries(TREE), ["control: control", "action: action", "blackboard: variable"]);
     assert.deepEqual(entries(ROS), ["topic: topic", "service: service", "event: event"]);
+    // A line is dashed as those of its kind are.
+    const [plain] = MACHINE.edges;
+    assert.ok(plain);
+    const random: Picture = { ...MACHINE, edges: [...MACHINE.edges, { ...plain, probabilistic: true }] };
+    assert.deepEqual(
+        legendOf(random, WORDS).map(({ tone, kind }) => `${tone}: ${kind}`),
+        ["event: event", "plain: eventless", "chance: chance"],
+    );
     // Interfaces may be in the cards of nodes.
     const [first, second] = [node("a", { kind: "node" }), node("b", { kind: "node", hides: ["service /go"] })];
     const through = edge("a", "b", { kind: "calls", labels: ["/go"], interface: "service" });

@@ -57,6 +57,8 @@ export interface Sight extends Point {
 const MARGIN = 24;
 /** The minimum legible scale: the smallest texts have 12 px, and need at least 11 px on the screen. */
 const LEGIBLE = 11 / 12;
+/** The minimum scale at which a whole drawing is shown rather than a part of it: its smallest texts have 9 px. */
+const WHOLE = 0.75;
 type Area = Pick<Drawing, "width" | "height">;
 
 function scaleOf(drawing: Area, width: number, height: number): number {
@@ -69,9 +71,11 @@ export function fit(drawing: Area, width: number, height: number): Sight {
     return at(drawing, width, height, Math.max(0.05, scaleOf(drawing, width, height)));
 }
 
-/** The view that shows as much of a drawing as is legible, or at least has a scale, beginning at its start. */
+/** The view that shows a whole drawing, if this needs little zoom, otherwise as much of it as is legible, or at least has
+ * a scale, beginning at its start. */
 export function fitLegibly(drawing: Area, width: number, height: number, least = LEGIBLE): Sight {
-    return at(drawing, width, height, Math.max(least, scaleOf(drawing, width, height)));
+    const scale = scaleOf(drawing, width, height);
+    return at(drawing, width, height, scale >= WHOLE ? scale : Math.max(least, scale));
 }
 
 /** The view at a scale. A drawing that is smaller than the window is centred; others are shown from their start. */
@@ -84,15 +88,16 @@ function at(drawing: Area, width: number, height: number, scale: number): Sight 
 export const OUTLINE = DIRECTIONS.indexOf("outline");
 
 /**
- * The index of the drawing that fits a window best: it is legible as a whole, or at least in its whole width; of several
- * others, the one of which the window shows the largest part. An outline is used only if no other drawing is legible as a
+ * The index of the drawing that fits a window best: it is legible as a whole, or with little zoom, or at least in its
+ * whole width; of several others, the one of which the window shows the largest part. An outline is used only if no other drawing is legible as a
  * whole. `least` is the minimum legible scale.
  */
 export function bestDrawing(drawings: readonly Area[], width: number, height: number, least = LEGIBLE): number {
     const rank = (drawing: Area): readonly number[] => {
         const scale = scaleOf(drawing, width, height);
         const isFirst = drawings.indexOf(drawing) < OUTLINE;
-        if (scale >= least) return [1, Number(isFirst), scale];
+        if (scale >= least) return [2, Number(isFirst), scale];
+        if (scale >= WHOLE) return [1, Number(isFirst), scale];
         const across = Math.min(1, (width - 2 * MARGIN) / (drawing.width * least));
         const along = Math.min(1, (height - 2 * MARGIN) / (drawing.height * least));
         return [0, Number(across === 1), across * along];
@@ -129,18 +134,50 @@ export function reveal(sight: Sight, box: Box, width: number, height: number): S
     return { ...sight, x: inside(sight.x, box.x, box.width, w), y: inside(sight.y, box.y, box.height, h) };
 }
 
+/** A corner of the window, and the size of what covers it, in pixels. */
+export interface Corner extends Area {
+    readonly isLeft: boolean;
+    readonly isTop: boolean;
+}
+
+/** The corners of a window; the earlier ones are preferred. */
+const CORNERS = [
+    { isLeft: false, isTop: false },
+    { isLeft: true, isTop: false },
+    { isLeft: false, isTop: true },
+    { isLeft: true, isTop: true },
+] as const;
+
+/** The corner of the window in which something of a given size covers the smallest area of boxes of the drawing. */
+export function emptiestCorner(sight: Sight, boxes: readonly Box[], width: number, height: number, size: Area): Corner {
+    const [w, h] = [size.width / sight.scale, size.height / sight.scale];
+    const common = (low: number, length: number, other: number, otherLength: number) =>
+        Math.max(0, Math.min(low + length, other + otherLength) - Math.max(low, other));
+    const covered = ({ isLeft, isTop }: (typeof CORNERS)[number]) => {
+        const x = sight.x + (isLeft ? 0 : width / sight.scale - w);
+        const y = sight.y + (isTop ? 0 : height / sight.scale - h);
+        return boxes.reduce((sum, box) => sum + common(x, w, box.x, box.width) * common(y, h, box.y, box.height), 0);
+    };
+    const areas = CORNERS.map(covered);
+    return { ...size, ...(CORNERS[areas.indexOf(Math.min(...areas))] ?? CORNERS[0]) };
+}
+
 /**
- * The view moved by the minimum distance so that a box is not below something of a given size at the lower right corner
- * of the window. If there is no space beside it, the box is moved above it.
+ * The view moved by the minimum distance so that a box is not below something in a corner of the window. If there is no
+ * space beside it, the box is moved above or below it.
  */
-export function besideCorner(sight: Sight, box: Box, width: number, height: number, corner: Area): Sight {
+export function besideCorner(sight: Sight, box: Box, width: number, height: number, corner: Corner): Sight {
+    const [left, top] = [(box.x - sight.x) * sight.scale, (box.y - sight.y) * sight.scale];
+    const [w, h] = [box.width * sight.scale, box.height * sight.scale];
     const covered = {
-        x: (box.x + box.width - sight.x) * sight.scale - (width - corner.width),
-        y: (box.y + box.height - sight.y) * sight.scale - (height - corner.height),
+        x: corner.isLeft ? corner.width - left : left + w - (width - corner.width),
+        y: corner.isTop ? corner.height - top : top + h - (height - corner.height),
     };
     if (covered.x <= 0 || covered.y <= 0) return sight;
-    const fitsBeside = box.width * sight.scale <= width - corner.width;
-    return fitsBeside ? pan(sight, covered.x, 0) : pan(sight, 0, covered.y);
+    const fitsBeside = w <= width - corner.width;
+    return fitsBeside
+        ? pan(sight, corner.isLeft ? -covered.x : covered.x, 0)
+        : pan(sight, 0, corner.isTop ? -covered.y : covered.y);
 }
 
 /** The view moved so that a point of the drawing is in the middle of the window. */
@@ -317,6 +354,18 @@ export interface PlacedNodes {
 /** The size of a map of a drawing, and the factor by which the map is smaller. */
 export interface MapScale extends Area {
     readonly factor: number;
+}
+
+/** The part of a drawing that a window shows. */
+export function visiblePart(sight: Sight, drawing: Area, width: number, height: number): Box {
+    const [x, y] = [Math.max(0, sight.x), Math.max(0, sight.y)];
+    const [right, bottom] = [sight.x + width / sight.scale, sight.y + height / sight.scale];
+    return {
+        x,
+        y,
+        width: Math.max(0, Math.min(drawing.width, right) - x),
+        height: Math.max(0, Math.min(drawing.height, bottom) - y),
+    };
 }
 
 /** The largest map of a drawing that fits into a size. */

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /** A small map of a drawing that is larger than the view. A click or a drag moves the visible part. */
 
-import type { Drawing, Picture, Point } from "../contract";
+import type { Box, Drawing, Picture, Point } from "../contract";
 import { toneOf } from "./words";
-import { centered, mapOf, type MapScale, type Sight } from "./find";
+import { centered, emptiestCorner, mapOf, visiblePart, type Corner, type MapScale, type Sight } from "./find";
 import { element } from "./scene";
 
 /** The size of the largest map, in pixels. */
 const LARGEST = { width: 150, height: 190 };
-/** A drawing needs no map if it is at most this many times as large as the visible part. */
-const ALMOST_ALL = 1.4;
 /** A smaller window has no space for a map, in pixels. */
 const SMALLEST_WINDOW = { width: 280, height: 220 };
 /** The distance of the map from what is beside it, with its border, in pixels. */
@@ -23,6 +21,9 @@ export class Minimap {
     private view = { width: 0, height: 0 };
     private sight: Sight = { x: 0, y: 0, scale: 1 };
     private isHidden = true;
+    private boxes: (part: Box) => readonly Box[] = () => [];
+    /** The corner of the window with the map. It is chosen when the map appears, and kept while the view moves. */
+    private corner: Corner | undefined;
 
     constructor(move: (sight: Sight) => void) {
         const center = (event: PointerEvent) => {
@@ -40,9 +41,10 @@ export class Minimap {
         });
     }
 
-    /** Draw the nodes of a picture. */
-    show(picture: Picture, drawing: Drawing): void {
+    /** Draw the nodes of a picture. `boxes` gives what the map should not cover in a part of the drawing. */
+    show(picture: Picture, drawing: Drawing, boxes: (part: Box) => readonly Box[]): void {
         this.drawing = drawing;
+        this.boxes = boxes;
         this.svg.setAttribute("viewBox", `0 0 ${drawing.width} ${drawing.height}`);
         const parents = new Set(picture.nodes.map(({ parent }) => parent));
         this.svg.replaceChildren(
@@ -56,26 +58,42 @@ export class Minimap {
         );
     }
 
-    /** Show which part is visible. The map is hidden if almost all of the drawing is visible. */
+    /** Choose the corner of the map again, at the next look. */
+    settle(): void {
+        this.corner = undefined;
+    }
+
+    /** Show which part is visible. The map is hidden if all of the drawing is visible. */
     look(sight: Sight, width: number, height: number): void {
         this.sight = sight;
         this.view = { width, height };
         if (!this.drawing) return;
-        const seen = { width: width / sight.scale, height: height / sight.scale };
-        const fits = (size: number, window: number) => size <= window * ALMOST_ALL;
-        const isVisible = fits(this.drawing.width, seen.width) && fits(this.drawing.height, seen.height);
+        const part = visiblePart(sight, this.drawing, width, height);
+        const isWhole = part.width >= this.drawing.width && part.height >= this.drawing.height;
         const isSmall = width < SMALLEST_WINDOW.width || height < SMALLEST_WINDOW.height;
-        this.isHidden = isVisible || isSmall;
+        this.isHidden = isWhole || isSmall;
         this.svg.classList.toggle("hidden", this.isHidden);
-        this.scale = mapOf(this.drawing, Math.min(LARGEST.width, width / 4), Math.min(LARGEST.height, height / 2));
-        place(this.svg, { width: this.scale.width, height: this.scale.height });
-        place(this.frame, { x: sight.x, y: sight.y, ...seen });
+        if (this.isHidden) this.settle();
+        else this.draw(this.drawing, part);
     }
 
-    /** The size of the lower right corner of the window that the map covers; undefined if it is hidden. */
-    get size(): { readonly width: number; readonly height: number } | undefined {
-        if (this.isHidden || !this.scale) return undefined;
-        return { width: this.scale.width + DISTANCE, height: this.scale.height + DISTANCE };
+    private draw(drawing: Drawing, part: Box): void {
+        const { width, height } = this.view;
+        this.scale = mapOf(drawing, Math.min(LARGEST.width, width / 4), Math.min(LARGEST.height, height / 2));
+        place(this.svg, { width: this.scale.width, height: this.scale.height });
+        place(this.frame, { ...part });
+        const size = { width: this.scale.width + DISTANCE, height: this.scale.height + DISTANCE };
+        this.corner = this.corner
+            ? { ...this.corner, ...size }
+            : emptiestCorner(this.sight, this.boxes(part), width, height, size);
+        const { isLeft, isTop } = this.corner;
+        this.svg.classList.toggle("is-left", isLeft);
+        this.svg.classList.toggle("is-top", isTop);
+    }
+
+    /** The corner of the window that the map covers; undefined if it is hidden. */
+    get covered(): Corner | undefined {
+        return this.isHidden ? undefined : this.corner;
     }
 
     /** Emphasise nodes, such as those that a search has found. */

@@ -8,6 +8,7 @@ import {
     type Coverage,
     type FromView,
     type Activity,
+    type Box,
     WHOLE,
     type GraphPart,
     type MarkedParts,
@@ -44,7 +45,7 @@ import { filled, isOf, paint, shareOf, summaryOf } from "./coverage";
 import { Minimap } from "./minimap";
 import { MockPane } from "./mocks";
 import { menuOf } from "./menu";
-import { element, pngData, sceneOf, spoken, type Scene } from "./scene";
+import { element, inkOf, pngData, sceneOf, spoken, type Scene } from "./scene";
 import { shownActivity, shownId } from "./shown";
 import { legendOf, type LegendEntry } from "./words";
 import { theme } from "./theme";
@@ -232,7 +233,7 @@ export class PictureView {
         this.scene?.root.remove();
         this.scene = sceneOf(picture, drawing, words);
         this.svg.append(this.scene.root);
-        this.minimap.show(picture, drawing);
+        this.minimap.show(picture, drawing, (part) => this.inked(drawing, part));
         this.svg.setAttribute("aria-label", picture.title);
         this.svg.setAttribute("aria-description", words.help);
         for (const [index, group] of this.scene.nodes) group.id = `${this.prefix}-node${index}`;
@@ -319,6 +320,7 @@ export class PictureView {
     private fitLegibly(): void {
         const { width, height } = this.svg.getBoundingClientRect();
         if (!this.drawing) return;
+        this.minimap.settle();
         const sight = fitLegibly(this.drawing, width, height, this.least);
         const first = this.firstBox(sight, width, height);
         if (!first && this.picture?.kind === "ros") {
@@ -336,6 +338,11 @@ export class PictureView {
         const others = this.innermost(drawing);
         const near = others.filter(({ index }) => targets.has(picture?.nodes[index]?.id ?? ""));
         return amongOthers(sight, drawing, node, near, others, width, height);
+    }
+
+    /** The boxes of nodes, labels, and pieces of the lines in a part of the drawing. */
+    private inked(drawing: Drawing, part: Box): readonly Box[] {
+        return [...this.innermost(drawing), ...(this.scene ? inkOf(this.scene, part) : [])];
     }
 
     /** The nodes that contain no others. */
@@ -404,7 +411,7 @@ export class PictureView {
         const { width, height } = this.svg.getBoundingClientRect();
         if (!box) return;
         this.look(reveal(this.sight, box, width, height));
-        const map = this.minimap.size;
+        const map = this.minimap.covered;
         if (map) this.look(besideCorner(this.sight, box, width, height, map));
     }
 
@@ -892,10 +899,10 @@ function coverageLegend(coverage: Coverage, { coverage: words }: Words): HTMLEle
     return [heading, ...entries];
 }
 
-function entry({ tone, text, isLine }: LegendEntry): HTMLElement {
+function entry({ tone, text, isLine, kind }: LegendEntry): HTMLElement {
     const made = document.createElement("span");
     const sample = element("svg", { width: isLine ? 24 : 10, height: 10, class: "scene", "aria-hidden": "true" });
-    const group = element("g", { class: `link tone-${tone}` });
+    const group = element("g", { class: `link tone-${tone} is-${kind}` });
     const shape = isLine
         ? element("path", { d: "M 1 5 H 23", class: "line" })
         : element("rect", { x: 0, y: 0, width: 10, height: 10, rx: 2, class: "badge" });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** The drawing of the server as elements of the document, with roles and names for screen readers. */
 
-import type { Drawing, Picture, Words } from "../contract";
+import type { Box, Drawing, Picture, Words } from "../contract";
 import { breakpointOf } from "../breakpoints";
 import { edgeParts, menuOf, nodeParts } from "./menu";
 import { edgeHint, edgeWords, nodeWords } from "./words";
@@ -61,6 +61,24 @@ export function spoken(groups: readonly SVGGElement[]): SVGGElement {
     const group = groups.at(-1);
     if (!group) throw new Error("an edge has no element");
     return group;
+}
+
+/** The distance of the pieces of a line, and their size, in pixels of the drawing. */
+const PIECE = { distance: 12, size: 6 };
+
+/** The boxes of the labels, and of small pieces of the lines that may be in a part of the drawing. */
+export function inkOf({ root }: Scene, part: Box): Box[] {
+    const isIn = ({ x, y, width, height }: Box) =>
+        x <= part.x + part.width && x + width >= part.x && y <= part.y + part.height && y + height >= part.y;
+    const labels = [...root.querySelectorAll<SVGGElement>(".label")].map((label) => label.getBBox()).filter(isIn);
+    const lines = [...root.querySelectorAll<SVGPathElement>("path.line")].filter((line) => isIn(line.getBBox()));
+    const pieces = lines.flatMap((line) =>
+        Array.from({ length: Math.ceil(line.getTotalLength() / PIECE.distance) }, (_, number) => {
+            const { x, y } = line.getPointAtLength(number * PIECE.distance);
+            return { x: x - PIECE.size / 2, y: y - PIECE.size / 2, width: PIECE.size, height: PIECE.size };
+        }),
+    );
+    return [...labels, ...pieces];
 }
 
 /** Hide the lines of edges whose text has the same name from screen readers. */

@@ -41,9 +41,10 @@ function throughChannel(picture: Picture, edge: PictureEdge, channel: PictureNod
     return [senders, channel.label, receivers].filter((text) => text !== "").join(" → ");
 }
 
-/** An entry of the legend: its tone in the style sheet, and its text. */
+/** An entry of the legend: its tone and its kind of line in the style sheet, and its text. */
 export interface LegendEntry {
     readonly tone: string;
+    readonly kind: string;
     readonly text: string;
     readonly isLine: boolean;
 }
@@ -71,15 +72,16 @@ export function toneOf(kind: NodeKind | undefined): string {
 /** One entry for each color of a picture. */
 export function legendOf(picture: Picture, words: Words): LegendEntry[] {
     const entries: LegendEntry[] = [];
-    const add = (tone: string | undefined, text: string, isLine: boolean) => {
-        if (tone !== undefined && !entries.some((entry) => entry.tone === tone)) entries.push({ tone, text, isLine });
+    const add = (tone: string | undefined, text: string, isLine: boolean, kind = "") => {
+        if (tone === undefined || entries.some((entry) => entry.tone === tone)) return;
+        entries.push({ tone, kind, text, isLine });
     };
     switch (picture.kind) {
         case "machine":
         case "system":
             for (const { kind } of picture.edges.filter((edge) => !edge.probabilistic))
-                add(EDGE_TONES[kind], words.kinds[kind], true);
-            if (picture.edges.some((edge) => edge.probabilistic)) add("chance", words.byChance, true);
+                add(EDGE_TONES[kind], words.kinds[kind], true, kind);
+            if (picture.edges.some((edge) => edge.probabilistic)) add("chance", words.byChance, true, "chance");
             break;
         case "tree":
             for (const { kind } of picture.nodes) add(NODE_TONES[kind], words.kinds[kind], false);
