@@ -147,6 +147,28 @@ def test_an_exception_of_the_library(tmp_path: Path) -> None:
     assert outcome.failure.value == pytest.approx(0.1, abs=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("node", "success"),
+    [
+        ("Sequence", 0.9**9),
+        ("AsyncSequence", 0.9**9),
+        ("SequenceWithMemory", 0.9**9),
+        ("ReactiveSequence", 0.9**9),
+        ("PipelineSequence", 0.9**9),
+        ("Parallel failure_count='1'", 0.9**9),
+        ("ParallelAll max_failures='1'", 0.9**9),
+        ("Fallback", 1 - 0.1**9),
+        ("ReactiveFallback", 1 - 0.1**9),
+    ],
+)
+def test_many_children_that_can_be_skipped(tmp_path: Path, node: str, success: float) -> None:
+    """Three of twelve children are skipped. The automaton of a node does not distinguish which ones."""
+    steps = "".join(f'<Step _skipIf="level == {i % 4}"/>' for i in range(12))
+    content = f"<Sequence><Read level='{{level}}'/><{node}>{steps}</{node.split(maxsplit=1)[0]}></Sequence>"
+    outcome = exact(loaded(tree(tmp_path, content), "Read: 1", "Step: 0.9"))
+    assert outcome.success.value == pytest.approx(success, abs=1e-12)
+
+
 def test_too_many_states_have_no_values() -> None:
     model = loaded(str(FETCH), *fetch_mocks())
     assert measure_exactly(model.mocked, model.target, replace(SHARED_LIMITS, states=50)) is None

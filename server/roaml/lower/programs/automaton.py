@@ -23,6 +23,7 @@ from roaml.lower.build import binary, both, equal, event_data, integer, name
 from roaml.lower.interfaces import tree_event
 from roaml.lower.programs.code import TYPES, Child, NodeCode, Value
 from roaml.lower.programs.entries import BoardEntry
+from roaml.lower.programs.liveness import live_variables
 from roaml.lower.programs.steps import (
     EXCEPTION,
     Decide,
@@ -163,17 +164,23 @@ class _Explorer(Record, eq=False, dict=True):
     pending: list[tuple[str, _Key]] = field(default_factory=list)
     data: dict[str, Data] = field(default_factory=dict)
     answers: set[int] = field(default_factory=set)
+    continued: dict[str, tuple[Place, ...]] = field(default_factory=dict)
+    """Segment that `added` has created -> the places at which the execution continues after it."""
 
     def __post_init__(self) -> None:
         program = self.code.program
         self.segments: dict[str, Sequence[Instruction | Step]] = {
             **assembly.segments(program, frozenset(self.code.scripts))
         }
+        self.live = live_variables(program, frozenset(self.code.scripts))
         self.kept = {"status", *program.fixed}
         self.declared = dict(program.variables)
         for flag in program.flags:
             self.declared |= {f"{flag}_{i}": False for i in range(len(self.code.children))}
         self.values = ProgramValues(self.code, self.declared)
+        self.skippable = sum(
+            1 << i for i, child in enumerate(self.code.children) if SKIPPED in child.answers and not child.is_stateless
+        )
 
     def automaton(self) -> Automaton:
         for variable, value in self.declared.items():
@@ -221,8 +228,8 @@ class _Explorer(Record, eq=False, dict=True):
                 answer = tree_event(child.address, TreeEventKind.RESPONSE)
                 for status in sorted(child.answers):
                     after = {**dict(fixed), target: status}
-                    touched = int(after[_TOUCHED])
-                    after[_TOUCHED] = touched & ~(1 << number) if status == SKIPPED else touched | (1 << number)
+                    touched, bit = int(after[_TOUCHED]), 0 if child.is_stateless else 1 << number
+                    after[_TOUCHED] = touched & ~bit if status == SKIPPED else touched | bit
                     transitions += self.on(answer, place, after, equal(event_data("status"), integer(status)))
             case _Halting(place, fixed, number):
                 event = tree_event(self.code.children[number].address, TreeEventKind.HALT_RESPONSE)
@@ -303,7 +310,7 @@ class _Explorer(Record, eq=False, dict=True):
 
     def target(self, execution: _Execution, stop: _Stop, share: float) -> Target:
         # A condition after statements is decided in a separate state.
-        later = _Deciding(execution.place, _frozen(execution.fixed))
+        later = _Deciding(execution.place, self.needed(execution.place, execution.fixed))
         state = stop if isinstance(stop, str) else self.state("deciding", later)
         return Target(state, share, tuple(execution.body), self.code.origin)
 
@@ -443,22 +450,32 @@ class _Explorer(Record, eq=False, dict=True):
     def tick(self, number: int, target: str, following: Place, execution: _Execution) -> str:
         child = self.code.children[number]
         execution.body.append(Send(tree_event(child.address, TreeEventKind.TICK), (), child.origin))
-        return self.state("ticking", _Ticking(following, _frozen(execution.fixed), number, target))
+        execution.fixed[_TOUCHED] = self.merged(int(execution.fixed[_TOUCHED]), number)
+        execution.fixed.pop(target, None)
+        return self.state("ticking", _Ticking(following, self.needed(following, execution.fixed), number, target))
+
+    def merged(self, touched: int, number: int) -> int:
+        """The touched children when the child `number` is ticked; whether it is one of them itself follows from its
+        answer. Children before it and before a touched child that can be skipped become touched too, because the number
+        of states would grow exponentially with the number of children that were skipped or not. The halt of a child
+        that is IDLE has no effect."""
+        last = max(number, touched.bit_length() - 1)
+        return (touched | self.skippable & ((1 << last) - 1)) & ~(1 << number)
 
     def reset(self, number: int, following: Place, execution: _Execution) -> str | None:
         child = self.code.children[number]
         touched = int(execution.fixed[_TOUCHED])
         execution.fixed[_TOUCHED] = touched & ~(1 << number)
-        if child.is_stateless or not touched & (1 << number):
+        if not touched & (1 << number):
             return None
         execution.body.append(Send(tree_event(child.address, TreeEventKind.HALT), (), child.origin))
-        return self.state("halting", _Halting(following, _frozen(execution.fixed), number))
+        return self.state("halting", _Halting(following, self.needed(following, execution.fixed), number))
 
     # -------------------------------------------------------------- blackboard
 
     def read_entries(self, entries: tuple[BoardEntry, ...], following: Place, execution: _Execution) -> str:
         execution.body.append(Send(request_of(self.code.tree), (), self.code.origin))
-        return self.state("asking", _Asking(following, _frozen(execution.fixed), entries))
+        return self.state("asking", _Asking(following, self.needed(following, execution.fixed), entries))
 
     def write(self, entry: BoardEntry, value: Expr, execution: _Execution) -> None:
         origin = self.code.origin
@@ -473,27 +490,42 @@ class _Explorer(Record, eq=False, dict=True):
             self.write(flag, integer(1), execution)
 
     def read_update(self, flag: BoardEntry, following: Place, otherwise: Place) -> Place:
-        return self.added(f"*updated*{following}", lambda key: update_steps(key, flag, following, otherwise))
+        return self.added(
+            f"*updated*{following}", lambda key: update_steps(key, flag, following, otherwise), following, otherwise
+        )
 
     def read_ports(self, ports: Sequence[str], following: Place) -> Place:
         entries = tuple(self.code.bound[port] for port in ports if port in self.code.bound)
         whole = tuple(self.code.bound[port] for port in ports if port in self.code.whole)
         if not entries:
             return following
-        return self.added(f"*ports*{following}", lambda key: port_steps(key, entries, whole, following))
+        return self.added(f"*ports*{following}", lambda key: port_steps(key, entries, whole, following), following)
 
     def write_outputs(self, following: Place) -> Place:
-        return self.added(f"*outputs*{following}", lambda key: output_steps(key, self.code.outputs, following))
+        return self.added(
+            f"*outputs*{following}", lambda key: output_steps(key, self.code.outputs, following), following
+        )
 
     def evaluate(self, script: str, following: Place, otherwise: Place | None) -> Place:
         compiled = self.code.scripts[script]
-        return self.added(f"*{script}*{following}", lambda key: script_steps(key, compiled, following, otherwise))
+        continued = (following,) if otherwise is None else (following, otherwise)
+        return self.added(
+            f"*{script}*{following}", lambda key: script_steps(key, compiled, following, otherwise), *continued
+        )
 
-    def added(self, segment: str, steps: Callable[[str], tuple[Step, ...]]) -> Place:
-        """The place at the beginning of a segment. If the segment does not exist yet, `steps` creates it."""
+    def added(self, segment: str, steps: Callable[[str], tuple[Step, ...]], *continued: Place) -> Place:
+        """The place at the beginning of a segment. If the segment does not exist yet, `steps` creates it. The execution
+        continues at one of the places `continued` after it."""
         if segment not in self.segments:
             self.segments[segment] = steps(segment)
+            self.continued[segment] = continued
         return (segment, 0)
+
+    def needed(self, place: Place, fixed: Mapping[str, Known]) -> Fixed:
+        """The variables in `fixed` that may be read when the execution continues at `place`."""
+        places = self.continued.get(place[0], (place,))
+        live = frozenset[str]().union(*(self.live[each] for each in places if each != EXCEPTION))
+        return _frozen({name: value for name, value in fixed.items() if name in live or name.startswith("*")})
 
     def step(self, step: Step, execution: _Execution) -> _Stop | None:
         """Execute one step. Return the reason to stop, or `None` if the execution continues at `execution.place`."""
