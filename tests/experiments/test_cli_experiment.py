@@ -101,6 +101,8 @@ def test_a_file_of_arguments(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     assert "there is no option `proprety`; did you mean `property`?" in error
     file.write_text('property = ["most"]\n', encoding="utf-8")
     assert "names no model" in called(capsys, str(file))[2]
+    file.write_text('model = "model.jani"\nproperty = ["most]\n', encoding="utf-8")
+    assert f"{file}:2:18: Illegal character" in called(capsys, str(file))[2]
 
 
 def test_kept_points(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

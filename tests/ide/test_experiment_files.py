@@ -25,6 +25,7 @@ scheduler = "uniform"
 [set]
 capacity = "20:120:10"
 """
+ASKED, MEETS = 'property = ["all_delivered"]\n', 'meets = "all_delivered >= 0.99"\n'
 
 
 @pytest.fixture(scope="module")
@@ -80,7 +81,11 @@ def test_a_right_file_has_no_findings(folder: Path) -> None:
         ("scheduler", 'slopes = "yes"\nscheduler', '"yes"', "`slopes` must be `true` or `false`"),
         ('"main.xml"', '"mian.xml"', '"mian.xml"', "there is no file `mian.xml`; paths are relative to the folder"),
         ('model = "main.xml"\n', "", "p", "the file names no model; add `model ="),
-        ("scheduler", 'find = "capasity"\nscheduler', '"capasity"', "has no values to try; add it to `set`; did you"),
+        (ASKED, 'find = "capasity"\n' + MEETS, '"capasity"', "has no values to try; add it to `set`; did you"),
+        (ASKED, 'find = "capacity"\n', "find", "`find` needs `meets`, such as"),
+        (ASKED, MEETS, "meets", "`meets` needs `find`, the parameter"),
+        ("scheduler", f'find = "capacity"\n{MEETS}scheduler', "property", "computes the property in `meets`; remove"),
+        (ASKED, f'find = "capacity"\n{MEETS}resume = "a.json"\n', "resume", "`find` saves no points; remove `resume`"),
         ("scheduler", 'beside = ["a.csv"]\nscheduler', '"a.csv"', "there is no file `a.csv`"),
         ("[set]", "[unit]\npresent = '%'\n[set]", "present", "`present` is not a parameter of this experiment"),
     ],
@@ -119,6 +124,7 @@ def opened(folder: Path, text: str) -> tuple[Workspace, str]:
         ('model = "ma|"', "main.xml", "main.xml"),
         ('model = "main.xml"\nproperty = ["|"]', "all_delivered", "all_delivered"),
         ('model = "main.xml"\nfind = |', "capacity", '"capacity"'),
+        ('model = "main.xml"\nmeets = "|"', "all_delivered >= 0.99", "all_delivered >= 0.99"),
         ("scheduler = |", "uniform", '"uniform"'),
         ('model = "main.xml"\n[set]\n|', "capacity", 'capacity = "${1:20:200:20}"'),
         ('model = "main.xml"\n[unit]\n|', "capacity", 'capacity = "$1"'),

@@ -70,6 +70,43 @@ export function experiments(stage: Stage): void {
         );
     }
 
+    for (const [look, theme] of themes("light", "light", "dark")) {
+        const empty = () => {
+            const folder = parameterized({ "workbench.colorTheme": theme });
+            write(path.join(folder, EXPERIMENT), "");
+            return folder;
+        };
+        stage.test(`a file of an experiment is written with completion and runs, ${look}`, empty, async (window) => {
+            await window.openFile(EXPERIMENT);
+            await window.running();
+            await complete(window, "mod", "model");
+            await complete(window, "", "main.xml");
+            await nextLine(window);
+            await complete(window, "fin", "find");
+            await window.screenshot(`file-find-${look}`);
+            await complete(window, "", "charge");
+            await nextLine(window);
+            await complete(window, "mee", "meets");
+            await complete(window, "all", "all_delivered >= 0.99");
+            await nextLine(window);
+            await complete(window, "se", "[set]");
+            await window.screenshot(`file-set-${look}`);
+            await complete(window, "", "charge");
+            await window.screenshot(`file-written-${look}`);
+            await lens(window, "Run the experiment").first().click();
+            const view = await page(window);
+            await view.locator(".answers p", { hasText: "all_delivered ≥ 0.99 is met from charge = 40 on" }).waitFor();
+            await view.locator(".point[data-key]").first().waitFor();
+            await window.screenshot(`file-plot-${look}`);
+            // The lens runs it again in the same view. A mistake in the file is told there.
+            write(path.join(window.folder, EXPERIMENT), "model = ");
+            await lens(window, "Run the experiment").first().click();
+            await view.locator(".status", { hasText: `${EXPERIMENT}:1:` }).waitFor();
+            await window.becomes(() => window.page.locator(".tab", { hasText: "Experiment:" }).count(), 1);
+            await window.screenshot(`file-mistake-${look}`);
+        });
+    }
+
     stage.test("an experiment in a file grows, is cancelled, and is run again", long, async (window) => {
         await window.openFile(EXPERIMENT);
         await window.running();
@@ -86,9 +123,17 @@ export function experiments(stage: Stage): void {
     });
 }
 
-/** The sample, with a parameter and an experiment that takes long enough to be cancelled. */
+/** The sample, with an experiment that takes long enough to be cancelled. */
 function long(): string {
+    const folder = parameterized();
+    write(path.join(folder, EXPERIMENT), file("20:200:1"));
+    return folder;
+}
+
+/** The sample, with a parameter for the charge of its full battery. */
+function parameterized(settings: Readonly<Record<string, unknown>> = {}): string {
     const folder = sample(MEND);
+    write(path.join(folder, ".vscode/settings.json"), JSON.stringify(settings));
     const main = fs.readFileSync(path.join(folder, "main.xml"), "utf8");
     const declared = '<parameter name="charge" type="uint8" value="100" min="20" max="200" />';
     const section = `<parameter_declarations>${declared}</parameter_declarations>`;
@@ -99,7 +144,6 @@ function long(): string {
     const battery = path.join(folder, "nodes/battery.ascxml");
     const text = fs.readFileSync(battery, "utf8");
     write(battery, text.replace('location="level" expr="capacity"', 'location="level" expr="charge"'));
-    write(path.join(folder, EXPERIMENT), file("20:200:1"));
     return folder;
 }
 
@@ -117,6 +161,20 @@ async function choose(window: Window, question: string, text: string): Promise<v
     await window.question(question).waitFor();
     await window.screenshot("experiment-number");
     await window.page.locator(".quick-input-widget .monaco-list-row", { hasText: text }).first().click();
+}
+
+/** Types the beginning of a word and accepts its completion. */
+async function complete(window: Window, typed: string, name: string): Promise<void> {
+    await window.type(typed);
+    const row = window.page.locator(`.suggest-widget .monaco-list-row[aria-label^="${name}"]`).first();
+    await window.repeat(() => window.press("Escape", "Control+Space"), row);
+    await row.click();
+    await window.page.locator(".suggest-widget .monaco-list-row").first().waitFor({ state: "hidden" });
+}
+
+/** Leaves the value that a completion has begun. */
+async function nextLine(window: Window): Promise<void> {
+    await window.press("End", "Enter");
 }
 
 /** Checks one entry of a list with several, and accepts it. */

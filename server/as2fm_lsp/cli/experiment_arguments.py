@@ -28,6 +28,7 @@ from roaml.figures.themes import AUTOMATIC, THEMES
 from roaml.model.kinds import EXPERIMENT_SUFFIX, mocks_path
 from roaml.project.experiment_file import KEYS, KeyForm, key_name
 from roaml.suggest import close_names, did_you_mean
+from roaml.text import LineIndex
 from roaml.toml import TomlError, loads
 from roaml.verification.expectations import Expectation
 
@@ -149,9 +150,13 @@ def parsed(arguments: Sequence[str]) -> argparse.Namespace:
 def _arguments_in(path: str, given: argparse.Namespace) -> list[str]:
     """The arguments in a file, without those that the options on the command line replace."""
     try:
-        values = loads(required(path, MEGABYTE).decode("utf-8"))
-    except (TomlError, UnicodeDecodeError) as error:
+        content = required(path, MEGABYTE).decode("utf-8")
+        values = loads(content)
+    except UnicodeDecodeError as error:
         raise UsageError(f"{path}: {error}") from None
+    except TomlError as error:
+        at = LineIndex(content).position(error.span.start)
+        raise UsageError(f"{path}:{at.line + 1}:{at.column + 1}: {error}") from None
     model = values.pop("model", None)
     if not isinstance(model, str):
         raise UsageError(f'{path}: the file names no model; add `model = "main.xml"`')

@@ -21,7 +21,7 @@ from roaml.suggest import close_names, did_you_mean
 from roaml.text import SourceFile, Span, TextEdit
 from roaml.toml import Path, Places, TomlError, loads, places
 
-MODEL, SET, UNIT, PROPERTY, FIND = "model", "set", "unit", "property", "find"
+MODEL, SET, UNIT, PROPERTY, FIND, MEETS, RESUME = "model", "set", "unit", "property", "find", "meets", "resume"
 _MODEL = regex(r"^[ \t]*model[ \t]*=[ \t]*([\"'])([^\"'\n]+)\1", re.MULTILINE)
 
 
@@ -57,7 +57,7 @@ KEYS: Mapping[str, ExperimentKey] = {
     ),
     PROPERTY: ExperimentKey("The properties that are computed. Without it, all are.", _ENTRIES),
     FIND: ExperimentKey("Find the values of this parameter for which `meets` is met."),
-    "meets": ExperimentKey('With `find`: the expectation, such as `"delivered >= 0.99"`.'),
+    MEETS: ExperimentKey('With `find`: the expectation, such as `"delivered >= 0.99"`.'),
     "assume-monotone": ExperimentKey("With `find`: assume that the property only rises or only falls.", _FLAG),
     "plot": ExperimentKey("Files into which the points are drawn: `.svg`, `.html` or `.pdf`.", _ENTRIES),
     "beside": ExperimentKey(
@@ -88,7 +88,7 @@ KEYS: Mapping[str, ExperimentKey] = {
     "seed": ExperimentKey("The seed of the random numbers (0)."),
     "jobs": ExperimentKey("The number of processes. It does not change the results."),
     "dask": ExperimentKey("The address of the scheduler of a Dask cluster."),
-    "resume": ExperimentKey("The file in which the points are saved. Those that it contains are not computed again."),
+    RESUME: ExperimentKey("The file in which the points are saved. Those that it contains are not computed again."),
     "max-time": ExperimentKey('Overrides `<max_time>` of the system, such as `"100 s"`.'),
     "reaction-time": ExperimentKey(
         'How long machines may wait before a possible step: `any`, `instant`, or `"20 ms"`.'
@@ -151,6 +151,7 @@ def experiment_findings(
         yield Finding("invalid-setting", start, 'the file names no model; add `model = "main.xml"`')
     for key, value in table.items():
         yield from reader.entry(key, value)
+    yield from reader.together(table)
     written = table.get(MODEL)
     names = asked(resolve(source.path, written)) if isinstance(written, str) else None
     if names is not None:
@@ -185,6 +186,22 @@ class _Reader:
                     yield self._at(
                         None, path, f"there is no file `{name}`; paths are relative to the folder of this file"
                     )
+
+    def together(self, table: Mapping[str, Any]) -> Iterator[Finding]:
+        """The keys that need another one, or exclude it."""
+        if FIND not in table:
+            if MEETS in table:
+                yield self._at_key(MEETS, f"`{MEETS}` needs `{FIND}`, the parameter for which values are searched")
+        elif MEETS not in table:
+            yield self._at_key(FIND, f'`{FIND}` needs `{MEETS}`, such as `{MEETS} = "delivered >= 0.99"`')
+        else:
+            if PROPERTY in table:
+                yield self._at_key(PROPERTY, f"`{FIND}` computes the property in `{MEETS}`; remove `{PROPERTY}`")
+            if RESUME in table:
+                yield self._at_key(RESUME, f"`{FIND}` saves no points; remove `{RESUME}`")
+
+    def _at_key(self, key: str, message: str) -> Finding:
+        return self._at(self._known.keys.get((key,)), (key,), message)
 
     def names(self, table: Mapping[str, Any], names: AskedModel) -> Iterator[Finding]:
         """The names that the model does not have."""

@@ -20,6 +20,8 @@ const NEARLY_CERTAIN = 0.999;
 
 export class Experiments implements vscode.Disposable {
     private readonly panels = new Set<ExperimentPanel>();
+    /** The panels of the experiments in files, by the URIs of the files. */
+    private readonly ofFiles = new Map<string, ExperimentPanel>();
 
     constructor(
         private readonly context: vscode.ExtensionContext,
@@ -34,13 +36,19 @@ export class Experiments implements vscode.Disposable {
         if (experiment) await this.open(experiment);
     }
 
-    /** Run the experiment in a file. */
+    /** Run the experiment in a file; again, if it is shown already. */
     async openFile(file: vscode.Uri): Promise<void> {
         if (!isTrusted()) return;
-        await this.open({ title: vscode.workspace.asRelativePath(file), arguments: [file.fsPath] });
+        const key = file.toString();
+        const shown = this.ofFiles.get(key);
+        if (shown) {
+            await shown.again();
+            return;
+        }
+        await this.open({ title: vscode.workspace.asRelativePath(file), arguments: [file.fsPath] }, key);
     }
 
-    private async open(experiment: Experiment): Promise<void> {
+    private async open(experiment: Experiment, file?: string): Promise<void> {
         const { state } = this.server;
         if (state.kind !== "running") {
             void vscode.window.showErrorMessage(vscode.l10n.t("The language server is not running."));
@@ -48,7 +56,11 @@ export class Experiments implements vscode.Disposable {
         }
         const panel = new ExperimentPanel(experiment, this.context, this.debugging, state.server);
         this.panels.add(panel);
-        panel.onDispose(() => this.panels.delete(panel));
+        if (file !== undefined) this.ofFiles.set(file, panel);
+        panel.onDispose(() => {
+            this.panels.delete(panel);
+            if (file !== undefined) this.ofFiles.delete(file);
+        });
         await panel.start();
     }
 
@@ -86,12 +98,19 @@ class ExperimentPanel {
         this.panel.dispose();
     }
 
+    /** Show the panel, and run the experiment again unless it is running. */
+    async again(): Promise<void> {
+        this.panel.reveal(undefined, true);
+        if (!this.running) await this.start();
+    }
+
     /** Run the experiment, and show each line of its output. */
     async start(): Promise<void> {
-        // The command reads the files from the disk.
-        await vscode.workspace.saveAll(false);
         const running = new AbortController();
         this.running = running;
+        // The command reads the files from the disk.
+        await vscode.workspace.saveAll(false);
+        const before = this.live;
         this.show(vscode.l10n.t("Reading the model…"));
         const { command, args } = this.program;
         const ended = await run(command, [...args, "experiment", ...this.experiment.arguments, "--live"], {
@@ -103,7 +122,7 @@ class ExperimentPanel {
         if (this.running === running) this.running = undefined;
         const { done = 0, total = 0 } = this.live ?? {};
         if (running.signal.aborted) this.show(vscode.l10n.t("Cancelled: {0} of {1} points are known", done, total));
-        else if (total > 0 && done > 0) this.show(vscode.l10n.t("{0} points", done));
+        else if (this.live !== before && done > 0) this.show(vscode.l10n.t("{0} points", done));
         else this.show(ended.err.trim().split("\n").slice(0, ERROR_LINES).join("\n"));
     }
 

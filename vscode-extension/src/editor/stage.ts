@@ -85,9 +85,9 @@ export class Stage implements vscode.Disposable {
         const compared = session.configuration[COMPARED_WITH] as ComparedWith | undefined;
         // The timelines of two runs show them to their ends.
         if (compared) await this.goTo(session, compared.comparison.alignment.here.end);
-        await this.open();
         const step: unknown = session.configuration[AT_STEP];
-        if (typeof step === "number") await session.customRequest("goToStep", { step });
+        if (typeof step === "number") await this.goTo(session, step);
+        await this.open();
     }
 
     /** Resolves when the run has stopped there. */

@@ -9,8 +9,11 @@ from roaml.ide.completion.item import CompletionItem, ItemKind
 from roaml.ide.experiment import parameters_of, properties_of
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
-from roaml.project.experiment_file import FIND, KEYS, MODEL, PROPERTY, SET, UNIT, KeyForm, key_name, model_in
+from roaml.project.experiment_file import FIND, KEYS, MEETS, MODEL, PROPERTY, SET, UNIT, KeyForm, key_name, model_in
 from roaml.project.paths import seen_from
+
+_EXPECTED = ">= 0.99"
+"""What is proposed as the expectation of a property for which none is set."""
 
 
 def experiment_keys(analysis: Analysis, path: str, section: str) -> Iterator[CompletionItem]:
@@ -41,6 +44,9 @@ def experiment_values(analysis: Analysis, path: str, key: str) -> Iterator[tuple
         yield from ((seen_from(system, path), FileKind.SYSTEM.value) for system in analysis.system_paths)
     elif name == PROPERTY and model is not None:
         yield from ((property_.name, property_.comment) for property_ in properties_of(analysis, model))
+    elif name == MEETS and model is not None:
+        for property_ in properties_of(analysis, model):
+            yield f"{property_.name} {property_.expected or _EXPECTED}", property_.comment
     elif name == FIND and model is not None:
         yield from ((parameter.name, parameter.limits) for parameter in parameters_of(analysis, model))
     elif (known := KEYS.get(name)) is not None:

@@ -96,12 +96,12 @@ export class ComparedStages {
         const moves =
             message.from === "move" || (message.from === "timeline" && message.message.type.startsWith("goTo"));
         if (moves) {
-            this.leader = side;
+            this.lead(side);
             if (side === "there") this.here.pause();
             // At the end of the first run, the second one goes on.
             const isForward = message.from === "move" && message.move === "stepForward";
             if (isForward && this.here.isAtEnd && this.atThere !== undefined) {
-                this.leader = "there";
+                this.lead("there");
                 this.goTo("there", this.atThere + 1);
                 return;
             }
@@ -109,8 +109,14 @@ export class ComparedStages {
         this.post(side === "there" ? { from: "there", message } : message);
     }
 
+    /** Let a run lead. A state of the other one, for which nothing has been asked yet, is of no use then. */
+    private lead(side: SideName): void {
+        if (side !== this.leader) this.next = undefined;
+        this.leader = side;
+    }
+
     private goToParting(): void {
-        this.leader = "here";
+        this.lead("here");
         this.here.pause();
         this.goTo("here", this.comparison.alignment.here.step);
     }
@@ -125,22 +131,21 @@ export class ComparedStages {
         const position = this.sides[side].querySelector(".side-position");
         const time = at.time === null ? "" : ` · ${at.time.toFixed(3)} s`;
         if (position) position.textContent = `${this.comparison.step} ${at.step}${time}`;
+        const parting = this.comparison.alignment[side].step;
+        const where = at.step < parting ? "before" : at.step === parting ? "at" : "after";
+        this.sides[side].dataset["where"] = where;
         if (side === this.leader) {
-            this.say(at.step);
+            this.say(where);
             this.next = { at, isPlayed };
         }
         this.follow();
     }
 
     /** Say whether the runs still do the same. */
-    private say(step: number): void {
-        const { alignment, before, at, after } = this.comparison;
-        const parting = alignment[this.leader].step;
-        const where = step < parting ? "before" : step === parting ? "at" : "after";
-        const text = { before, at, after }[where];
+    private say(where: "before" | "at" | "after"): void {
+        const text = this.comparison[where];
         const status = this.status.firstElementChild;
         if (status && status.textContent !== text) status.textContent = text;
-        for (const side of Object.values(this.sides)) side.dataset["where"] = where;
     }
 
     /** Look for the state of the other run that belongs to that of the leader. */
@@ -157,16 +162,21 @@ export class ComparedStages {
         this.post(side === "there" ? { from: "there", message: { from: "ask", asked } } : { from: "ask", asked });
     }
 
-    /** The state that was asked for; undefined while the run moves. It is asked for again where the run stops. */
+    /**
+     * The state that was asked for; undefined while the run moves. It is asked for again where the run stops. It is of no
+     * use if the user has begun to move in this run meanwhile.
+     */
     private found(side: SideName, moment: Moment | undefined): void {
         const { asked } = this;
         this.asked = undefined;
-        if (!moment) {
-            this.next ??= asked;
-            return;
+        if (side !== this.leader) {
+            if (!moment) {
+                this.next ??= asked;
+                return;
+            }
+            if (asked?.isPlayed === true) this[side].preview(moment);
+            else this.goTo(side, moment.step);
         }
-        if (asked?.isPlayed === true) this[side].preview(moment);
-        else this.goTo(side, moment.step);
         this.follow();
     }
 }
