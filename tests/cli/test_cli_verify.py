@@ -511,6 +511,18 @@ def test_interrupted_while_traces_look_for_stuck_ones(
     assert done.out.startswith("heads: = 0.3 for all schedulers")
 
 
+def test_interrupted_before_there_are_results(
+    command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(*_: Any, **__: Any) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("as2fm_lsp.cli.verify.read_target", interrupted)
+    done = command("verify", write(tmp_path, coin()))
+    assert (done.status, done.out) == (130, "")
+    assert done.err.endswith("as2fm-lsp: interrupted before there were results\n")
+
+
 def test_a_bar_on_a_terminal(tmp_path: Path) -> None:
     name = write(tmp_path, coin())
     ours, theirs = pty.openpty()

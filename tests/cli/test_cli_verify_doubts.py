@@ -135,6 +135,33 @@ def test_time_stops_while_machines_exchange_events(command: Command, tmp_path: P
     )
 
 
+def test_a_simulation_ends_where_time_stops(command: Command, tmp_path: Path) -> None:
+    write(tmp_path, ENDLESS, {"op": "=", "left": "topic_ping_msg__ros_fields__data", "right": 7})
+    out = command("simulate", "main.xml").out
+    assert re.search(
+        r", 10,000 steps, \d s, time stops at \d s: `P.ng` and `P.ng` take steps for ever, so no timer ticks any more$",
+        out,
+        re.MULTILINE,
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "hint"),
+    [
+        ("Battery.level", "a property reads messages and events, not the variables of machines, such as "),
+        ("Battery.level", "`topic_level_msg.valid` (true after the first one) and `topic_level_msg__ros_fields__data`"),
+        ("topic_dock_msg.valid", "because nothing in the system sends a message on the topic `dock`"),
+        ("topic_levl_msg.valid", "did you mean `topic_level_msg.valid`?"),
+    ],
+)
+def test_a_property_with_an_unknown_variable(command: Command, tmp_path: Path, name: str, hint: str) -> None:
+    write(tmp_path, LEVEL, low(30))
+    done = command("verify", "main.xml", "--property", f"P=? [ F {name} ]")
+    assert done.status == 2
+    assert f"there is no variable `{name}`" in done.err
+    assert hint in done.err
+
+
 def test_endless_traces_are_not_said_to_be_missing(command: Command, tmp_path: Path) -> None:
     write(tmp_path, ENDLESS, {"op": "=", "left": "topic_ping_msg__ros_fields__data", "right": 7})
     done = command("verify", "main.xml", "--explain")

@@ -202,7 +202,13 @@ def test_all_schedulers_agree(command: Command, tmp_path: Path) -> None:
     assert row["minimum"] == row["maximum"]
     assert "warning" not in row
     traces = command("verify", "model.jani", "--method", "adaptive").out
-    assert "all schedulers agree: all 3 states were explored" in traces
+    assert "all schedulers agree on 0.3: all 3 states were explored" in traces
+    few = command("verify", "model.jani", "--method", "adaptive", "--max-states", "2").out
+    assert "were explored" not in few
+    assert few.startswith("heads: minimum not known")
+    assert (
+        "is not known (too many states: gave up after 2; " in command("verify", "model.jani", "--max-states", "2").out
+    )
 
 
 def hidden() -> Json:

@@ -62,6 +62,9 @@ def test_unknown_and_impossible_values(capsys: pytest.CaptureFixture[str]) -> No
         api.grid_of(path, ["capacty=50"])
     status, _, error = called(capsys, path, "--set", "capacty=50")
     assert (status, error.count("did you mean `capacity`?")) == (2, 1)
+    status, _, error = called(capsys, path, "--set", "x=0.8:0.9")
+    assert (status, error.count("no parameter `x`; it declares `capacity` and `present`")) == (2, 1)
+    assert "fewer than two numbers with the step 1" in called(capsys, path, "--set", "present=0.8:0.9")[2]
     assert called(capsys, path, "--set", "capacity=2000")[0] == 1
     points = {
         dict(p.setting)["capacity"]: p for p in api.grid_of(path, ["capacity=50,5000"], ["all_delivered"]).points()

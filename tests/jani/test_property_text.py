@@ -165,7 +165,10 @@ def test_names_are_checked() -> None:
         ("P=? [ F<=5 s a ]", ""),
         ("P=? [ F a ]", ""),
         ("P=? [ a | b U c ]", ""),
-        ("P=? [ F a || G b ]", "Only traces that satisfy `G b`, because `||` before F, G or X begins a condition."),
+        (
+            "P=? [ F a || G b ]",
+            "Assumption: only traces that satisfy `G b` count; `||` before F, G or X begins an assumption.",
+        ),
         ('R{"time"}=? [ F a ]', "The time is in s."),
         ('R{"steps"}=? [ F a ]', ""),
     ],

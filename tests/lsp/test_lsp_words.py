@@ -117,6 +117,10 @@ async def compare(
         }
         for place, shown in places.items():
             wrong += [f"{name}, {place}: {text}" for text in contradictions(words, shown or "-")]
+        if "uniform choices" in block:
+            means = "uniform choices: each step that is possible is equally probable"
+            editor = ("the list of tests", "the hover")
+            wrong += [f"{name}, {place}: no meaning" for place in editor if means not in places[place]]
         if f"Verify · {words}" not in titles:
             wrong.append(f"{name}: no lens shows `{words}`")
         if ("NOT MET" in block) != (view["mark"] == "failed"):

@@ -286,7 +286,7 @@ def test_assumptions_that_no_trace_satisfies_leave_no_value() -> None:
     assert result.answer is not None
     assert (result.answer.tally.traces, result.answer.tally.rejected) == (0, 150)
     assert not result.is_met
-    why = "no trace satisfies the assumptions, so there is no value: 150 traces violate them"
+    why = "no trace satisfies the assumptions of the property, so there is no value: 150 traces violate them"
     assert one_as_text(result, str).startswith(f"g: {why}, ")
     assert row(result)["assumptions"] == {"satisfied": 0, "violated": 150}
     assert warning(result) == why

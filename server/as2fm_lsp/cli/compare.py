@@ -78,7 +78,7 @@ def run(arguments: Sequence[str]) -> int:
         except OSError as error:
             complain(f"{shown_path(str(error.filename or ''))}: {error.strerror or error}")
         except KeyboardInterrupt:
-            return interrupts.status
+            return interrupts.without_results()
     return USAGE
 
 

@@ -70,8 +70,8 @@ def run(arguments: Sequence[str]) -> int:
             raise
         except OSError as error:
             complain(f"{shown_path(str(error.filename or ''))}: {error.strerror or error}")
-        except KeyboardInterrupt:  # before there are results
-            return interrupts.status
+        except KeyboardInterrupt:
+            return interrupts.without_results()
     return USAGE
 
 

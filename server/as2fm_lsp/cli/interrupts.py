@@ -8,6 +8,8 @@ import threading
 from types import FrameType, TracebackType
 from typing import Any
 
+from as2fm_lsp.cli.output import complain
+
 
 class Interrupts:
     """While it is entered, SIGTERM raises `KeyboardInterrupt`, as Ctrl-C does: the command ends its workers and reports
@@ -34,6 +36,11 @@ class Interrupts:
     def status(self) -> int:
         """The exit status of an interrupted command, as in shells: 128 + the number of the signal."""
         return 128 + (signal.SIGTERM if self._is_terminated else signal.SIGINT)
+
+    def without_results(self) -> int:
+        """Say that there are no results, and return the exit status."""
+        complain("interrupted before there were results")
+        return self.status
 
     def ignore(self) -> None:
         """Ignore further interrupts, so that the results so far are reported."""

@@ -33,6 +33,7 @@ from roaml.durations import short_moment
 from roaml.figures.themes import THEMES
 from roaml.jani.node import Origin
 from roaml.simulation import RunError, SavedSession, Session
+from roaml.smc.end import End
 from roaml.smc.fault import FaultError
 from roaml.verification.target import VerificationTarget
 
@@ -172,6 +173,13 @@ def _summary(session: Session) -> str:
     end = session.end
     if end is not None:
         parts.append(end.text)
+    elif stopped := session.stopped():
+        at, names = stopped
+        who = " and ".join(f"`{name}`" for name in names) or "machines"
+        verb = "takes" if len(names) == 1 else "take"
+        parts.append(f"time stops at {short_moment(at)}: {who} {verb} steps for ever, so no timer ticks any more")
+    elif session.repeats():
+        parts.append(End.ROUND.text)
     if session.is_changed:
         parts.append("the state was changed by the user, so the run does not show the behaviour of the model")
     elif session.is_by_hand:

@@ -80,8 +80,8 @@ def run(arguments: Sequence[str]) -> int:
     with Interrupts() as interrupts:
         try:
             return _checked(options, interrupts)
-        except KeyboardInterrupt:  # before there are results
-            return interrupts.status
+        except KeyboardInterrupt:
+            return interrupts.without_results()
 
 
 def _checked(options: argparse.Namespace, interrupts: Interrupts) -> int:

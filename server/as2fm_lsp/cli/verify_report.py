@@ -17,6 +17,7 @@ from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH
 from as2fm_lsp.verification import stuck_report
 from as2fm_lsp.verification.node_names import explained
 from as2fm_lsp.verification.report import as_brief_text, as_json, as_text
+from as2fm_lsp.verification.scheduler_report import A_SCHEDULER, UNIFORM_CHOICES
 from roaml.durations import ANY, ANY_TIME, AT_ONCE, INSTANT
 from roaml.record import Record
 from roaml.scxml.names import SUCCEEDS
@@ -34,9 +35,6 @@ if TYPE_CHECKING:
 
 MAX_NAMED = 3
 """The maximum number of properties that a note about the values names."""
-UNIFORM_CHOICES = "uniform choices: each step that is possible is equally probable"
-A_SCHEDULER = "a scheduler: a rule that chooses which of the possible steps is next"
-"""What the words of results mean for readers who do not know model checking."""
 REACTIONS = {
     INSTANT: "assumed: machines take possible steps at once, before time advances",
     ANY: "assumed: nodes may wait before they take a possible step",

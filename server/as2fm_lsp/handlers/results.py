@@ -27,6 +27,7 @@ from as2fm_lsp.verification import background
 from as2fm_lsp.verification.known_results import ExpectedNow, KnownResult, expected_now, missed, short
 from as2fm_lsp.verification.report import one_as_text, row
 from as2fm_lsp.verification.result_view import SYMBOLS, mark_of, result_view
+from as2fm_lsp.verification.scheduler_report import meanings
 from roaml.debugging.overview import StateRow, overview
 from roaml.debugging.sources import Sources
 from roaml.ide.describe import markdown
@@ -232,7 +233,8 @@ def hints(context: Context, on: RequestedDocument, within: types.Range) -> Itera
             text = f"{mark}{_of_instance(property_, properties)} {result_words(current, known, where)}"
             position = on.convert.position(on.source, min(property_.name_span.end + 1, len(on.source.text)))
             place_of = partial(place_in_words, known.result.traces.target if known.result.traces else None)
-            tooltip = one_as_text(known.result, place_of)
+            report = one_as_text(known.result, place_of)
+            tooltip = f"{report}{meanings(report)}"
             yield types.InlayHint(position, text, tooltip=tooltip, padding_left=True)
 
 

@@ -14,7 +14,7 @@ _UNTESTED = "these are among the passed traces, but do not test it"
 _NEVER_TESTED = "the property is vacuous, that is, met only because nothing has tested it:"
 _NOT_TRIGGERED = "the event that makes it require something did not occur"
 _NOT_OPENED = "the event of its scope did not occur"
-NONE_ACCEPTED = "no trace satisfies the assumptions, so there is no value"
+NONE_ACCEPTED = "no trace satisfies the assumptions of the property, so there is no value"
 
 
 def remarks(answer: Answer, *, are_examples: bool = False) -> list[str]:

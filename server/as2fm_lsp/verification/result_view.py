@@ -10,6 +10,7 @@ from typing import TypedDict
 
 from as2fm_lsp.verification.known_results import KnownResult, missed
 from as2fm_lsp.verification.report import one_as_text
+from as2fm_lsp.verification.scheduler_report import meanings
 from roaml.ide.verifiable import Texts
 from roaml.text import Location
 from roaml.verification.counterexample import unwanted_trace, witness_trace
@@ -92,7 +93,8 @@ def result_view(known: KnownResult, now: Texts, place_of: Callable[[Location], s
     """
     result = known.result
     unwanted, traces = unwanted_trace(result), result.traces
-    first, *more = one_as_text(result, place_of).splitlines()
+    text = one_as_text(result, place_of)
+    first, *more = [*text.splitlines(), *filter(None, (meanings(text),))]
     is_estimate = isinstance(result.outcome, Estimated)
     return {
         "mark": mark_of(result).value,

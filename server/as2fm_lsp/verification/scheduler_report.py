@@ -13,6 +13,9 @@ from roaml.verification.headline import bound_text
 from roaml.verification.number_text import number
 from roaml.verification.schedulers import extreme_of, is_minimised
 
+UNIFORM_CHOICES = "uniform choices: each step that is possible is equally probable"
+A_SCHEDULER = "a scheduler: a rule that chooses which of the possible steps is next"
+"""What the words of results mean for readers who do not know model checking."""
 MAX_NAMED = 4
 """The maximum number of properties that a note names."""
 
@@ -30,7 +33,9 @@ def remark(question: Question, choices: Choices | None) -> str:
     if choices is None:
         return ""
     if choices.agreement:
-        return f"all schedulers agree: {choices.agreement}"
+        value = choices.minimum
+        on = f" on {number(value.value)}" if value is not None and value.is_exact else ""
+        return f"all schedulers agree{on}: {choices.agreement}"
     asked = f"the property asks for the {extreme_of(question)} over all schedulers"
     known = choices.minimum if is_minimised(question) else choices.maximum
     if known is not None and choices.differ:
@@ -81,6 +86,13 @@ def _initial_states_remark(question: Question, choices: Choices | None) -> str:
     return f"{head} the {asked}, which may differ"
 
 
+def meanings(text: str) -> str:
+    """What the words for schedulers in a text mean, in one line; "" if it has none of them."""
+    parts = [UNIFORM_CHOICES] if "uniform choices" in text else []
+    parts += [A_SCHEDULER] if "minimum" in text or "maximum" in text else []
+    return "; ".join(parts)
+
+
 def warning(question: Question, choices: Choices | None) -> str:
     """The text of `remark` for programs if it is a warning; otherwise empty."""
     text = remark(question, choices)
@@ -99,14 +111,18 @@ def note(entries: Sequence[tuple[Question, Choices]], *, knows_reactions: bool =
         return []
     names: dict[tuple[str, str], list[str]] = {}
     tried: dict[tuple[str, str], int] = {}
+    explored: dict[tuple[str, str], int] = {}
     for question, choices in entries:
         key = (question.operator, "" if choices.tried else _looked(question, choices))
         names.setdefault(key, []).append(question.name)
         tried[key] = max(tried.get(key, 0), choices.tried)
+        explored[key] = max(explored.get(key, 0), choices.explored)
     lines = []
     for (operator, why), of in names.items():
         extreme = "minimum" if operator.endswith("min") else "maximum"
         looked = why or f"{_no_difference(tried[operator, why], 'up to ')}, which proves nothing"
+        if states := explored[operator, why]:
+            looked = f"too many states: gave up after {states:,}; {looked}"
         lines.append(f"note: the {extreme} of {_listed(of)} over all schedulers is not known ({looked})")
     ways = ["--exhaustive to compute it from all states", "--scheduler uniform if uniform choices are meant"]
     if knows_reactions:

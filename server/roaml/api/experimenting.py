@@ -6,13 +6,14 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from roaml.api.expanded_chances import expanded_chances
 from roaml.api.jani_files import read_jani
 from roaml.api.mocked_systems import mock_system
 from roaml.api.parametric_mocks import MockTexts, ParametricTree
-from roaml.api.systems import LoadedSystem, load, values_of_parameters
+from roaml.api.systems import LoadedSystem, ModelError, load, values_of_parameters
 from roaml.api.verifying import ConstantError, as_target
 from roaml.disk import read
 from roaml.experiments.enough import Enough, enough_of, together
@@ -175,18 +176,31 @@ def grid_of(
     mocks: MockTexts = NO_MOCKS,
 ) -> Grid:
     """The grid of an experiment, before its points are computed. Arguments and errors are those of `experiment`."""
+    model = parametric_model(path, ros_paths, settings, overrides, mocks)
     if isinstance(sweeps, Mapping):
         given = tuple(Sweep(name, tuple(map(str, values))) for name, values in sweeps.items())
     else:
-        given = sweeps_of(sweeps)
+        given = _read_sweeps(sweeps, model)
     if any(not sweep.values for sweep in given):
         raise SweepError("a parameter without values has no points")
-    model = parametric_model(path, ros_paths, settings, overrides, mocks)
     first = asking(model.target(tuple((sweep.name, sweep.values[0]) for sweep in given)), properties or ())
     known = first.properties
     names = tuple(p.name for p in (known if properties is None else select(known, properties, "model")))
     computed = options or ExperimentOptions()
     return Grid(model, given, names, computed, first.files, _digest(first.files, computed, overrides, mocks, settings))
+
+
+def _read_sweeps(texts: Sequence[str], model: ParametricModel) -> tuple[Sweep, ...]:
+    """The sweeps in texts. If one is not valid, and names a parameter that a system does not declare, that is the
+    error, because its values cannot be mended."""
+    try:
+        return sweeps_of(texts)
+    except SweepError:
+        if isinstance(model, ParametricSystem):
+            for name, equals, _ in (text.partition("=") for text in texts):
+                with suppress(ModelError):  # the value need not suit
+                    model.target(((name.strip(), "1"),) if equals and name.strip() else ())
+        raise
 
 
 def _digest(

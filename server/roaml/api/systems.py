@@ -171,7 +171,8 @@ def unknown_parameter(analysis: Analysis, systems: Iterable[str], overrides: Ove
     for name, _ in overrides.values:
         if name not in names:
             close = close_names(name, names)
-            known = did_you_mean(close) if close else f"; it declares {listing(sorted(names))}" if names else ""
+            declared = listing(sorted(names)) if names else "no parameters"
+            known = did_you_mean(close) if close else f"; it declares {declared}"
             return f"the system declares no parameter `{name}`{known}"
     return ""
 

@@ -103,9 +103,10 @@ def _range(text: str, name: str) -> Iterator[str]:
         (low, step, count) for step, high in readings if step > 0 and (count := math.floor((high - low) / step)) > 0
     }
     if not ranges:
+        step_of = "" if rest else " with the step 1"
         raise SweepError(
-            f"the range `{text}` of `{name}` contains less than two numbers; write the values with commas, or "
-            "`LOW:HIGH:STEP`"
+            f"the range `{text}` of `{name}` contains fewer than two numbers{step_of}; write the values with commas, "
+            "or `LOW:HIGH:STEP`"
         )
     if len(ranges) > 1:
         raise SweepError(

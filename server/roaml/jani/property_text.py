@@ -193,7 +193,8 @@ class _Parser:
         if given is not None:
             path = self.text[begin : self.token.start].strip()
             self.remarks.insert(
-                0, f"Only traces that satisfy `{path}`, because `||` before F, G or X begins a condition."
+                0,
+                f"Assumption: only traces that satisfy `{path}` count; `||` before F, G or X begins an assumption.",
             )
         self.expect("]")
         if self.token.text:

@@ -20,6 +20,7 @@ from roaml.smc.kernel import Kernel
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import FAULTY, UNKNOWN
 from roaml.smc.record import Plain, RecordedVariable, StepReader, TraceStep
+from roaml.smc.rounds import Rounds
 from roaml.smc.standstill import Standstill
 
 SNAPSHOT_INTERVAL = 512
@@ -105,6 +106,7 @@ class Run:
         self._program = compiled.program
         self._kernel = Kernel(compiled.program, compiled.goal)
         self.legend = checker.legend
+        self._rounds = Rounds(compiled)
         self._reader = StepReader(self._kernel, self.legend)
         self.steps: list[TraceStep] = []
         self.decisions: list[ByHand | None] = []
@@ -279,6 +281,16 @@ class Run:
     def end(self) -> End | None:
         """The reason why no further step changes the state; `None` if a step changes it."""
         return End(self._kernel.standstill()) if self.has_ended else None
+
+    def repeats(self) -> bool:
+        """Whether the seed leads to some states again and again, which do not decide the property. It is found after
+        many steps (`rounds.FIRST_CHECK`)."""
+        if self.has_ended or self.is_by_hand or self.status != UNKNOWN:
+            return False
+        saved = self._kernel.save()
+        status = self._rounds.check(self._kernel, self.seed, self.trace)
+        self._kernel.load(saved)
+        return status not in (UNKNOWN, FAULTY)
 
     def standstill(self) -> Standstill:
         """The current state, as input for the analysis of the automata that wait for one another."""

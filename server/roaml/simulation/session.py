@@ -22,6 +22,7 @@ from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import UNKNOWN
 from roaml.smc.record import VERDICTS, AutomatonStep, Plain, RecordedVariable, Recording, TraceStep, TraceVerdict
+from roaml.smc.rounds import FIRST_CHECK, limits
 from roaml.smc.story import Story, clock_times
 from roaml.views.arrays import DeclaredValue
 from roaml.views.variables import variable_phrases
@@ -478,8 +479,32 @@ class Session:
         return self.go_on(lambda step: sent_by(step.action or "") in events, limit)
 
     def until_decided(self, limit: int = MAX_STEPS) -> bool:
-        """Take steps until the property is decided; return whether it was decided."""
-        return self.is_decided or self.go_on(lambda _: self.is_decided, limit)
+        """Take steps until the property is decided, or until the same states are known to repeat for ever (`repeats`);
+        return whether it was decided."""
+        begin = self.position
+        for end in limits(limit):
+            if self.is_decided or self.go_on(lambda _: self.is_decided, begin + end - self.position):
+                return True
+            if self.position < begin + end or self.repeats():
+                break
+        return False
+
+    def repeats(self) -> bool:
+        """Whether the seed leads to some states again and again, which do not decide the property. It is found after
+        many steps (`roaml.smc.rounds`)."""
+        return self.position >= FIRST_CHECK and self._run.repeats()
+
+    def stopped(self) -> tuple[float, list[str]] | None:
+        """The time at which time stops, in s, and the machines that take steps for ever; `None` if the states of the
+        run do not repeat, or time passes among them."""
+        if self.time is None or not self.repeats():
+            return None
+        times = clock_times(self.steps[: self.position], self._clock)
+        last = [step for step, time in zip(self.steps, times, strict=False) if time == self.time]
+        if len(last) <= self.position // 2:
+            return None
+        actors = (part for step in last[len(last) // 2 :] for part in self.actors(step))
+        return self.time, list(dict.fromkeys(part.automaton for part in actors if self.is_machine(part.instance)))
 
     def back(self, steps: int = 1) -> None:
         """Go back by `steps` steps, at most to the start."""

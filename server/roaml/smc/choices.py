@@ -74,12 +74,14 @@ class Choices(Record, frozen=True):
         agreement: the reason why all schedulers have the same value; empty if that is unknown.
         minimum, maximum: the extreme values of schedulers; `None` if unknown.
         tried: the number of schedulers that were sampled.
+        explored: the number of states at which a search through all of them stopped; 0 if there was none.
     """
 
     agreement: str = ""
     minimum: Extreme | None = None
     maximum: Extreme | None = None
     tried: int = 0
+    explored: int = 0
 
     @property
     def differ(self) -> bool:

@@ -58,6 +58,7 @@ class Attempt(Record, frozen=True):
         reason: why there are no values, for users; "" if only traces can answer the property.
         space: the states from which the values were computed.
         is_cut: whether there are no values because there are too many transitions.
+        explored: the greatest number of states at which a search stopped; 0 if none stopped.
     """
 
     exact: Exact | None
@@ -65,6 +66,7 @@ class Attempt(Record, frozen=True):
     reason: str = ""
     space: Space | None = None
     is_cut: bool = False
+    explored: int = 0
 
 
 def attempt(
@@ -88,7 +90,7 @@ def attempt(
     """
     if property_.question.is_conditional:
         return _conditional(checker, property_, limits, watch, only_uniform=only_uniform)
-    cost, reason, is_cut = setup_cost(checker), "", False
+    cost, reason, is_cut, explored = setup_cost(checker), "", False, 0
     checker, property_ = alone(checker, property_)
     tables = search_tables(checker, property_, limits)
     reduces = leaves_out and can_be_reduced(checker.program, property_.goal)
@@ -101,7 +103,7 @@ def attempt(
             exact, reason = values_from(space, most), ""
         except LimitError as error:
             search, reason = error.search, str(error)
-            is_cut = error.is_of_transitions
+            is_cut, explored = error.is_of_transitions, max(explored, error.states)
         except UndecidedError as error:
             reason, is_cut = str(error), False
         except FaultError:
@@ -111,7 +113,7 @@ def attempt(
             cost += weight * (search.transitions + search.passed) // _COST_OF_BOTH
         if exact is not None:
             return Attempt(exact if exact.is_precise else None, cost, space=space)
-    return Attempt(None, cost, reason, is_cut=is_cut)
+    return Attempt(None, cost, reason, is_cut=is_cut, explored=explored)
 
 
 def _searches(limits: StateLimits, *, reduces: bool, is_repeated: bool) -> Iterator[tuple[StateLimits, bool]]:
@@ -165,7 +167,7 @@ def setup_cost(checker: ModelChecker) -> int:
     return SETUP_COST * len(checker.program.code)
 
 
-def limits_beside(steps: int, setup: int) -> StateLimits | None:
+def limits_beside(steps: int, setup: int, states: int) -> StateLimits | None:
     """The limits of a search that compares schedulers beside traces that were requested: it may take a fifth of the
     time of these traces, and explores few states in any case. `None` if it should not be started, because its
     preparation takes too long.
@@ -173,10 +175,13 @@ def limits_beside(steps: int, setup: int) -> StateLimits | None:
     Args:
         steps: the number of steps of the traces.
         setup: the duration of the preparation, in transitions (`setup_cost`).
+        states: the maximum number of states of any search (`Budget.states`).
     """
     most = LIMITS.transitions or 0
     left = min(steps // _STEPS_PER_TRANSITION - setup, most)
-    return replace(LIMITS, transitions=max(left, _LEAST_BESIDE)) if left > 0 or setup <= most else None
+    if left <= 0 and setup > most:
+        return None
+    return replace(LIMITS, states=min(LIMITS.states, states), transitions=max(left, _LEAST_BESIDE))
 
 
 class Budget:
@@ -189,6 +194,11 @@ class Budget:
         self._left = limits.transitions or 0
         self._asked = 0
         self._waiting = 0
+
+    @property
+    def states(self) -> int:
+        """The maximum number of states of each search."""
+        return self._limits.states
 
     def share(self, properties: int, setup: int = 0) -> StateLimits | None:
         """The limits of the next property of this number; `None` if it should not be searched.

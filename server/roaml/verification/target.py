@@ -169,11 +169,14 @@ def _checked(model: Model, text: str, name: str, expression: object) -> Property
     """
     import json  # noqa: PLC0415
 
+    from roaml.jani.notes import NAME  # noqa: PLC0415
+    from roaml.jani.properties import identifiers  # noqa: PLC0415
     from roaml.jani.property_text import PropertyTextError  # noqa: PLC0415
     from roaml.jani.reader import read_properties  # noqa: PLC0415
     from roaml.jani.typecheck import check_property, model_scope  # noqa: PLC0415
     from roaml.json_syntax import parse  # noqa: PLC0415
     from roaml.verification.labels import with_labels  # noqa: PLC0415
+    from roaml.verification.unknown_names import unknown_variable  # noqa: PLC0415
 
     labelled = with_labels(expression, model)
     source = json.dumps({"properties": [{"name": name, "expression": labelled}]})
@@ -184,5 +187,9 @@ def _checked(model: Model, text: str, name: str, expression: object) -> Property
         span = findings[0].span
         named = next((p.name for p in model.properties if p.name == source[span.start : span.end].strip('"')), None)
         other = "" if named is None else f"; the property `{named}` is no condition, because it has not the form `F c`"
-        raise PropertyTextError(f"`{text}`: {findings[0].message}{other}")
+        message = findings[0].message
+        unknown = next((n for n, span in identifiers(properties[0].expression) if span == findings[0].span), None)
+        if findings[0].code == NAME and unknown is not None and named is None:
+            message = unknown_variable(unknown, model, message)
+        raise PropertyTextError(f"`{text}`: {message}{other}")
     return properties[0]

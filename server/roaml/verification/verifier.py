@@ -244,6 +244,7 @@ class Verifier(Record, frozen=True):
         explorations: the exact values that several properties share.
         budget: the limits of all searches for exact values that are not requested.
         reaction_budget: those of all searches under the assumption that machines react at once.
+        explored: what a search was about -> the number of states at which it stopped.
     """
 
     target: VerificationTarget
@@ -257,6 +258,7 @@ class Verifier(Record, frozen=True):
     explorations: Explorations = field(default_factory=Explorations)
     budget: Budget = field(default_factory=Budget)
     reaction_budget: Budget = field(default_factory=lambda: Budget(REACTION_LIMITS))
+    explored: dict[object, int] = field(default_factory=dict)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -453,7 +455,7 @@ class Verifier(Record, frozen=True):
     def _beside(self, property_: CompiledProperty, answer: Answer) -> Exact | None:
         """The exact values of a property, to compare schedulers beside traces that were requested; `None` if the model
         is so large that the search would take longer than the traces."""
-        limits = limits_beside(answer.tally.steps, setup_cost(self.checker))
+        limits = limits_beside(answer.tally.steps, setup_cost(self.checker), self.budget.states)
         if self.checker.is_deterministic or limits is None:
             return None
         return self.explorations.exact(
@@ -474,6 +476,8 @@ class Verifier(Record, frozen=True):
 
         attempted = attempt(self.checker, property_, limits, watch, is_repeated=is_repeated)
         self.budget.spend(attempted.transitions)
+        if attempted.explored:
+            self.explored[self._subject(property_)] = attempted.explored
         return attempted
 
     def _shown(self, small: Exact | None) -> Exact | None:
@@ -510,6 +514,7 @@ class Verifier(Record, frozen=True):
             compared = small if self.exact_if_small else self._beside(property_, answer)
             if compared is None:
                 choices = self.checker.choices(property_, answer, pool, pulse)
+                choices = replace(choices, explored=self.explored.get(self._subject(property_), 0))
             else:
                 choices = choices_of(compared, NO_NONDETERMINISM if self.checker.is_deterministic else "")
         result = self._with_verdicts(property_, answer, choices, time.monotonic() - began, self._shown(small))
