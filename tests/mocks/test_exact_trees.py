@@ -169,6 +169,15 @@ def test_many_children_that_can_be_skipped(tmp_path: Path, node: str, success: f
     assert outcome.success.value == pytest.approx(success, abs=1e-12)
 
 
+def test_a_loop_over_texts(tmp_path: Path) -> None:
+    """No model declares the port of `Go`. It is an input, because the loop writes the entry."""
+    cases = '<Switch2 variable="{room}" case_1="hall" case_2="attic"><Wipe/><Sweep/><AlwaysSuccess/></Switch2>'
+    body = f'<Sequence><Go room="{{room}}"/>{cases}</Sequence>'
+    loop = f'<LoopString queue="hall;attic;7" value="{{room}}" if_empty="SUCCESS">{body}</LoopString>'
+    outcome = exact(loaded(tree(tmp_path, loop), "Go: 1", "Wipe: 0.9", "Sweep: 0.8"))
+    assert outcome.success.value == pytest.approx(0.72, abs=1e-12)
+
+
 def test_too_many_states_have_no_values() -> None:
     model = loaded(str(FETCH), *fetch_mocks())
     assert measure_exactly(model.mocked, model.target, replace(SHARED_LIMITS, states=50)) is None

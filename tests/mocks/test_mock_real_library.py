@@ -104,6 +104,20 @@ else:
             compare(behaviortreepy, Drawn("KeepRunningUntilFailure", (), (loop,)), seed)
             compare(behaviortreepy, Drawn("Repeat", (("num_cycles", "3"),), (loop,)), seed)
 
+    @pytest.mark.parametrize(("queue", "cases"), [("hall;attic;7", ("attic", "hall")), ("a b;;c", ("", "a b"))])
+    def test_texts_of_a_loop(queue: str, cases: tuple[str, ...]) -> None:
+        """A `Switch` and a script read the element."""
+        import behaviortreepy  # noqa: PLC0415 - not everywhere
+
+        ports = (("queue", queue), ("if_empty", "SUCCESS"), ("value", "{room}"))
+        chosen = switch("{room}", cases, Drawn("Act0"), Drawn("Act1"), Drawn("Act2"))
+        body = Drawn("ForceSuccess", (("_skipIf", f"room == '{cases[0]}'"),), (chosen,))
+        for seed in (1, 2, 3):
+            compare(behaviortreepy, Drawn("LoopString", ports, (chosen,)), seed)
+            compare(
+                behaviortreepy, Drawn("Repeat", (("num_cycles", "2"),), (Drawn("LoopString", ports, (body,)),)), seed
+            )
+
     def test_a_loop_that_its_condition_has_ended() -> None:
         """`WhileDoElse` does not reset its first child, so the loop is ticked again without taking its queue."""
         import behaviortreepy  # noqa: PLC0415 - not everywhere

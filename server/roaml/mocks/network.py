@@ -252,8 +252,8 @@ class _Builder:
 
     def outputs(self, node: ExecutedNode, board: Board) -> list[tuple[BoardEntry, tuple[Known, ...]]]:
         """The entries that a mock writes, with their possible values. A mock writes the entries of the ports that may
-        be outputs, if the tree reads these entries. A port that no model declares is an input if scripts compute its
-        entry from entries, as they count."""
+        be outputs, if the tree reads these entries. A port that no model declares is an input if the tree
+        itself computes its entry."""
         written = []
         for port, entry, _, _ in node.ports():
             declared = node.known.port(port) if node.known else None

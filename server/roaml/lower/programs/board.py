@@ -44,7 +44,8 @@ class Board(Record, frozen=True, eq=False):
         values: entry -> the values that mocks may write to it.
         read: the names of the entries that programs and scripts read.
         written: the names of the entries that nodes and scripts write.
-        computed: the names of the entries that scripts compute from entries, such as counters.
+        computed: the names of the entries that scripts compute from entries, such as counters, or that the programs of
+            nodes write, such as the elements of loops.
         in_system: whether the tree is part of a system.
         version: the version of BehaviorTree.CPP that executes the tree.
     """
@@ -211,6 +212,8 @@ class _Reader(Record):
                 continue
             if port in written or declared is None or declared.direction is not Direction.IN:
                 self.writers.add(entry)
+            if port in written:
+                self.computed.add(entry)
             self.add(entry, kind_of_cpp(port_type(declared)) if node.type[:6] != "Switch" else None)
         if node.type.startswith("Switch"):
             self.switch(node)

@@ -240,7 +240,8 @@ class _Reader(Record, eq=False):
         missing = [port for port in needed if port not in known and port not in bound]
         if missing:
             raise _missing(node, missing[0])
-        if any(value.kind is EntryKind.TEXT for value in bound.values()) and not _compares_texts(program):
+        is_text = any(value.kind is EntryKind.TEXT for value in bound.values())
+        if is_text and not _compares_texts(program) and node.type != "LoopString":
             raise TreeRefusal(
                 node.origin, f"a port of `{node.type}` is bound to an entry with a text; only numbers can be translated"
             )
