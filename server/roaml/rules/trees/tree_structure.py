@@ -36,18 +36,18 @@ def check(context: TreeContext) -> Iterator[Finding]:
             known.setdefault(outline.id, []).append(outline)
     # Without a system, an element with the name of a tree executes this tree.
     lone = context.forest if context.forest is not None and context.forest.system is None else None
-    compact = lone.subtrees if lone is not None else {}
-    uses = {
-        name: dict.fromkeys((*_subtrees(trees[-1].root), *sorted(compact.get(name, ()))))
-        for name, trees in known.items()
+    # The rule `tree-name` reports a tree with the name of a node.
+    compact = {
+        name: sorted(other for other in called if lone is not None and lone.node(other) is None)
+        for name, called in (lone.subtrees if lone is not None else {}).items()
     }
+    uses = {name: dict.fromkeys((*_subtrees(trees[-1].root), *compact.get(name, ()))) for name, trees in known.items()}
     circular = _circular(uses)
     for tree in context.file.trees:
         yield from _id(context, tree, known)
         for node in nodes(tree):
             if node.plugin is None:
                 continue
-            # The rule `tree-name` reports a tree with the name of a node.
             compact_use = lone is not None and lone.calls_tree(node) and lone.known_node(node) is None
             if node.is_subtree or (compact_use and node.plugin.value in uses):
                 yield from _subtree(context, tree, node.plugin, uses, circular)
