@@ -417,7 +417,8 @@ export class PictureView {
 
     // ------------------------------------------------------------------ choosing
 
-    private select(node: number): void {
+    /** Select a node; with `moves`, move the drawing so that it is visible. */
+    private select(node: number, moves = true): void {
         this.selectEdge(-1);
         this.scene?.nodes.get(this.selected)?.classList.remove("selected");
         this.selected = node;
@@ -425,7 +426,7 @@ export class PictureView {
         const chosen = this.scene?.nodes.get(node);
         chosen?.classList.add("selected");
         if (!chosen) return;
-        this.reveal(node);
+        if (moves) this.reveal(node);
         this.notice.textContent = "";
         this.svg.setAttribute("aria-activedescendant", chosen.id);
     }
@@ -686,7 +687,8 @@ export class PictureView {
                 return;
             }
             if (node !== undefined) {
-                this.select(Number(node));
+                // It stays below the pointer, so that a second click is a double click.
+                this.select(Number(node), false);
                 this.jump(this.picture.nodes[Number(node)], ctrlKey || metaKey);
             } else if (edges !== undefined) {
                 this.jump(this.picture.edges[Number(edges.split(" ")[0])], ctrlKey || metaKey);
