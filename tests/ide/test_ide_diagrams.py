@@ -172,6 +172,12 @@ def test_tree_alone(tmp_path: Path) -> None:
     ]
 
 
+def test_of_several_trees_without_a_main_one_the_first_is_drawn(tmp_path: Path) -> None:
+    trees = "".join(f'<BehaviorTree ID="{name}"><{name}Node/></BehaviorTree>' for name in ("Pick", "Place"))
+    analysis = load(tmp_path, {"library.xml": f'<root BTCPP_format="4">{trees}</root>'})
+    assert shown(tree_picture(analysis, str(tmp_path / "library.xml"))) == ["action | PickNode | initial"]
+
+
 def test_conditions_and_what_subtrees_are_given(tmp_path: Path) -> None:
     tree = """<root BTCPP_format="4" main_tree_to_execute="M"><BehaviorTree ID="M"><Sequence _post="n += 1">
         <SubTree ID="S" name="one" box="{=}" at="{place}" force="3" _skipIf="n &gt; 1"/><SubTree ID="S"/>

@@ -25,7 +25,18 @@ from roaml.libraries import BEHAVIORTREE_CPP, Node, library, node_in_libraries
 from roaml.libraries.programs.assembly import reads_world
 from roaml.mocks.likeness import needs_likeness
 from roaml.mocks.mock import ALL, Mock, likeness_for, mock_for
-from roaml.model.expand import Frame, Instance, Reference, TreeUse, expand, node_at, tree_called
+from roaml.model.expand import (
+    Expansion,
+    Frame,
+    Instance,
+    Reference,
+    TreeFileOutline,
+    TreeUse,
+    expand,
+    main_tree,
+    node_at,
+    tree_called,
+)
 from roaml.model.kinds import FileKind
 from roaml.model.system import System, builtin_plugins
 from roaml.model.tree import EXPLICIT, TreeFile, TreeNode
@@ -48,7 +59,7 @@ _KINDS: Mapping[str, DiagramNodeKind] = {
 
 def tree_picture(analysis: Analysis, path: str, mocks: Sequence[Mock] | None = None) -> Picture | None:
     """The diagram of the tree of a system, or of a tree file that belongs to no system; `None` if there is no tree, or
-    if the tree is empty.
+    if the tree is empty. If no tree of such a file is the main one, it is that of the first tree.
 
     Args:
         path: any file of the system, or the tree file.
@@ -60,7 +71,7 @@ def tree_picture(analysis: Analysis, path: str, mocks: Sequence[Mock] | None = N
         paths, instances, uses = system.tree_paths, system.instances, system.tree_uses
     else:
         paths = analysis.trees_from(path)
-        expansion = expand(analysis.outlines_from(path))
+        expansion = _expanded(analysis.outlines_from(path))
         instances, uses = expansion.instances, expansion.uses
     if not paths or not instances:
         return None
@@ -69,6 +80,14 @@ def tree_picture(analysis: Analysis, path: str, mocks: Sequence[Mock] | None = N
     drawn = _Tree(analysis, paths, instances, uses, system, mocks)
     title = paths[0].replace("\\", "/").rpartition("/")[2]
     return Picture(title, tuple(drawn.nodes()), tuple(drawn.edges()))
+
+
+def _expanded(files: tuple[TreeFileOutline, ...]) -> Expansion:
+    """The executed tree of files; of several trees none of which is the main one, the first of the first file."""
+    if not isinstance(main_tree(files), tuple):
+        return expand(files)
+    first = (expand(files, tree) for file in files[:1] for tree in file.trees)
+    return next((found for found in first if found.instances), Expansion())
 
 
 class _Tree:
