@@ -37,7 +37,7 @@ def test_values_are_read() -> None:
         ("", "there is no column `value`"),
         ("pp,property,value\n", "there is no column `p`; did you mean `pp`?"),
         ("p,property,value\n0.5,most,high\n", "the value `high` is not a number"),
-        ("p,property,value\n0.5,least,1\n", "there is no value of `most`"),
+        ("p,property,value\n0.5,least,1\n", "no row has the property `most`"),
     ],
 )
 def test_values_that_cannot_be_used(text: str, reason: str) -> None:

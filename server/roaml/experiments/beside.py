@@ -58,7 +58,7 @@ def read_beside(text: str, source: str, sweeps: Sequence[Sweep], properties: Seq
         source: the source of the values, unless the file has a column for it.
 
     Raises:
-        BesideError: a column is missing, a value is not a number, or there is no value of the properties.
+        BesideError: a column is missing, a value is not a number, or no row is about one of the properties.
     """
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
     rows = csv.DictReader(lines, skipinitialspace=True)
@@ -67,11 +67,11 @@ def read_beside(text: str, source: str, sweeps: Sequence[Sweep], properties: Seq
         if needed not in columns:
             close = did_you_mean(close_names(needed, columns))
             raise BesideError(f"there is no column `{needed}`{close or '; add it to the first line'}")
-    names = [sweep.name for sweep in sweeps if sweep.name in columns]
+    given = [sweep.name for sweep in sweeps if sweep.name in columns]
     fixed = {sweep.name: sweep.values[0] for sweep in sweeps if len(sweep.values) == 1}
     found, asked = [], False
     for row in rows:
-        setting = tuple((name, (row[name] or "").strip()) for name in names)
+        setting = tuple((name, (row[name] or "").strip()) for name in given)
         is_varied = any(name in fixed and not is_same(fixed[name], value) for name, value in setting)
         asked |= row[PROPERTY] in properties
         if row[PROPERTY] in properties and not is_varied:
@@ -80,7 +80,8 @@ def read_beside(text: str, source: str, sweeps: Sequence[Sweep], properties: Seq
                 origin = row.get(SOURCE) or source
                 found.append(BesideValue(origin, row[PROPERTY], setting, value, _number(row, LOW), _number(row, HIGH)))
     if not asked:
-        raise BesideError(f"there is no value of {' or '.join(f'`{name}`' for name in properties)}")
+        names = " or ".join(f"`{name}`" for name in properties)
+        raise BesideError(f"no row has the property {names}; compare the column `{PROPERTY}` with the experiment")
     return tuple(found)
 
 

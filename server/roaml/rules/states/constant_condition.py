@@ -38,6 +38,7 @@ from roaml.rules.rule import (
     close_names,
     replacements,
 )
+from roaml.rules.support.alternatives import guarded_statements
 from roaml.rules.support.assignments import is_unchanged
 from roaml.rules.support.entries import entries_of
 from roaml.rules.support.forest import trees_of
@@ -559,7 +560,7 @@ def _at_step(context: MachineContext, span: Span) -> Finding | None:
     for chart in context.machine.charts:
         values = context.local_values.charts.get(chart.scope)
         known = values.conditions.get(span) if values is not None else None
-        for cond, body in _guarded(chart) if known is not None and known.alone == TRUE else ():
+        for cond, body in guarded_statements(chart) if known is not None and known.alone == TRUE else ():
             away = _step_away(cond.tree, body) if cond.span == span else None
             if values is not None and away is not None and _begins_beyond(values, cond.tree):
                 where, name, how = away
@@ -577,7 +578,7 @@ def _at_target(context: MachineContext, span: Span) -> Finding | None:
         values = context.local_values.charts.get(chart.scope)
         known = values.conditions.get(span) if values is not None else None
         reader = next((s for s in chart.states if s.id is not None and s.element.span.contains(span.start)), None)
-        cond = next((cond for cond, _ in _guarded(chart) if cond.span == span), None)
+        cond = next((cond for cond, _ in guarded_statements(chart) if cond.span == span), None)
         if values is None or known is None or reader is None or reader.id is None or cond is None:
             continue
         own = reader.id.value
@@ -635,17 +636,6 @@ def _begins_beyond(values: ChartValues, tree: Expr) -> bool:
     sides = (values.at(tree.left), values.at(tree.right)) if isinstance(tree, Binary) else (None, None)
     known, limit = sides[0], sides[1].value if sides[1] is not None else None
     return known is not None and limit is not None and not known.includes(limit)
-
-
-def _guarded(chart: Chart) -> Iterator[tuple[Expression, Sequence[Statement]]]:
-    """The conditions, each with the statements that are executed only if it holds."""
-    for handler in (handler for state in chart.states for handler in state.handlers):
-        if handler.cond is not None:
-            yield handler.cond, [statement for target in handler.targets for statement in target.body]
-    for statement in chart.statements:
-        for branch in statement.branches if isinstance(statement, If) else ():
-            if branch.cond is not None:
-                yield branch.cond, branch.body
 
 
 def _step_away(tree: Expr, body: Sequence[Statement]) -> tuple[Span, str, str] | None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The conditions of a machine that are alternatives of each other."""
+"""The conditions of a machine: what they are alternatives of, and what is executed only if they hold."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from roaml.expr.operators import Operator
 from roaml.expr.tree import Binary, Expr
-from roaml.model.machine import Chart, Handler, If, Machine, State
+from roaml.model.machine import Chart, Handler, If, Machine, State, Statement
 from roaml.model.syntax import Expression
 from roaml.model.triggers import Trigger, trigger
 
@@ -33,6 +33,17 @@ def handlers_by_trigger(machine: Machine, state: State) -> Iterator[Sequence[Han
         if key is not None:
             groups.setdefault(key, []).append(handler)
     yield from groups.values()
+
+
+def guarded_statements(chart: Chart) -> Iterator[tuple[Expression, Sequence[Statement]]]:
+    """The conditions, each with the statements that are executed only if it holds."""
+    for handler in (handler for state in chart.states for handler in state.handlers):
+        if handler.cond is not None:
+            yield handler.cond, [statement for target in handler.targets for statement in target.body]
+    for statement in chart.statements:
+        for branch in statement.branches if isinstance(statement, If) else ():
+            if branch.cond is not None:
+                yield branch.cond, branch.body
 
 
 def joined(tree: Expr, operator: Operator) -> list[Expr]:

@@ -14,13 +14,13 @@ from roaml.model.machine import Assign, Chart, Handler, If, RosSend, Send, SetOu
 from roaml.model.syntax import Expression
 from roaml.model.values.evaluate import place_of
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.alternatives import joined
+from roaml.rules.support.alternatives import guarded_statements, joined
 from roaml.text import TextEdit
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
     for chart in context.machine.charts:
-        guarded = list(_guarded(chart))
+        guarded = list(guarded_statements(chart))
         if not any(_disjunction(cond) for cond, _ in guarded):
             continue
         data = _data_of_flags(chart)
@@ -41,16 +41,6 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     Related(flag.span, f"says that `{name}` is set") for flag, name in zip(flags, unset, strict=True)
                 ]
                 yield RULE.at(tree.operator_span, message, fix, related=related)
-
-
-def _guarded(chart: Chart) -> Iterator[tuple[Expression, Sequence[Statement]]]:
-    for handler in (handler for state in chart.states for handler in state.handlers):
-        if handler.cond is not None:
-            yield handler.cond, [statement for target in handler.targets for statement in target.body]
-    for statement in chart.statements:
-        for branch in statement.branches if isinstance(statement, If) else ():
-            if branch.cond is not None:
-                yield branch.cond, branch.body
 
 
 def _disjunction(cond: Expression) -> Sequence[Name]:
