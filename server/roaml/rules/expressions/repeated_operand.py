@@ -51,11 +51,16 @@ def check_jani(context: PropertiesContext) -> Iterator[Finding]:
         for node in walk_formula(property_.expression):
             if _joining(node) is None or id(node) in nested:
                 continue
-            operands = list(_operands_in_jani(node, nested))
-            for number, operand in enumerate(operands):
-                earlier = next((other for other in operands[:number] if other == operand), None)
-                if earlier is not None and earlier.origin is not None and operand.origin is not None:
-                    yield _finding(operand.origin.span, earlier.origin.span, str(_joining(node)), "this operand")
+            first: dict[str, tuple[Formula, Span]] = {}
+            for operand in _operands_in_jani(node, nested):
+                if operand.origin is None:
+                    continue
+                span = operand.origin.span
+                # Equal operands have equal texts, so that few of them are compared.
+                text = "".join(context.source.text[span.start : span.end].split())
+                earlier, place = first.setdefault(text, (operand, span))
+                if earlier is not operand and earlier == operand:
+                    yield _finding(span, place, str(_joining(node)), "this operand")
 
 
 def _repeated(tree: Expr) -> Iterator[Finding]:
