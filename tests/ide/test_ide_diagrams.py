@@ -22,7 +22,6 @@ from roaml.ide.diagrams import (
     EdgeKind,
     Picture,
     around,
-    closed_namespaces,
     collapsed,
     draw,
     machine_picture,
@@ -468,13 +467,13 @@ def test_a_graph_without_namespaces_has_none(tmp_path: Path) -> None:
 
 def test_closed_namespaces(tmp_path: Path) -> None:
     picture = namespace_graph(tmp_path)
-    assert closed_namespaces(picture, ["unknown", "topic go"]) == picture
-    inner = closed_namespaces(picture, ["namespace /fleet/a"])
+    assert collapsed(picture, ["unknown", "topic go"]) == picture
+    inner = collapsed(picture, ["namespace /fleet/a"])
     assert within(inner) == {name: box for name, box in within(picture).items() if box != "/fleet/a"}
     labels = {node.id: node.label for node in picture.nodes}
     hidden = {node.label: [labels[name] for name in node.hides] for node in inner.nodes if node.hides}
     assert hidden == {"/fleet/a": ["a", "/fleet/a/at"]}
-    assert shown(closed_namespaces(picture, ["namespace /fleet/a", "namespace /fleet"])) == [
+    assert shown(collapsed(picture, ["namespace /fleet/a", "namespace /fleet"])) == [
         "namespace | /fleet | … 5 parts",
         "node | c",
         "node | Chief",
@@ -487,6 +486,80 @@ def test_closed_namespaces(tmp_path: Path) -> None:
         "/go -> c | subscribes",
         "c -> at | publishes",
     ]
+
+
+GROUPS = """\
+<ascxml name="Robot" version="1.0" initial="search">
+  <!-- #region Waiting -->
+  <!-- #endregion -->
+  <!-- #region Docking -->
+  <state id="search">
+    <transition event="go" target="approach"/>
+    <transition event="again" target="search"/>
+  </state>
+  <!-- #region Near -->
+  <state id="approach">
+    <transition><target id="docked" prob="0.9"/><target id="search"/></transition>
+  </state>
+  <!-- #endregion -->
+  <!-- #endregion -->
+  <!-- #region Docking -->
+  <state id="docked">
+    <transition event="go" target="search"/>
+    <transition event="stop" target="approach"/>
+    <transition event="stay"><assign location="x" expr="1"/></transition>
+  </state>
+  <!-- #endregion -->
+  <ros_action_thread name="walk" n_threads="3">
+    <!-- #region Walking -->
+    <state id="walk"/>
+    <!-- #endregion -->
+  </ros_action_thread>
+</ascxml>
+"""
+
+
+def test_groups_of_states(tmp_path: Path) -> None:
+    """Regions are groups; those without states are not shown. A collapsed group has the transitions of its states."""
+    analysis = load(tmp_path, {"robot.ascxml": GROUPS})
+    picture = machine_picture(analysis, str(tmp_path / "robot.ascxml"))
+    assert picture is not None
+    groups = {node.id: node.parent for node in picture.nodes if node.kind is DiagramNodeKind.GROUP}
+    thread = next(node.id for node in picture.nodes if node.kind is DiagramNodeKind.THREAD)
+    walking = next(name for name in groups if name.endswith("/Walking"))
+    assert groups == {
+        "group /Docking": "",
+        "group /Docking/Near": "group /Docking",
+        "group /Docking 2": "",
+        walking: thread,
+    }
+    assert {
+        node.label or "choice": node.parent
+        for node in picture.nodes
+        if node.kind not in (DiagramNodeKind.GROUP, DiagramNodeKind.THREAD)
+    } == {
+        "search": "group /Docking",
+        "approach": "group /Docking/Near",
+        "choice": "group /Docking/Near",
+        "docked": "group /Docking 2",
+        "walk": walking,
+    }
+    assert text_at(analysis, picture.nodes[0].place) == "<!-- #region Docking -->"
+    closed = collapsed(picture, ["group /Docking", "group /Docking/Near", walking])
+    assert shown(closed) == [
+        "group | Docking | … 2 states | initial",
+        "group | Docking",
+        "state | docked | in group /Docking 2",
+        "thread | walk | 3 threads",
+        f"group | Walking | … 1 state | in {thread}",
+        "Docking -> group /Docking 2/docked | eventless | 0.9 | by chance",
+        "group /Docking 2/docked -> Docking | event | go",
+        "group /Docking 2/docked -> Docking | event | stop",
+        "group /Docking 2/docked -> group /Docking 2/docked | event | stay | / x := 1 | internal",
+    ]
+    for each in (picture, closed):
+        for direction in LayoutDirection:
+            assert problems(each, draw(DiagramKind.MACHINE, each, direction)) == []
 
 
 def large_graph(folder: Path, count: int) -> Picture:

@@ -38,6 +38,19 @@ FOLDED = {
             </state>
         </ascxml>
         """,
+    "regions": """
+        <ascxml>                                | 0-9
+            <!-- #region Docking -->            | 1-6
+            <state id="a"/>
+            <!--#region-->                      | 3-5
+            <state id="b"/>
+            <!--#endregion b-->
+            <!-- #endregion -->
+            <!-- #endregion -->
+            <!-- #regional -->
+            <!-- #region without an end -->
+        </ascxml>
+        """,
     "half-typed": """
         <ascxml>                       | 0-3
             <state id="a">             | 1-3

@@ -104,6 +104,24 @@ export function pictures(stage: Stage): void {
         await window.becomes(() => labels(picture), all);
     });
 
+    stage.test("a machine: a group of states is collapsed and opened again", grouped, async (window) => {
+        await window.openFile("docker.ascxml");
+        await window.running();
+        await window.run("AS2FM: Show State Machine");
+        const picture = await window.picture();
+        const docking = picture.locator('.node[data-label="Docking"]');
+        await docking.locator(".frame").waitFor();
+        const all = await labels(picture);
+        await window.screenshot("machine-groups");
+        await docking.getByText("Docking").click();
+        await picture.locator("svg.picture").press("Space");
+        await docking.filter({ hasText: "… 2 states" }).locator(".card").waitFor();
+        await window.becomes(() => labels(picture), ["idle", "Docking"]);
+        await window.screenshot("machine-group-collapsed");
+        await docking.getByText("Docking").dblclick();
+        await window.becomes(() => labels(picture), all);
+    });
+
     stage.test(
         "actions on a machine change its text, with the pointer and with the keyboard",
         mended,
@@ -332,6 +350,28 @@ function largeTree(): string {
     const tree = `<BehaviorTree ID="Tour"><Sequence>${visits}</Sequence></BehaviorTree>`;
     const folder = temporaryFolder("tour");
     write(path.join(folder, "tour.xml"), `<root BTCPP_format="4" main_tree_to_execute="Tour">${tree}</root>\n`);
+    return folder;
+}
+
+/** A folder with a machine, two of whose states are in a region. */
+function grouped(): string {
+    const text = `<ascxml name="Docker" version="1.0" initial="idle">
+  <state id="idle">
+    <transition event="dock" target="search" />
+  </state>
+  <!-- #region Docking -->
+  <state id="search">
+    <transition event="seen" target="approach" />
+  </state>
+  <state id="approach">
+    <transition event="lost" target="search" />
+    <transition event="docked" target="idle" />
+  </state>
+  <!-- #endregion -->
+</ascxml>
+`;
+    const folder = temporaryFolder("docker");
+    write(path.join(folder, "docker.ascxml"), text);
     return folder;
 }
 

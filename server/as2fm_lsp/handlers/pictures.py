@@ -20,7 +20,6 @@ from roaml.ide.diagrams import (
     DiagramKind,
     Picture,
     around,
-    closed_namespaces,
     collapsed,
     draw,
     draw_outline,
@@ -74,14 +73,15 @@ def asked_picture(session: Session, params: Any) -> tuple[Analysis, DiagramKind,
     path = session.convert.path(document_uri(params))
     analysis = session.moment().snapshot(path).analysis
     picture = picture_of(kind, analysis, path) if kind else None
-    if kind is DiagramKind.TREE and picture is not None:
-        picture = collapsed(picture, hidden)
-    if kind is DiagramKind.ROS and picture is not None:
-        text, center = optional_string(params, "matching"), optional_string(params, "around")
-        picture = closed_namespaces(around(matching(picture, text), center), hidden)
-        if not text and not center:
-            picture = with_provided_interfaces(picture)
-    return (analysis, kind, picture) if kind and picture else None
+    if kind is None or picture is None:
+        return None
+    if kind is not DiagramKind.ROS:
+        return analysis, kind, collapsed(picture, hidden)
+    text, center = optional_string(params, "matching"), optional_string(params, "around")
+    picture = collapsed(around(matching(picture, text), center), hidden)
+    if not text and not center:
+        picture = with_provided_interfaces(picture)
+    return analysis, kind, picture
 
 
 def _place(session: Session, analysis: Analysis, location: Location | None) -> dict[str, object] | None:

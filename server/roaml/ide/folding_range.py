@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Folding ranges: in XML, elements, attributes on several lines, comments and CDATA sections; in JSON, objects and
-lists."""
+"""Folding ranges: in XML, elements, regions, attributes on several lines, comments and CDATA sections; in JSON, objects
+and lists."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from roaml.json_syntax import JsonArray, JsonObject
 from roaml.project.analysis import Analysis
 from roaml.text import SourceFile, Span
 from roaml.xml_syntax import CData, Comment, Document, Element
+from roaml.xml_syntax.regions import regions
 
 
 class FoldKind(enum.Enum):
@@ -55,6 +56,8 @@ def _xml(source: SourceFile, document: Document) -> Iterator[Fold]:
         node = stack.pop()
         if isinstance(node, Element):
             stack += node.nodes
+            for region in regions(node.nodes):
+                yield from _lines(source, region.span)
             yield from _lines(source, node.open_span)
             yield from _block(source, node.open_span.end - 1, node.content_span.end)
         elif isinstance(node, Comment):

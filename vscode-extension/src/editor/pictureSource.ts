@@ -431,7 +431,7 @@ function words(): Words {
         nothing: vscode.l10n.t("No results"),
         match: vscode.l10n.t("{0}, result {1} of {2}"),
         help: vscode.l10n.t(
-            "Arrow keys move between nodes, T selects the edges that leave a node, Enter opens the source, Shift+F10 the menu, Space collapses a node of a tree or a namespace, or shows only the neighbors of a node of a ROS graph, B sets a breakpoint, M goes to the mocks of a tree, + and - zoom, 0 fits the diagram, / searches.",
+            "Arrow keys move between nodes, T selects the edges that leave a node, Enter opens the source, Shift+F10 the menu, Space collapses a node of a tree, a group of states or a namespace, or shows only the neighbors of a node of a ROS graph, B sets a breakpoint, M goes to the mocks of a tree, + and - zoom, 0 fits the diagram, / searches.",
         ),
         byChance: vscode.l10n.t("random"),
         looks: {
@@ -470,6 +470,7 @@ function words(): Words {
             state: vscode.l10n.t("state"),
             choice: vscode.l10n.t("random choice"),
             thread: vscode.l10n.t("action thread"),
+            group: vscode.l10n.t("group of states"),
             machine: vscode.l10n.t("state machine"),
             control: vscode.l10n.t("control"),
             decorator: vscode.l10n.t("decorator"),

@@ -21,6 +21,7 @@ export const NODE_KINDS = [
     "state",
     "choice",
     "thread",
+    "group",
     "machine",
     "control",
     "decorator",
@@ -107,7 +108,7 @@ export interface PictureNode {
     readonly label: string;
     readonly details: readonly string[];
     readonly parent: string;
-    /** The ids of the nodes that it replaces: those in a collapsed namespace, or interfaces in the card of a node. */
+    /** The ids of the nodes that it replaces: those in a collapsed group or namespace, or interfaces in the card of a node. */
     readonly hides: readonly string[];
     readonly initial: boolean;
     /** The place in a file that the node represents; that of a subtree is its `<BehaviorTree>`. */

@@ -22,7 +22,6 @@ from roaml.ide.diagrams.diagram import (
 from roaml.ide.diagrams.drawings import OUTLINE_WIDTHS, PAGE, draw, draw_for, draw_outline
 from roaml.ide.diagrams.highlight import DiagramHighlight, highlights
 from roaml.ide.diagrams.machine import machine_picture
-from roaml.ide.diagrams.namespaces import closed_namespaces
 from roaml.ide.diagrams.part import around, matching
 from roaml.ide.diagrams.provided import with_provided_interfaces
 from roaml.ide.diagrams.ros import ros_picture
@@ -43,7 +42,6 @@ __all__ = [
     "EdgeKind",
     "Picture",
     "around",
-    "closed_namespaces",
     "collapsed",
     "draw",
     "draw_for",

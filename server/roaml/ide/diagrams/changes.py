@@ -30,6 +30,7 @@ from roaml.record import Record, replace
 _WORDS: Mapping[DiagramNodeKind, str] = {
     DiagramNodeKind.STATE: "state",
     DiagramNodeKind.THREAD: "action thread",
+    DiagramNodeKind.GROUP: "group",
     DiagramNodeKind.SUBTREE: "subtree",
     DiagramNodeKind.VARIABLE: "blackboard entry",
     DiagramNodeKind.NAMESPACE: "namespace",

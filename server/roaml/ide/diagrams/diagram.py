@@ -26,6 +26,7 @@ class DiagramNodeKind(enum.Enum):
     STATE = "state"
     CHOICE = "choice"
     THREAD = "thread"
+    GROUP = "group"
     MACHINE = "machine"
     CONTROL = "control"
     DECORATOR = "decorator"
@@ -126,8 +127,8 @@ class DiagramNode(Record, frozen=True):
         title: the parts of the label, for nodes of trees and subtrees.
         use: the place of the `<SubTree>` of a subtree; `None` for other nodes.
         change: what happened to the node; `None` if the diagram compares no versions.
-        hides: the ids of the nodes that it replaces: those in a collapsed namespace, or the interfaces in the card of a
-            node of ROS; empty for other nodes.
+        hides: the ids of the nodes that it replaces: those in a collapsed group or namespace, or the interfaces in the
+            card of a node of ROS; empty for other nodes.
     """
 
     id: str

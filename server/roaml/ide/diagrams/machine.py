@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The diagram of a state machine: its states and transitions, with a separate frame for each action thread.
+"""The diagram of a state machine: its states and transitions, with a separate frame for each action thread, and groups
+of states: those between the comments `<!-- #region NAME -->` and `<!-- #endregion -->`.
 
 A probabilistic transition leads to a choice, from which an edge leads to each target.
 """
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterator, Mapping
 
 from roaml.ide.diagrams.actions import Wording, guard, outcome
@@ -14,6 +16,7 @@ from roaml.model.machine import Body, Chart, Handler, Machine, State, Target, Th
 from roaml.project.analysis import Analysis
 from roaml.roles import ProtocolPart
 from roaml.text import Location
+from roaml.xml_syntax.regions import CommentRegion, regions
 
 _BT = ("bt-", "child-")
 
@@ -60,20 +63,48 @@ class _Chart:
         self._path = path
         self._states: Mapping[str, State] = {s.id.value: s for s in reversed(chart.states) if s.id}
         self._shown = [s for s in chart.states if s.id and self._states[s.id.value] is s]
+        self._groups = self._named_groups()
+
+    def _named_groups(self) -> list[tuple[str, CommentRegion]]:
+        """The regions that contain states, and their ids in the diagram. If several have the same name and are in the
+        same regions, all but the first have a number, too."""
+        counts: dict[tuple[str, ...], int] = {}
+        found: list[tuple[str, CommentRegion]] = []
+        for region in regions(self._chart.element.nodes):
+            if not any(_is_in(state, region) for state in self._shown):
+                continue
+            number = counts[region.path] = counts.get(region.path, 0) + 1
+            name = "/".join(region.path) if number == 1 else f"{'/'.join(region.path)} {number}"
+            found.append((f"group {self._chart.scope}/{name}", region))
+        return found
+
+    def _parent(self, inner: State | CommentRegion) -> str:
+        """The id of the innermost group around a state or group, or of the frame."""
+        around = (name for name, region in reversed(self._groups) if region is not inner and _is_in(inner, region))
+        return next(around, self._frame)
+
+    def _group(self, name: str, region: CommentRegion) -> DiagramNode:
+        place = Location(self._path, region.start)
+        return DiagramNode(name, DiagramNodeKind.GROUP, region.name, (), self._parent(region), place=place)
 
     def nodes(self) -> Iterator[DiagramNode]:
+        """The nodes in the order of the text, so that each group is before its states."""
+        groups = deque(self._groups)
         for state in self._shown:
             assert state.id is not None
+            while groups and groups[0][1].start < state.element.span:
+                yield self._group(*groups.popleft())
             name = state.id.value
             initial = self._chart.initial is not None and self._chart.initial.value == name
             place = Location(self._path, state.element.span)
             details = tuple(Detail(DetailKind.ACTIONS, text) for text in self._bodies(state))
-            yield DiagramNode(self._id(state), DiagramNodeKind.STATE, name, details, self._frame, initial, place)
+            parent = self._parent(state)
+            yield DiagramNode(self._id(state), DiagramNodeKind.STATE, name, details, parent, initial, place)
             for index, handler in enumerate(state.handlers):
                 if handler.effective and handler.is_probabilistic:
                     where = Location(self._path, handler.element.span)
                     choice = self._choice(state, index)
-                    yield DiagramNode(choice, DiagramNodeKind.CHOICE, "", (), self._frame, place=where)
+                    yield DiagramNode(choice, DiagramNodeKind.CHOICE, "", (), parent, place=where)
 
     def edges(self) -> Iterator[DiagramEdge]:
         for state in self._shown:
@@ -129,6 +160,11 @@ class _Chart:
 
     def _choice(self, state: State, index: int) -> str:
         return f"choice {index} {self._id(state)}"
+
+
+def _is_in(inner: State | CommentRegion, region: CommentRegion) -> bool:
+    span = inner.element.span if isinstance(inner, State) else inner.span
+    return region.span.start <= span.start and span.end <= region.span.end
 
 
 def _kind(handler: Handler) -> EdgeKind:

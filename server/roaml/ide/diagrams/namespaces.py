@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The namespaces of a ROS graph, as nodes that contain other nodes, and graphs in which namespaces are collapsed.
+"""The namespaces of a ROS graph, as nodes that contain other nodes.
 
 The namespaces of nodes are shown, and those that several of them have in common. A topic, service or action is in the
 innermost shown namespace that its name contains. A graph without namespaces is unchanged.
@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from itertools import combinations, takewhile
 
-from roaml.ide.diagrams.diagram import Detail, DetailKind, DiagramEdge, DiagramNode, DiagramNodeKind, Picture
+from roaml.ide.diagrams.diagram import DiagramNode, DiagramNodeKind, Picture
 from roaml.record import replace
 
 INTERFACES = (DiagramNodeKind.TOPIC, DiagramNodeKind.SERVICE, DiagramNodeKind.ACTION_INTERFACE)
@@ -74,38 +74,3 @@ def with_parents(picture: Picture, ids: Collection[str]) -> set[str]:
             found.add(name)
             pending.append(parents[name])
     return found
-
-
-def closed_namespaces(picture: Picture, ids: Collection[str]) -> Picture:
-    """The graph in which namespaces are single nodes, which have the edges of what they contain, and hide it. The
-    last of the details of such a node is the number of nodes that it contains. Other ids are ignored."""
-    closed = {node.id for node in picture.nodes if node.id in ids and node.kind is DiagramNodeKind.NAMESPACE}
-    closed -= content(picture, closed)
-    if not closed:
-        return picture
-    inside = {name: content(picture, {name}) for name in closed}
-    representative = {node: name for name, nodes in inside.items() for node in nodes}
-    nodes = tuple(
-        _closed(picture, node, inside[node.id]) if node.id in closed else node
-        for node in picture.nodes
-        if node.id not in representative
-    )
-    edges: dict[tuple[object, ...], DiagramEdge] = {}
-    for edge in picture.edges:
-        source, target = (representative.get(end, end) for end in (edge.source, edge.target))
-        if source == target:
-            continue
-        moved = replace(edge, source=source, target=target)
-        # Edges between the same ends are one, which has the names of all plain events.
-        key = (source, target, edge.kind) if moved != edge else (edge,)
-        known = edges.get(key, moved)
-        edges[key] = replace(known, labels=tuple(dict.fromkeys((*known.labels, *moved.labels))))
-    return replace(picture, nodes=nodes, edges=tuple(edges.values()))
-
-
-def _closed(picture: Picture, namespace: DiagramNode, ids: Collection[str]) -> DiagramNode:
-    inside = [node for node in picture.nodes if node.id in ids]
-    count = sum(node.kind is not DiagramNodeKind.NAMESPACE for node in inside)
-    detail = Detail(DetailKind.COUNT, "… 1 part" if count == 1 else f"… {count} parts")
-    hides = tuple(node.id for node in inside)
-    return replace(namespace, details=(*namespace.details, detail), hides=hides)

@@ -608,10 +608,11 @@ export class PictureView {
         if (to?.place) this.post({ type: "jump", place: to.place, beside });
     }
 
-    /** Hide the nodes below a node of a tree, or in a namespace, or show them again; return whether it has such. */
+    /** Hide the nodes below a node of a tree, or in a group or namespace, or show them again; return whether it has such. */
     private collapse(node: number): boolean {
         const { id, kind } = this.picture?.nodes[node] ?? {};
-        if (id === undefined || (this.picture?.kind !== "tree" && kind !== "namespace")) return false;
+        if (id === undefined || (this.picture?.kind !== "tree" && kind !== "namespace" && kind !== "group"))
+            return false;
         this.post({ type: "collapse", node: id });
         return true;
     }

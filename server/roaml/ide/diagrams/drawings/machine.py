@@ -6,6 +6,7 @@
 - A choice is a small junction with the five of a die. If all its targets are the state from which it comes, it is a row
   of the state's card.
 - Each action thread is drawn separately, in a frame.
+- A group is a frame around its states; a collapsed one is a card.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from roaml.figures.assembly import moved
 from roaml.figures.drawing import Drawing, Group, Item, Outline, Polyline, Shape, Tone
 from roaml.figures.geometry import Box, Extent
-from roaml.figures.layout import LayoutDirection, Link, layered
+from roaml.figures.layout import Boxes, LayoutDirection, Link, nested
 from roaml.figures.layout.packing import shelves
 from roaml.ide.diagrams.diagram import DetailKind, DiagramEdge, DiagramNodeKind, EdgeKind, Picture
 from roaml.ide.diagrams.drawings.cards import Card, Row, TextLine, is_shortened, paragraph, title
@@ -74,17 +75,18 @@ class _Chart:
 
     def __init__(self, picture: Picture, frame: str) -> None:
         self._picture = picture
-        self._index = {
-            node.id: index
-            for index, node in enumerate(picture.nodes)
-            if node.parent == frame and node.kind is not DiagramNodeKind.THREAD
-        }
+        self._index: dict[str, int] = {}
+        for index, node in enumerate(picture.nodes):  # groups are before their content
+            if node.kind is not DiagramNodeKind.THREAD and (node.parent == frame or node.parent in self._index):
+                self._index[node.id] = index
+        self._parents = {name: picture.nodes[index].parent for name, index in self._index.items()}
+        self._framed = set(self._parents.values()) & self._index.keys()
         self._edges = [(i, edge) for i, edge in enumerate(picture.edges) if edge.source in self._index]
         self._inlined = self._inlined_choices()
         self._cards = {
             name: Card((Row(title(picture.nodes[index].label, CARD_WIDTH)), *self._rows(name)), ruled=True)
             for name, index in self._index.items()
-            if picture.nodes[index].kind is DiagramNodeKind.STATE
+            if picture.nodes[index].kind in (DiagramNodeKind.STATE, DiagramNodeKind.GROUP)
         }
 
     def _inlined_choices(self) -> frozenset[str]:
@@ -118,11 +120,16 @@ class _Chart:
         sizes: dict[str, Extent] = {}
         links: list[Link] = []
         initial = next((name for name in self._cards if self._picture.nodes[self._index[name]].initial), None)
+        parents = {name: parent for name, parent in self._parents.items() if parent in self._framed}
         if initial is not None:
             sizes[_START] = Extent(_DOT, _DOT)
             sizes[initial] = self._cards[initial].size
             links.append(Link(_START, initial))
+            if initial in parents:
+                parents[_START] = parents[initial]
         for name in self._index:
+            if name in self._framed:
+                continue
             if name in self._cards:
                 sizes[name] = self._cards[name].size
             elif name not in self._inlined:
@@ -133,7 +140,8 @@ class _Chart:
             Link(source, target, label.size if label.rows else None)
             for (source, target, _), label in zip(bundles, labels, strict=True)
         ]
-        layout = layered(sizes, links, direction, _ASPECT[direction])
+        boxes = Boxes(parents, {name: self._cards[name].size for name in self._framed})
+        layout = nested(sizes, links, boxes, direction, _ASPECT[direction])
         groups: list[Group] = []
         routes = layout.routes
         if initial is not None:
@@ -151,7 +159,8 @@ class _Chart:
                 shape = Shape(route.label, Outline.ROUNDED, "label-card")
                 groups.append(Group("label", _tone(edges), (shape, *label.items(route.label))))
         nodes = {self._index[name]: box for name, box in layout.nodes.items() if name in self._index}
-        groups += [self._node(index, nodes[index]) for index in sorted(nodes)]
+        groups += [self._frame(name, layout.nodes[name]) for name in self._index if name in self._framed]
+        groups += [self._node(index, box) for index, box in sorted(nodes.items()) if self._is_card(index)]
         return Drawing(layout.size, tuple(groups), nodes)
 
     def _bundles(self) -> list[tuple[str, str, list[tuple[int, DiagramEdge]]]]:
@@ -163,13 +172,24 @@ class _Chart:
                 bundles.setdefault((edge.source, edge.target), []).append((index, edge))
         return [(source, target, edges) for (source, target), edges in bundles.items()]
 
+    def _is_card(self, index: int) -> bool:
+        return self._picture.nodes[index].id not in self._framed
+
+    def _frame(self, name: str, box: Box) -> Group:
+        """The frame of a group. It is drawn over the lines, which may cross its upper edge where its heading is."""
+        node, card = self._picture.nodes[self._index[name]], self._cards[name]
+        heading = Box(box.x, box.y, *card.size)
+        items = (Shape(box, Outline.ROUNDED, "frame"), Shape(heading, Outline.ROUNDED, "label-card"))
+        tone = tone_of(node.change, Tone.PLAIN)
+        return Group("node", tone, (*items, *card.items(heading)), node.kind.value, node=self._index[name])
+
     def _node(self, index: int, box: Box) -> Group:
         node = self._picture.nodes[index]
         if node.kind is DiagramNodeKind.CHOICE:
             shape = Shape(box, Outline.PILL, "junction")
             return Group("node", tone_of(node.change, Tone.CHANCE), (shape, die(box, _DIE)), "choice", node=index)
         items: tuple[Item, ...] = (Shape(box, Outline.ROUNDED, "card"), *self._cards[node.id].items(box))
-        kind = kind_of(node.change, "state initial" if node.initial else "state")
+        kind = kind_of(node.change, f"{node.kind.value} initial" if node.initial else node.kind.value)
         return Group("node", tone_of(node.change, Tone.PLAIN), items, kind, node=index)
 
 
