@@ -23,7 +23,7 @@ from roaml.project.analysis import sources
 from roaml.project.analysis import values as analysis_values
 from roaml.project.settings import Settings
 from roaml.project.workspace import Workspace
-from roaml.rules.states import constant_condition
+from roaml.rules.support import sent_values
 
 STEPS: dict[str, tuple[Any, str]] = {
     "parsing": (sources, "parse_xml"),
@@ -33,7 +33,7 @@ STEPS: dict[str, tuple[Any, str]] = {
     "values": (analysis_values, "analyse"),
     "graph of the steps": (explore._Explorer, "run"),
     "summary of the graph": (summary._Summary, "outline"),
-    "comparisons with what is sent": (constant_condition, "_numbers_never_sent"),
+    "comparisons with what is sent": (sent_values, "_numbers_never_sent"),
 }
 """The steps of a check whose time grows with the number of states: each the owner and the name of its function."""
 

@@ -108,6 +108,11 @@ class If(Record, frozen=True, eq=False):
     branches: tuple[Branch, ...]
     otherwise: Branch | None
 
+    @property
+    def parts(self) -> tuple[Branch, ...]:
+        """All branches, with that of `<else/>`."""
+        return self.branches if self.otherwise is None else (*self.branches, self.otherwise)
+
 
 class RosSend(Record, frozen=True, eq=False):
     """An element that sends a part of a ROS interface, such as a message, request, response, goal or result.
@@ -299,6 +304,18 @@ class Machine(Record, frozen=True, eq=False, dict=True):
 # ----------------------------------------------------------------- walking
 
 
+def values_of(statement: Statement) -> Iterator[Expression]:
+    """The expressions whose values a statement assigns, sends or writes to the blackboard, without those inside an
+    `<if>` and those with syntax errors."""
+    values: list[Value | None] = []
+    match statement:
+        case Assign(value=value) | SetOutput(value=value):
+            values = [value]
+        case Send(params=params) | RosSend(fields=params):
+            values = [param.value for param in params]
+    yield from (value for value in values if isinstance(value, Expression) and not value.broken)
+
+
 def bodies(chart: Chart) -> Iterator[tuple[State, Handler | None, tuple[Statement, ...]]]:
     """Every body of the chart, with its state and its handler. The handler is `None` for `<onentry>` and `<onexit>`."""
     for state in chart.states:
@@ -315,5 +332,5 @@ def statements(body: tuple[Statement, ...]) -> Iterator[Statement]:
     for statement in body:
         yield statement
         if isinstance(statement, If):
-            for branch in (*statement.branches, *((statement.otherwise,) if statement.otherwise else ())):
+            for branch in statement.parts:
                 yield from statements(branch.body)

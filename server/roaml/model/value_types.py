@@ -85,6 +85,9 @@ class ValueUse(enum.Enum):
     BOUND = "bound"
 
 
+CONDITIONS = (ValueUse.CONDITION, ValueUse.BRANCH)
+
+
 class BranchConditions(Record, frozen=True, eq=False):
     """A condition of an enclosing `<if>`, whether it holds, and the earlier conditions as a linked list.
 

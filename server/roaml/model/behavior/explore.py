@@ -792,7 +792,7 @@ class _Explorer(Record, eq=False, dict=True):
                 root = (access_path(statement.location.tree) or ("",))[0] if statement.location else ""
                 return root in self.relevant or root in self.goal_ids
             case If():
-                parts = (*statement.branches, *((statement.otherwise,) if statement.otherwise else ()))
+                parts = statement.parts
                 return any(self._effective(part.body) for part in parts)
         return not isinstance(statement, NoEffect)
 

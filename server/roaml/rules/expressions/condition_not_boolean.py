@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.tree import Conditional, access_path
 from roaml.expr.types import BOOL, Array, ScalarKind, fits, is_kind, is_number
 from roaml.model.syntax import Expression
-from roaml.model.value_types import TypedValue, ValueUse
+from roaml.model.value_types import CONDITIONS, TypedValue
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.types import phrase
 from roaml.text import Span, TextEdit
@@ -17,7 +17,7 @@ from roaml.text import Span, TextEdit
 
 def check(context: MachineContext) -> Iterator[Finding]:
     for value in context.typed.values:
-        if value.use in (ValueUse.CONDITION, ValueUse.BRANCH) and not fits(value.type, BOOL):
+        if value.use in CONDITIONS and not fits(value.type, BOOL):
             span = value.value.tree.span if isinstance(value.value, Expression) else value.value.span
             yield RULE.at(span, f"a condition must be a boolean, not {phrase(value.type)}", *_fixes(value))
 

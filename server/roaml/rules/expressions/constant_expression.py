@@ -11,7 +11,7 @@ from roaml.expr.tree import Binary, Call, Expr, Member, Name, is_draw, walk
 from roaml.model.behavior.explore import condition_facts
 from roaml.model.behavior.knowledge import NOTHING, ConditionFacts, variables_in
 from roaml.model.syntax import Expression
-from roaml.model.value_types import ValueUse
+from roaml.model.value_types import CONDITIONS, ValueUse
 from roaml.model.values.analyse import ChartValues
 from roaml.model.values.describe import described
 from roaml.model.values.domain import ValueSet, exactly
@@ -20,15 +20,13 @@ from roaml.rules.rule import MachineContext, Rule
 
 _USES = (ValueUse.ASSIGNED, ValueUse.FIELD, ValueUse.PARAMETER, ValueUse.OUTPUT)
 
-_CONDITIONS = (ValueUse.CONDITION, ValueUse.BRANCH)
-
 
 def check(context: MachineContext) -> Iterator[Finding]:
     """Report parts of expressions that have the same value whatever their variables are."""
     for chart in context.machine.charts:
         values, facts = context.local_values.charts.get(chart.scope), condition_facts(chart)
         for value in context.typed.values if values is not None else ():
-            is_checked = value.place.chart is chart and (value.use in _USES or value.use in _CONDITIONS)
+            is_checked = value.place.chart is chart and (value.use in _USES or value.use in CONDITIONS)
             if is_checked and isinstance(value.value, Expression) and not value.value.broken and values is not None:
                 yield from _constant(values, facts, value.value, value.use)
 
@@ -39,7 +37,7 @@ def _constant(values: ChartValues, facts: ConditionFacts, expression: Expression
     for node in walk(expression.tree):
         if any(node in walk(outer) for outer in reported):
             continue
-        if use in _CONDITIONS and not (isinstance(node, Binary) and node.operator.kind is OperatorKind.ARITHMETIC):
+        if use in CONDITIONS and not (isinstance(node, Binary) and node.operator.kind is OperatorKind.ARITHMETIC):
             continue
         constant = _of_itself(node) or _of_logic(facts, node) or _of_values(values, node)
         if constant is not None:

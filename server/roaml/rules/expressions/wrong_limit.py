@@ -52,7 +52,7 @@ _OPPOSITE = {Operator.ADD: Operator.SUBTRACT, Operator.SUBTRACT: Operator.ADD}
 
 def _tested(statement: If) -> Iterator[Finding]:
     """Report a step in the other direction than the step that the condition compares with a limit."""
-    parts = (*statement.branches, *((statement.otherwise,) if statement.otherwise else ()))
+    parts = statement.parts
     steps = [
         (part, place, assign.value.tree)
         for part in parts

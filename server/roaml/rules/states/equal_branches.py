@@ -55,7 +55,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _branches(context: MachineContext, chart: Chart, statement: If) -> Iterator[Finding]:
-    parts = (*statement.branches, *((statement.otherwise,) if statement.otherwise else ()))
+    parts = statement.parts
     contents = {_content(part.body) for part in parts}
     if statement.otherwise is not None and len(contents) == 1 and all(part.body for part in parts):
         message = "all branches of this `<if>` do the same, so its conditions have no effect"

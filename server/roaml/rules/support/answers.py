@@ -382,7 +382,7 @@ def _in_branches(context: MachineContext, choice: If, duty: Duty, title: str, li
     document = context.document
     if not choice.element.complete:
         return
-    parts = (*choice.branches, *((choice.otherwise,) if choice.otherwise else ()))
+    parts = choice.parts
     for part in parts:
         if not any(_may_answer(context.machine, statement, duty) for statement in part.body):
             if part.body:

@@ -25,8 +25,8 @@ from roaml.model.values.describe import described
 from roaml.model.values.domain import MAX_LISTED, TRUE, exactly
 from roaml.model.values.evaluate import compared
 from roaml.model.values.global_values import GlobalValues
-from roaml.record import Record
 from roaml.rules.rule import PropertiesContext
+from roaml.rules.support.constant_conditions import ConstantPart
 from roaml.rules.support.words import words_of
 from roaml.text import Span
 
@@ -44,14 +44,7 @@ _NEVER = frozenset(("avoid", "avoids", "cannot", "never", "no", "not", "without"
 """Words in the names of properties that state that something does not occur, as `Pmax` of `F` being 0."""
 
 
-class ConstantComparison(Record, frozen=True):
-    """A comparison at `span` that is always or never true; `message` gives the reason."""
-
-    span: Span
-    message: str
-
-
-def constant_comparisons(context: PropertiesContext) -> Iterator[ConstantComparison]:
+def constant_comparisons(context: PropertiesContext) -> Iterator[ConstantPart]:
     """The comparisons of a topic's integer with a number that have the same result for all values of its type; and, in
     what has to occur at some time, those of equality that hold for none of the values that machines send."""
     for property_ in context.properties:
@@ -69,13 +62,13 @@ def constant_comparisons(context: PropertiesContext) -> Iterator[ConstantCompari
                     continue
                 how = "always" if result == TRUE else "never"
                 why = f"the values of `{variable.type}` are {described(variable.by_type)}"
-                yield ConstantComparison(_place(context, node), f"this comparison is {how} true: {why}")
+                yield ConstantPart(_place(context, node), f"this comparison is {how} true: {why}")
                 continue
             # An order that never holds often states that a limit is never exceeded.
             never = operator is operators.Operator.EQUAL and not variable.sent.includes(number)
             if never and variable.sent.value is None and id(node) in expected:
                 why = f"the values of the field are {described(variable.sent, most=MAX_LISTED)}"
-                yield ConstantComparison(_place(context, node), f"this comparison is never true: {why}")
+                yield ConstantPart(_place(context, node), f"this comparison is never true: {why}")
 
 
 def _place(context: PropertiesContext, comparison: Binary) -> Span:

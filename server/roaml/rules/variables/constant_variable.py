@@ -11,7 +11,7 @@ from roaml.expr.types import Scalar, leaves
 from roaml.model.machine import Assign, Chart, Data, Declaration, bodies
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Expression
-from roaml.model.value_types import INTERFACE_KINDS, ValueUse, find_handle, section_of
+from roaml.model.value_types import CONDITIONS, INTERFACE_KINDS, ValueUse, find_handle, section_of
 from roaml.model.values.analyse import data_place
 from roaml.model.values.describe import described
 from roaml.model.values.domain import ValueSet, joined
@@ -27,8 +27,6 @@ _RECEIVED = (ProtocolPart.MESSAGE, ProtocolPart.REQUEST, ProtocolPart.GOAL)
 
 _PREVIOUS = ("previous", "prev", "last", "old")
 """The first word of a variable that should keep the last value of another one."""
-
-_CONDITIONS = (ValueUse.CONDITION, ValueUse.BRANCH)
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -181,7 +179,7 @@ def _read(context: MachineContext, chart: Chart) -> set[str]:
     explained: set[str] = set()
     for value in context.typed.values:
         if value.place.chart is chart and isinstance(value.value, Expression) and value.use is not ValueUse.LOCATION:
-            known = values.conditions.get(value.value.span) if values and value.use in _CONDITIONS else None
+            known = values.conditions.get(value.value.span) if values and value.use in CONDITIONS else None
             is_explained = value.use is ValueUse.ARGUMENT or (known is not None and known.alone.value is not None)
             (explained if is_explained else read).update(_variables(value.value))
     return read - explained

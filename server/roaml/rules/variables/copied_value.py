@@ -295,7 +295,7 @@ def _groups(body: Sequence[Statement]) -> Iterator[list[_Copy]]:
             case RosSend(fields=fields):
                 yield list(_sent(fields))
             case If():
-                for branch in (*statement.branches, *((statement.otherwise,) if statement.otherwise else ())):
+                for branch in statement.parts:
                     yield from _groups(branch.body)
     yield assigned
 

@@ -47,7 +47,7 @@ def _of_body(body: Sequence[Statement], declared: Container[str], initial: Mappi
         for name in _read(statement):
             unread = {place: assign for place, assign in unread.items() if place.split(".")[0] != name}
         if isinstance(statement, If):
-            for branch in (*statement.branches, *((statement.otherwise,) if statement.otherwise else ())):
+            for branch in statement.parts:
                 yield from _of_body(branch.body, declared, initial)
         if not isinstance(statement, Assign) or statement.location is None or statement.location.broken:
             continue
@@ -84,7 +84,7 @@ def _read(statement: Statement) -> frozenset[str]:
         case SetOutput(value=value):
             return frozenset(_names(value))
         case If():
-            parts = (*statement.branches, *((statement.otherwise,) if statement.otherwise else ()))
+            parts = statement.parts
             names = {name for part in parts for name in _names(part.cond)}
             for part in parts:
                 for inner in part.body:

@@ -14,7 +14,7 @@ from roaml.expr.types import BOOL, Scalar, Type
 from roaml.expr.zero import zero_text
 from roaml.model.machine import Chart
 from roaml.model.syntax import Expression
-from roaml.model.value_types import TypedValue, ValueUse
+from roaml.model.value_types import CONDITIONS, TypedValue, ValueUse
 from roaml.model.vocabulary import DEFAULT_TYPES
 from roaml.rules.rule import MachineContext, Rule, close_names, replacements
 from roaml.rules.support import misspelled
@@ -91,9 +91,7 @@ def inferred_type(context: MachineContext, value: TypedValue, name: str) -> Scal
         assigned = (v for v in context.typed.values if v.use is ValueUse.ASSIGNED and v.element is value.element)
         return next((_named(v.type) for v in assigned), None)
     variables = context.typed.variables.get(value.place.chart.scope, {})
-    return _beside(
-        tree, name, variables.get, BOOL if value.use in (ValueUse.CONDITION, ValueUse.BRANCH) else value.required
-    )
+    return _beside(tree, name, variables.get, BOOL if value.use in CONDITIONS else value.required)
 
 
 def _beside(tree: Expr, name: str, variables: Callable[[str], Type | None], required: Type | None) -> Scalar | None:

@@ -10,7 +10,7 @@ from roaml.expr.infer import constant
 from roaml.expr.operators import Operator
 from roaml.expr.tree import Binary, Boolean, Call, Conditional, Expr, Name
 from roaml.model.behavior.knowledge import variables_in
-from roaml.model.machine import Assign, Chart, Handler, If, RosSend, Send, SetOutput, Statement, bodies, statements
+from roaml.model.machine import Assign, Chart, Handler, If, Statement, bodies, statements, values_of
 from roaml.model.syntax import Expression
 from roaml.model.values.evaluate import place_of
 from roaml.rules.rule import MachineContext, Rule
@@ -103,16 +103,8 @@ def _read(body: Sequence[Statement], flags: frozenset[str]) -> frozenset[str]:
         if not flags.isdisjoint(variables_in(b.cond.tree for b in statement.branches if b.cond is not None))
         for inner in statements((statement,))
     }
-    values: list[object] = []
-    for statement in statements(tuple(body)):
-        match statement:
-            case _ if statement in tested:
-                pass
-            case Assign(value=value) | SetOutput(value=value):
-                values.append(value)
-            case Send(params=params) | RosSend(fields=params):
-                values += [param.value for param in params]
-    trees = [value.tree for value in values if isinstance(value, Expression) and not value.broken]
+    read = (statement for statement in statements(tuple(body)) if statement not in tested)
+    trees = (value.tree for statement in read for value in values_of(statement))
     return variables_in(tree for tree in trees if not _is_chosen(tree, flags))
 
 
