@@ -13,8 +13,21 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TypeAlias
 
-from roaml.expr.tree import ArrayLiteral, Expr, Index, Member, Number, ObjectLiteral, access_path, walk
-from roaml.expr.types import INTEGER_RANGES, Array, Scalar, ScalarKind, Type, is_kind, leaves
+from roaml.expr.operators import Operator, UnaryOperator
+from roaml.expr.tree import (
+    ArrayLiteral,
+    Binary,
+    Expr,
+    Index,
+    Member,
+    Name,
+    Number,
+    ObjectLiteral,
+    Unary,
+    access_path,
+    walk,
+)
+from roaml.expr.types import INTEGER_RANGES, Array, Scalar, ScalarKind, Struct, Type, is_kind, leaves
 from roaml.interruption import checkpoint
 from roaml.language import HL_SCXML
 from roaml.model.behavior.explore import EVENT_VARIABLES
@@ -32,6 +45,7 @@ from roaml.model.machine import (
     State,
     Statement,
     Target,
+    statements,
 )
 from roaml.model.syntax import Expression, PortRead, Value
 from roaml.model.triggers import Trigger, chooses, trigger
@@ -65,6 +79,12 @@ MAX_NARROWINGS = 3
 Fields: TypeAlias = "Mapping[str, ValueSet]"
 """The values of the leaf fields of a message, or of the parameters of an event, by dotted path. A field that is not
 contained may have any value."""
+
+
+Kept: TypeAlias = "Mapping[str, Expr]"
+"""Boolean variable -> the condition whose result it keeps: an earlier statement of the same content assigned it, and
+none has changed a variable of the condition since."""
+NOTHING_KEPT: Kept = {}
 
 
 class DataChannel(Record, frozen=True):
@@ -182,6 +202,21 @@ def of_type(type_: Type) -> ValueSet:
     return ANYTHING
 
 
+def values_by_type(type_: Type, place: str) -> Iterator[tuple[str, ValueSet]]:
+    """The places in a value of `type_` at `place`, also those of elements, such as `path[].x`, each with the values of
+    its type, if these have bounds."""
+    match type_:
+        case Array():
+            yield from values_by_type(type_.element, f"{place}[]")
+        case Struct():
+            for name, member in type_.members:
+                yield from values_by_type(member, f"{place}.{name}" if place else name)
+        case _:
+            values = of_type(type_)
+            if values != ANYTHING:
+                yield place, values
+
+
 _DEFAULTS: Mapping[ScalarKind, bool | str] = {ScalarKind.BOOL: False, ScalarKind.STRING: ""}
 
 
@@ -268,7 +303,11 @@ class _Interpreter(Record, eq=False, dict=True):
             if isinstance(leaf, Array) and leaf.bound is not None
         }
         # Not a method: a cycle of references would keep the machine in memory until the next garbage collection.
-        self.evaluator = Evaluator(functools.partial(_is_whole_in, self.whole), dict(STATUSES))
+        self.evaluator = Evaluator(
+            functools.partial(_is_whole_in, self.whole),
+            dict(STATUSES),
+            {place: values for name, type_ in types.items() for place, values in values_by_type(type_, name)},
+        )
         self.thresholds = sorted(self._thresholds())
         self.groups: dict[str, tuple[RememberedPart, list[_Group]]] = {}
         ports = {
@@ -435,45 +474,20 @@ class _Interpreter(Record, eq=False, dict=True):
         state = self.states[name]
         whole, groups = self._groups(name)
         if self.evaluator.records:
-            waiting = self._waiting(groups, known)
-            return (
-                found
-                for group in groups
-                for found in self._followed(
-                    state, group, known if group.handlers[0].trigger is None else waiting, known
-                )
-            )
+            return (found for group in groups for found in self._followed(state, group, known))
 
         def follow(inside: Valuation) -> Iterator[tuple[str, Valuation]]:
-            waiting = self._waiting(groups, inside)
             for group in groups:
-                values = inside if group.handlers[0].trigger is None else waiting
-                yield from self.memory.transitions(group.part, values, functools.partial(self._followed, state, group))
+                yield from self.memory.transitions(group.part, inside, functools.partial(self._followed, state, group))
 
         return self.memory.transitions(whole, known, follow)
 
-    def _waiting(self, groups: Iterable[_Group], known: Valuation) -> Valuation:
-        """The values with which a state waits for events: no transition without an event can be taken."""
-        waiting = known
-        for group in groups:
-            for handler in group.handlers if group.handlers[0].trigger is None else ():
-                left = None if handler.cond is None else self._unless(waiting, handler.cond)
-                if left is None:
-                    return known  # the state never waits
-                waiting = left
-        return waiting
-
-    def _followed(
-        self, state: State, group: _Group, known: Valuation, entered: Valuation | None = None
-    ) -> Iterator[tuple[str, Valuation]]:
-        """The states that follow `state` by the handlers of `group`.
-
-        Args:
-            entered: the values with which the state is entered. Conditions of handlers are judged alone with these, so
-                that one that repeats what other transitions exclude is not constant.
-        """
+    def _followed(self, state: State, group: _Group, known: Valuation) -> Iterator[tuple[str, Valuation]]:
+        """The states that follow `state` by the handlers of `group`. Transitions without an event exclude nothing in
+        the other groups: they have no priority (docs/spec/machines.md#selection)."""
         left: Valuation | None = {**known, **group.data}
-        alone = {**(known if entered is None else entered), **group.data}
+        alone = left
+        assert alone is not None
         for handler in group.handlers:
             taken = left
             if handler.cond is not None:
@@ -523,33 +537,52 @@ class _Interpreter(Record, eq=False, dict=True):
 
     # ------------------------------------------------------------- statements
 
-    def _body(self, body: Iterable[Statement], known: Valuation) -> Valuation:
+    def _body(self, body: Iterable[Statement], known: Valuation, kept: Kept = NOTHING_KEPT) -> Valuation:
         for statement in body:
             match statement:
                 case Assign():
                     known = self._assign(statement, known)
+                    kept = _kept(kept, statement)
                 case If():
-                    known = self._if(statement, known)
+                    known = self._if(statement, known, kept)
+                    for inner in statements((statement,)):
+                        kept = _without(kept, inner) if isinstance(inner, Assign) else kept
                 case _ if self.evaluator.records:
                     self._record(statement, known)
         return known
 
-    def _if(self, statement: If, known: Valuation) -> Valuation:
+    def _if(self, statement: If, known: Valuation, kept: Kept) -> Valuation:
         left: Valuation | None = known
         ends: list[Valuation] = []
         for branch in statement.branches:
             inside = left if branch.cond is None else self._condition(branch.cond, known, left)
+            if inside is not None and branch.cond is not None:
+                inside = self._assume_kept(inside, branch.cond.tree, True, kept)
             if inside is not None:
-                ends.append(self._body(branch.body, inside))
+                ends.append(self._body(branch.body, inside, kept))
             if left is not None:
                 left = None if branch.cond is None else self._unless(left, branch.cond)
+            if left is not None and branch.cond is not None:
+                left = self._assume_kept(left, branch.cond.tree, False, kept)
         if left is not None:
-            ends.append(self._body(statement.otherwise.body, left) if statement.otherwise else left)
+            ends.append(self._body(statement.otherwise.body, left, kept) if statement.otherwise else left)
         # No branch is possible only if a condition has no value, for example because of a division by zero.
         result = ends[0] if ends else known
         for end in ends[1:]:
             result = joined_valuations(result, end)
         return result
+
+    def _assume_kept(self, known: Valuation, condition: Expr, holds: bool, kept: Kept) -> Valuation | None:
+        """`known` where the conditions hold that are kept in the variables of `condition`, whose value is `holds`."""
+        match condition:
+            case Name() if condition.name in kept:
+                return self.evaluator.assume(known, kept[condition.name], holds)
+            case Unary(operator=UnaryOperator.NOT):
+                return self._assume_kept(known, condition.operand, not holds, kept)
+            case Binary(operator=Operator.AND | Operator.OR) if (condition.operator is Operator.AND) == holds:
+                left = self._assume_kept(known, condition.left, holds, kept)
+                return None if left is None else self._assume_kept(left, condition.right, holds, kept)
+        return known
 
     def _assign(self, statement: Assign, known: Valuation) -> Valuation:
         if statement.location is None:
@@ -658,6 +691,29 @@ class _Interpreter(Record, eq=False, dict=True):
 def _is_whole_in(whole: set[str], place: str) -> bool:
     """Whether the values of a place are integers: it is one of `whole`, or a length."""
     return place in whole or place.endswith(".length")
+
+
+def _kept(kept: Kept, statement: Assign) -> Kept:
+    """The conditions that variables keep after an assignment."""
+    kept = _without(kept, statement)
+    location, value = statement.location, statement.value
+    if location is None or not isinstance(location.tree, Name) or not isinstance(value, Expression):
+        return kept
+    name, tree = location.tree.name, value.tree
+    is_condition = isinstance(tree, Binary) or (isinstance(tree, Unary) and tree.operator is UnaryOperator.NOT)
+    if value.broken or not is_condition or name in names_of(value):
+        return kept
+    return {**kept, name: tree}
+
+
+def _without(kept: Kept, statement: Assign) -> Kept:
+    """`kept` without the conditions that no longer hold the values of their variables after an assignment."""
+    changed = set(names_of(statement.location))
+    return {
+        name: tree
+        for name, tree in kept.items()
+        if name not in changed and not any(isinstance(n, Name) and n.name in changed for n in walk(tree))
+    }
 
 
 def _grown(before: Valuation, known: Valuation, last: Valuation) -> Valuation:

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TypeAlias
 
 from roaml.expr.parse import parse
-from roaml.expr.types import leaves
 from roaml.interfaces.registry import NotFound
 from roaml.model.expand import PortConstant
 from roaml.model.machine import Declaration, Machine, Port
@@ -18,7 +17,7 @@ from roaml.model.property_ports import LinkedPort
 from roaml.model.ros import InterfaceType
 from roaml.model.system import Channel, ChannelEndpoint, System, SystemAutomaton
 from roaml.model.value_types import INTERFACE_KINDS, section_of
-from roaml.model.values.analyse import Arriving, DataChannel, Fields, Sent, merged, of_type
+from roaml.model.values.analyse import Arriving, DataChannel, Fields, Sent, merged, values_by_type
 from roaml.model.values.domain import ANYTHING, ValueSet, exactly, joined
 from roaml.model.values.evaluate import literal
 from roaml.roles import ProtocolPart, SymbolKind
@@ -109,8 +108,7 @@ def _of_interface(declaration: Declaration, part: ProtocolPart, interface: FindI
     if not isinstance(type_, InterfaceType):
         return {}
     struct = dict(type_.parts).get(section_of(part))
-    values = {".".join(path): of_type(leaf) for path, leaf in leaves(struct)} if struct is not None else {}
-    return {path: v for path, v in values.items() if v != ANYTHING}
+    return dict(values_by_type(struct, "")) if struct is not None else {}
 
 
 def _senders(

@@ -12,6 +12,10 @@ MAX_NAMED = 4
 """The maximum number of values that a text lists."""
 
 
+MAX_TYPE_BOUND = 2**16
+"""The maximum size of a bound that is described although only the type of the value gives it."""
+
+
 def described(values: ValueSet, most: int = MAX_NAMED) -> str:
     """The values as a phrase after a verb, such as ``0``, ``1, 2 or 3`` or `between 0 and 5`; "" if nothing is known
     about them. At most `most` values are listed."""
@@ -21,12 +25,17 @@ def described(values: ValueSet, most: int = MAX_NAMED) -> str:
     if values.only is not None:
         numbers = [value for value in values.only if not isinstance(value, str)]
         return f"between {_text(min(numbers))} and {_text(max(numbers))}" if len(numbers) == len(values.only) else ""
-    low, high = math.isfinite(values.low), math.isfinite(values.high)
+    low, high = _says_something(values.low, values.low_from), _says_something(values.high, values.high_from)
     if low and high:
         return f"between {_text(values.low)} and {_text(values.high)}"
     if low:
         return f"at least {_text(values.low)}"
     return f"at most {_text(values.high)}" if high else ""
+
+
+def _says_something(bound: float, origin: Origin) -> bool:
+    """Whether a bound is worth mentioning: one that only a wide type gives is not."""
+    return math.isfinite(bound) and (origin is not Origin.ASSUMED or abs(bound) <= MAX_TYPE_BOUND)
 
 
 def is_informative(values: ValueSet) -> bool:

@@ -2,7 +2,8 @@
 """The values of expressions, and what a condition says about variables.
 
 - A `Valuation` maps the places of values to their sets: `level`, `_msg.data`, `pose.x`, `path.length`. A place that it
-  does not contain may have any value. It never contains elements of arrays.
+  does not contain may have any value of its type. Of the elements of arrays, such as `path[]`, it contains only what
+  their types say.
 - Nothing is remembered about relations between places, so a set may contain values that do not occur together.
 """
 
@@ -11,7 +12,7 @@ from __future__ import annotations
 import functools
 import itertools
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import TypeAlias
 
 from roaml.exact_number import remainder
@@ -94,12 +95,14 @@ class Evaluator(Record, eq=False):
     Attributes:
         whole: whether the values of a place are integers.
         constants: names that are constants, such as `SUCCESS`.
+        types: place of a variable, or of elements in it -> all values of its type. Left out if these have no bounds.
         seen: the places of expressions in the file -> all values that they had, if `records` is true.
         lengths: the places of indices -> all lengths that their arrays had when they were read, as far as known.
     """
 
     whole: Callable[[str], bool]
     constants: dict[str, Constant] = field(default_factory=dict)
+    types: Mapping[str, ValueSet] = field(default_factory=dict)
     records: bool = False
     seen: dict[Span, ValueSet] = field(default_factory=dict)
     lengths: dict[Span, ValueSet] = field(default_factory=dict)
@@ -119,7 +122,7 @@ class Evaluator(Record, eq=False):
                 if expr.name in known:
                     return known[expr.name]
                 constant = self.constants.get(expr.name)
-                return ANYTHING if constant is None else exactly(constant)
+                return self.types.get(expr.name, ANYTHING) if constant is None else exactly(constant)
             case Number() | String() | Boolean():
                 return exactly(expr.value)
             case Member():
@@ -127,7 +130,7 @@ class Evaluator(Record, eq=False):
             case Index():
                 self._index(known, expr)
                 place = place_of(expr)
-                return known.get(place, ANYTHING) if place is not None else ANYTHING
+                return known.get(place) or self.types.get(place, ANYTHING) if place is not None else ANYTHING
             case Unary():
                 return self._unary(expr.operator, self.values(known, expr.operand))
             case Binary():
@@ -146,6 +149,8 @@ class Evaluator(Record, eq=False):
         place = place_of(expr)
         if place is not None and place in known:
             return known[place]
+        if place is not None and place in self.types:
+            return self.types[place]
         return _LENGTH if expr.name == "length" else ANYTHING
 
     def _inner_indices(self, known: Valuation, expr: Expr) -> None:

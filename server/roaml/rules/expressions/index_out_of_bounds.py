@@ -9,13 +9,14 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import IndexOutOfBounds, constant, infer
 from roaml.expr.operators import MIRRORED, OPPOSITE, Operator, UnaryOperator
-from roaml.expr.tree import Binary, Expr, Index, Member, Name, Unary, walk
+from roaml.expr.tree import Binary, Boolean, Expr, Index, Member, Name, Unary, walk
 from roaml.expr.types import Array, Type
-from roaml.model.machine import Handler
+from roaml.model.machine import Assign, Chart, Handler
 from roaml.model.syntax import Expression
 from roaml.model.value_types import TypedValue, ValuePlace, ValueUse
 from roaml.model.values.describe import described
 from roaml.model.values.domain import Origin, exactly, interval
+from roaml.model.values.evaluate import place_of
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.written import written
 from roaml.text import TextEdit
@@ -242,7 +243,7 @@ def _has_room(context: MachineContext, place: ValuePlace, array: Expr, bound: in
         group = _trigger(place.handler)
         earlier = place.state.handlers[: place.state.handlers.index(place.handler)]
         conditions += [(h.cond, False) for h in earlier if h.cond and _trigger(h) == group]
-    return any(_limits(context, condition.tree, array, bound, holds) for condition, holds in conditions)
+    return any(_limits(context, place.chart, condition.tree, array, bound, holds) for condition, holds in conditions)
 
 
 def _trigger(handler: Handler) -> tuple[object, ...]:
@@ -251,13 +252,13 @@ def _trigger(handler: Handler) -> tuple[object, ...]:
     return (handler.trigger, *(name.value if name else "" for name in names))
 
 
-def _limits(context: MachineContext, expr: Expr, array: Expr, bound: int, holds: bool) -> bool:
+def _limits(context: MachineContext, chart: Chart, expr: Expr, array: Expr, bound: int, holds: bool) -> bool:
     """Whether the length of the array is below `bound` if the value of `expr` is `holds`."""
     match expr:
         case Unary(operator=UnaryOperator.NOT):
-            return _limits(context, expr.operand, array, bound, not holds)
+            return _limits(context, chart, expr.operand, array, bound, not holds)
         case Binary(operator=Operator.AND | Operator.OR):
-            sides = (_limits(context, side, array, bound, holds) for side in (expr.left, expr.right))
+            sides = (_limits(context, chart, side, array, bound, holds) for side in (expr.left, expr.right))
             return any(sides) if (expr.operator is Operator.AND) is holds else all(sides)
         case Binary(operator=operator) if operator in OPPOSITE:
             if _is_length_of(context, expr.left, array):
@@ -267,7 +268,24 @@ def _limits(context: MachineContext, expr: Expr, array: Expr, bound: int, holds:
             else:
                 return False
             return _below(operator if holds else OPPOSITE[operator], number, bound)
+        case Name():
+            return _keeps_limit(context, chart, expr, array, bound, holds)
     return False
+
+
+def _keeps_limit(context: MachineContext, chart: Chart, expr: Name, array: Expr, bound: int, holds: bool) -> bool:
+    """Whether a Boolean variable keeps the result of a condition that limits the length of the array: each assignment
+    that can give it the value `holds` does. An array that has grown since then is not considered."""
+    kept = [
+        statement.value.tree
+        for statement in chart.statements
+        if isinstance(statement, Assign) and statement.location and place_of(statement.location.tree) == expr.name
+        if isinstance(statement.value, Expression)
+        if not (isinstance(statement.value.tree, Boolean) and statement.value.tree.value is not holds)
+    ]
+    return bool(kept) and all(
+        not isinstance(tree, Name) and _limits(context, chart, tree, array, bound, holds) for tree in kept
+    )
 
 
 def _below(operator: Operator, number: float | None, bound: int) -> bool:

@@ -59,11 +59,11 @@ def _computed(context: MachineContext, value: TypedValue) -> Iterator[Finding]:
     if values is None or constant(tree) is not None or isinstance(tree, Conditional | Name | Member):
         return
     low, high = INTEGER_RANGES[type_]
-    if _is_consequence(chart, tree, low, high):
-        return
-    bounds = interval(values)
+    bounds, caused = interval(values), _within_limits(chart, tree, low, high)
     for above in (True, False):
         bound, origin = (bounds.high, bounds.high_from) if above else (bounds.low, bounds.low_from)
+        if caused.high <= high if above else caused.low >= low:
+            continue  # another assignment is the cause
         if low <= bound <= high or origin is Origin.ASSUMED or (origin is Origin.WIDENED and high > MAX_COUNTED):
             continue
         if _is_limited(context, value, chart, above=above):
@@ -106,14 +106,12 @@ def _is_related(chart: ChartValues, tree: Expr) -> bool:
     return sum((known := chart.at(n)) is None or known.value is None for n in outer) > 1
 
 
-def _is_consequence(chart: ChartValues, tree: Expr, low: int, high: int) -> bool:
-    """Whether the value fits as long as the variables in the expression have values from `low` to `high`. Then another
-    assignment is the cause."""
+def _within_limits(chart: ChartValues, tree: Expr, low: int, high: int) -> ValueSet:
+    """The values of an expression as long as the variables in it have values from `low` to `high`."""
     places = [(place, n) for n in walk(tree) if (place := place_of(n)) is not None]
     limits = between(low, high)
     known = {place: meet(interval(v), limits) for place, n in places if (v := chart.at(n)) is not None}
-    result = interval(Evaluator(lambda _: True).values(known, tree))
-    return low <= result.low and result.high <= high
+    return interval(Evaluator(lambda _: True).values(known, tree))
 
 
 def _is_limited(context: MachineContext, value: TypedValue, chart: ChartValues, *, above: bool) -> bool:
