@@ -6,7 +6,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from roaml.jani.operators import BinaryOperator
 from roaml.record import Record
+from roaml.smc.goal import Threshold
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
 from roaml.smc.record import VERDICTS, Recording, TraceVerdict
 from roaml.smc.tally import StoredTrace
@@ -45,7 +47,16 @@ def unwanted_verdict(result: Result) -> int:
     if result.includes_stuck:
         return TRUE
     thresholds = [verdict.expectation.threshold for verdict in result.verdicts]
-    return TRUE if thresholds and not any(threshold.is_lower for threshold in thresholds) else FALSE
+    return TRUE if thresholds and not any(_requires_more(result, threshold) for threshold in thresholds) else FALSE
+
+
+def _requires_more(result: Result, threshold: Threshold) -> bool:
+    """Whether traces that fail contradict a threshold: a lower one, or an equation with a number above the value."""
+    if threshold.relation is not BinaryOperator.EQUAL or not 0 < threshold.number < 1:
+        return threshold.is_lower or (threshold.relation is BinaryOperator.EQUAL and threshold.number > 0)
+    if result.exact is not None:
+        return result.exact.is_below(threshold)
+    return result.answer is not None and result.answer.value < threshold.number
 
 
 def unwanted_trace(result: Result) -> StoredTrace | None:

@@ -3,17 +3,21 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, deque
+from collections.abc import Collection, Mapping, Sequence
 
-from roaml.explicit.path import EndlessTrace
+from roaml.explicit.path import EndlessTrace, PathStep
 from roaml.jani.model import Clock
 from roaml.jani.reaction import owner_of
 from roaml.record import Record
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.kernel import Kernel
 from roaml.smc.model import ModelChecker
-from roaml.smc.program import FALSE
+from roaml.smc.program import FALSE, UNKNOWN
 from roaml.verification.results import ShortestTrace
+
+MAX_REPLAYED = 10
+"""The maximum length of a trace that is repeated with one delay only, in lengths of the trace."""
 
 
 class DelayedActor(Record, frozen=True):
@@ -31,7 +35,8 @@ class DelayedActor(Record, frozen=True):
 
 
 def longest_delay(trace: ShortestTrace, clock: Clock) -> DelayedActor | None:
-    """The longest delay in a trace; of equally long ones, the first. `None` if nothing is delayed."""
+    """The longest delay in a trace with which alone the property has the verdict of the trace, as far as one trace for
+    each delay shows; otherwise the longest one. Of equally long ones, it is the first. `None` if nothing is delayed."""
     checker = trace.checker
     owners, begins = _deciders(checker, clock)
     instance, ends = _ends_of_time(checker, clock)
@@ -63,8 +68,67 @@ def longest_delay(trace: ShortestTrace, clock: Clock) -> DelayedActor | None:
         end(owner)
     if not delays:
         return None
-    length, start, owner, lasts = max(delays, key=lambda delay: (delay[0], -delay[1]))
+    delays.sort(key=lambda delay: (-delay[0], delay[1]))
+    longest: dict[int, tuple[int, int, int, bool]] = {}
+    for delay in delays:
+        longest.setdefault(delay[2], delay)
+    candidates = list(longest.values())
+    if len(candidates) > 1:
+        replay = _Replay(trace, kernel, owners, begins)
+        if not replay.has_verdict(None, 0, 0):
+            sufficient = (c for c in candidates if replay.has_verdict(c[2], c[1], c[1] + c[0]))
+            candidates = [next(sufficient, candidates[0])]
+    length, start, owner, lasts = candidates[0]
     return DelayedActor(checker.actors[owner], start, None if lasts else start + length)
+
+
+class _Replay:
+    """Repeats a trace in which no element but one is delayed. As far as possible, chance has the outcomes of the
+    trace."""
+
+    def __init__(
+        self, trace: ShortestTrace, kernel: Kernel, owners: Mapping[int, int], begins: Collection[int]
+    ) -> None:
+        self.path = trace.path
+        self.kernel = kernel
+        self.owners = owners
+        self.begins = begins
+
+    def has_verdict(self, delayed: int | None, start: int, end: int) -> bool:
+        """Whether the property has the verdict of the trace if the element `delayed` takes no step of its own from
+        `start` until `end`, in steps of the clock, unless no other step is possible, and the others take theirs at
+        once."""
+        kernel, now = self.kernel, 0
+        outcomes: dict[int, deque[PathStep]] = {}
+        for step in self.path.steps:
+            outcomes.setdefault(step.vector, deque()).append(step)
+        kernel.root(self.path.root)
+        for _ in range(MAX_REPLAYED * len(self.path.steps)):
+            status = kernel.look()
+            if status == UNKNOWN and kernel.ended():
+                status = kernel.close()
+            if status != UNKNOWN:
+                return status == self.path.verdict
+            choices = {vector: slots for vector, _, slots in kernel.choices()}
+            is_held = start <= now < end
+            held = {v for v in choices if is_held and self.owners.get(v) == delayed}
+            _, _, _, vector = min((v in held, v in self.begins, v not in outcomes, v) for v in choices)
+            given = outcomes[vector].popleft() if outcomes.get(vector) else None
+            slots = choices[vector]
+            if given is None or not _is_possible(given, slots):
+                given = PathStep(vector, [0] * len(slots), [_first_way(edges[0]) for edges in slots])
+            kernel.go(vector, list(given.edges), list(given.ways))
+            now += vector in self.begins
+        return False
+
+
+def _is_possible(step: PathStep, slots: Sequence[Sequence[Sequence[float]]]) -> bool:
+    parts = zip(step.edges, step.ways, slots, strict=True)
+    return all(e < len(edges) and w < len(edges[e]) and edges[e][w] > 0 for e, w, edges in parts)
+
+
+def _first_way(chances: Sequence[float]) -> int:
+    return next(number for number, chance in enumerate(chances) if chance > 0)
 
 
 def endless_delay(

@@ -147,9 +147,13 @@ class Exact(PartlyCompared, frozen=True):
         maximum for an upper one, and for an equation the one that is farther from its number."""
         is_lower = threshold.is_lower
         if threshold.relation is BinaryOperator.EQUAL:
-            is_lower = abs(self.least - threshold.number) > abs(self.greatest - threshold.number)
+            is_lower = self.is_below(threshold)
         worst = self.minimum if is_lower else self.maximum
         return replace(self, minimum=worst, maximum=worst, uniform=worst)
+
+    def is_below(self, threshold: Threshold) -> bool:
+        """Whether the value that is farther from the number of a threshold is the minimum."""
+        return abs(self.least - threshold.number) > abs(self.greatest - threshold.number)
 
     @property
     def fails(self) -> bool:

@@ -14,6 +14,7 @@ from roaml.smc.end import End
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.story import Story
 from roaml.views.actors import tree_phrase
+from roaml.views.observed import REQUIRED_OCCURRED
 from roaml.views.parting import Parting, other_course
 from roaml.views.turn_words import chances, details, draws, what
 from roaml.views.turns import Turn, turns
@@ -74,6 +75,10 @@ def _why(story: Story, all_turns: Sequence[Turn], place_of: Callable[[Origin], s
     if story.is_whole or not verb or not story.steps:
         return ""
     subject = f"{story.property} {verb}"
+    occurred = _occurrence(story.property, all_turns) if verb == "holds" else None
+    if occurred is not None:
+        why = f"because the event that it requires occurred{_at(occurred.time)}"
+        return f"{subject}{_at(story.clock[-1])}, {why}, and nothing has violated it when the trace ends"
     if story.recording.end is End.TIME:
         subject += _at(story.clock[-1])
         if verb == "fails":
@@ -92,6 +97,13 @@ def _why(story: Story, all_turns: Sequence[Turn], place_of: Callable[[Origin], s
     if last is None:
         return ""
     return f"{subject}{_at(last.time)}: {_sentence(last, place_of)}{_chance_before(all_turns, last.number, named)}"
+
+
+def _occurrence(property_: str, all_turns: Sequence[Turn]) -> Turn | None:
+    """The turn in which the observer of a property observed the event that it required last; `None` if it required
+    none, or another one after it."""
+    observed = [turn for turn in all_turns if turn.observed == property_ and turn.effects]
+    return observed[-1] if observed and REQUIRED_OCCURRED in observed[-1].effects else None
 
 
 def _ended_root(all_turns: Sequence[Turn]) -> Turn | None:

@@ -29,6 +29,8 @@ _BECOMES_TRUE = {
     PENDING: "the property requires an event from now on",
 }
 
+REQUIRED_OCCURRED = "the required event has occurred"
+
 
 def observed_property(observer: str, property_: str) -> str:
     """The name of the property of an observer.
@@ -60,7 +62,7 @@ def effects(changes: Sequence[DeclaredChange]) -> Iterator[str]:
     values = {_ending(change): change.after for change in changes}
     yield from (text for ending, text in _BECOMES_TRUE.items() if values.get(ending) is True)
     if values.get(PENDING) is False and not values.get(VIOLATED) and not values.get(OPEN):
-        yield "the required event has occurred"
+        yield REQUIRED_OCCURRED
 
 
 def _ending(change: DeclaredChange) -> str:
