@@ -71,6 +71,21 @@ def test_the_time_until_success(
     assert row["value"] == pytest.approx(float(last[:-2]), abs=5e-4)
 
 
+@pytest.mark.parametrize("rate", ["10", "7", "13.7"])
+def test_the_end_of_a_tree_without_success(tmp_path: Path, capsys: pytest.CaptureFixture[str], rate: str) -> None:
+    """The run ends when the tree ends, although the clock advances once more."""
+    path = tmp_path / "tree.xml"
+    path.write_text(TREE, encoding="utf-8")
+    options = (str(path), *NEAR, "--mock", "*: 0 in 1 s", "--tick-rate", rate)
+    report = shown(capsys, "verify", *options)
+    (ended,) = set(re.findall(r"^the tree ends with FAILURE at (\d+\.\d{3} s)", report, re.MULTILINE))
+    run_ = shown(capsys, "simulate", *options)
+    *_, ((_, who), last) = steps(run_).items()
+    assert (who, last) == ("the tree", ended)
+    (summary,) = re.findall(r"^  seed 0, trace 0, .* steps, (\S+) s, tree finished$", run_, re.MULTILINE)
+    assert float(summary) == pytest.approx(float(ended[:-2]), abs=5e-4)
+
+
 @pytest.mark.parametrize("options", [(), ("--reaction-time", "instant")])
 def test_systems(capsys: pytest.CaptureFixture[str], options: tuple[str, ...]) -> None:
     path = str(EXAMPLES / "assembly_robot" / "main_with_bug.xml")

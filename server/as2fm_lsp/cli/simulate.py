@@ -35,6 +35,7 @@ from roaml.jani.node import Origin
 from roaml.simulation import RunError, SavedSession, Session
 from roaml.smc.end import End
 from roaml.smc.fault import FaultError
+from roaml.smc.story import Story
 from roaml.verification.target import VerificationTarget
 
 EXAMPLES = """\
@@ -160,13 +161,13 @@ def _write(options: argparse.Namespace, outputs: OutputFiles, session: Session, 
     if options.json is not None:
         write_output(outputs, options.json, json_text(session, target))
     if not options.interactive and not any((options.html, options.mermaid, options.svg, options.csv, options.json)):
-        print_text(as_text(story, place_of) + _summary(session))
+        print_text(as_text(story, place_of) + _summary(session, story))
         flush()
 
 
-def _summary(session: Session) -> str:
+def _summary(session: Session, story: Story) -> str:
     saved = session.save()
-    time = session.state().time
+    time = story.clock[story.ends[-1]] if story.steps else session.state().time
     parts = [f"seed {saved.seed}, trace {saved.trace}", f"{session.position:,} steps"]
     if time is not None:
         parts.append(short_moment(time))

@@ -282,6 +282,11 @@ class Run:
         """The reason why no further step changes the state; `None` if a step changes it."""
         return End(self._kernel.standstill()) if self.has_ended else None
 
+    def causes_of(self, end: End) -> list[int]:
+        """The instances whose current locations are the reason for an end."""
+        marks = self._program.location_mark
+        return [i for i in range(len(self.legend.layout.instances)) if marks[self._kernel.location(i)] == end]
+
     def repeats(self) -> bool:
         """Whether the seed leads to some states again and again, which do not decide the property. It is found after
         many steps (`rounds.FIRST_CHECK`)."""

@@ -23,7 +23,7 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.program import UNKNOWN
 from roaml.smc.record import VERDICTS, AutomatonStep, Plain, RecordedVariable, Recording, TraceStep, TraceVerdict
 from roaml.smc.rounds import FIRST_CHECK, limits
-from roaml.smc.story import Story, clock_times
+from roaml.smc.story import Story, clock_times, last_steps
 from roaml.views.arrays import DeclaredValue
 from roaml.views.variables import variable_phrases
 
@@ -320,6 +320,13 @@ class Session:
         saved = replace(saved, decisions=saved.decisions[: self.position])
         return Session(run.checker, run.compiled_property, clock=self._clock, saved=saved)
 
+    def ends(self) -> tuple[int, ...]:
+        """The indices of the steps that ended the run up to the position: those that finished the trees, or the last
+        one. After the former, the clock may advance the time once more."""
+        finished = self._run.causes_of(End.FINISHED) if self.end is End.FINISHED else []
+        steps = self._run.steps[: self.position]
+        return tuple(last_steps(steps, finished)) or (len(steps) - 1,)
+
     def story(self) -> Story:
         """An explanation of the run up to the position, with all turns."""
         steps = tuple(self._run.steps[: self.position])
@@ -332,7 +339,7 @@ class Session:
             steps,
             tuple(clock_times(steps, self._clock)),
             tuple(range(len(steps))),
-            (len(steps) - 1,),
+            self.ends(),
             question.variables,
             self._automata,
             self._run.start,

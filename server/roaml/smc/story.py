@@ -76,11 +76,11 @@ def build_story(
     steps = list(recorder.walk(recording))
     variables = recorder.compiled_property.question.variables
     finished = recorder.causes_of(End.FINISHED) if recording.end is End.FINISHED else []
-    ends = _last_steps(steps, finished) or [len(steps) - 1] * bool(steps)
+    ends = last_steps(steps, finished) or [len(steps) - 1] * bool(steps)
     automata = tuple(instance.automaton for instance in recorder.legend.layout.instances)
     if clock is None and recording.end is not End.DECIDED:
         writers = [number for number, automaton in enumerate(automata) if _writes(automaton, variables)]
-        ends = _last_steps(steps, writers) or ends
+        ends = last_steps(steps, writers) or ends
     relevant = _relevant(recorder, steps, variables, ends, follows_locations=clock is None)
     standstill = recorder.standstill() if recording.end is End.STUCK else None
     considered = range(len(steps)) if len(steps) <= MAX_STEPS_WITH_OPTIONS else relevant
@@ -119,7 +119,7 @@ def clock_times(steps: Iterable[TraceStep], clock: tuple[str, str] | None) -> It
         yield None if clock is None else seconds + nanoseconds / 1e9
 
 
-def _last_steps(steps: list[TraceStep], instances: list[int]) -> list[int]:
+def last_steps(steps: Sequence[TraceStep], instances: Collection[int]) -> list[int]:
     """The indices of the last steps of some instances; an instance without a step has none."""
     last = {part.instance: i for i, step in enumerate(steps) for part in step.parts}
     return sorted({last[instance] for instance in instances if instance in last})
