@@ -69,7 +69,41 @@ def test_stories_show_statuses_and_entries(tree: Path) -> None:
     assert "IsOpen" in text
     assert re.search(r"Drive +is ticked: RUNNING\n", text)
     assert re.search(r"ScriptCondition +receives the blackboard .*: SUCCESS\n", text)
-    assert "{load}: 0 → 1" in text
+    assert "{load}" not in text, "a node that reads an entry does not change it"
+
+
+WRITES = """<root BTCPP_format="4">
+    <BehaviorTree ID="Main">
+        <Sequence>
+            <Script code="battery := 100; mode := 'idle'" />
+            <RetryUntilSuccessful num_attempts="2">
+                <Script code="battery -= 10; mode := 'drive'; fails := 0" _onSuccess="battery -= 1" />
+            </RetryUntilSuccessful>
+            <Work _skipIf="battery == 3 || mode == 'stop'" _post="battery := 89" />
+            <Work _skipIf="battery == 3 || fails == 2" />
+        </Sequence>
+    </BehaviorTree>
+</root>
+"""
+
+
+def test_a_story_shows_each_change_of_an_entry_once_at_its_writer(tmp_path: Path) -> None:
+    path = tmp_path / "tree.xml"
+    path.write_text(WRITES, encoding="utf-8")
+    session = api.session(load_tree(str(path), MockOptions((read_mock("*: 1"),))).target)
+    session.until_decided()
+    text = as_text(session.story(), lambda _: "")
+    assert re.findall(r"\{\w+\}: .* → .*", text) == [
+        "{battery}: 0 → 100",
+        "{mode}: '' → 'idle'",
+        "{battery}: 100 → 90",
+        "{mode}: 'idle' → 'drive'",
+        "{battery}: 90 → 89",
+    ]
+    assert re.findall(r"sends the blackboard entry .*", text) == [
+        "sends the blackboard entry fails (value: 0)",
+        "sends the blackboard entry battery (value: 89)",
+    ], "the writes that change nothing"
 
 
 def test_the_state_shows_each_node_once(

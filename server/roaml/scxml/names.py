@@ -324,6 +324,11 @@ def is_blackboard_event(event: str) -> bool:
     return event.startswith(BLACKBOARD_WRITE_PREFIX) or is_blackboard_request(event) or is_blackboard_answer(event)
 
 
+def written_entry(event: str) -> str:
+    """The variable of the blackboard that an event writes; "" for other events."""
+    return event.removeprefix(BLACKBOARD_WRITE_PREFIX) if event.startswith(BLACKBOARD_WRITE_PREFIX) else ""
+
+
 def role_of(event: str) -> EventRole:
     """The role of an event, derived from its name."""
     if event == CLOCK_STEP:

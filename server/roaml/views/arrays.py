@@ -110,16 +110,24 @@ class ArrayReader:
     def _of(self, instance: int) -> dict[str, Plain]:
         """The stored variables of an instance. At first, these are its arrays and their lengths."""
         if instance not in self._stored:
-            variables = self._automata[instance].variables
-            arrays = {array_of(variable.name) for variable in variables} - {""}
-            self._stored[instance] = {
-                variable.name: value
-                for variable in variables
-                if (variable.name in arrays or array_of(variable.name))
-                and variable.initial_value is not None
-                and (value := _constant(variable.initial_value, variable.type)) is not None
-            }
+            initial = _initial(self._automata[instance])
+            arrays = {array_of(name) for name in initial} - {""}
+            self._stored[instance] = {n: value for n, value in initial.items() if n in arrays or array_of(n)}
         return self._stored[instance]
+
+
+def initial_values(automaton: Automaton) -> dict[str, DeclaredValue]:
+    """The initial values of the variables of an automaton, except those that are not constants."""
+    return without_lengths(_initial(automaton))
+
+
+def _initial(automaton: Automaton) -> dict[str, Plain]:
+    return {
+        variable.name: value
+        for variable in automaton.variables
+        if variable.initial_value is not None
+        and (value := _constant(variable.initial_value, variable.type)) is not None
+    }
 
 
 def _constant(expression: Expression, type_: Type) -> Plain | None:

@@ -8,7 +8,6 @@ from collections.abc import Callable, Collection, Iterable
 
 from roaml.scxml.events import Role
 from roaml.scxml.names import (
-    BLACKBOARD_WRITE_PREFIX,
     FIELD_PREFIX,
     FLAG,
     TIMER_PREFIX,
@@ -26,6 +25,7 @@ from roaml.scxml.names import (
     read_tree_event,
     safe_name,
     without_client,
+    written_entry,
 )
 
 _TREE_PHRASES = {
@@ -119,8 +119,8 @@ def message_phrases(variables: Iterable[str], clients: Collection[str]) -> list[
 
 def blackboard_phrase(event: str) -> str:
     """A short phrase for an event of the blackboard; "" for other events."""
-    if event.startswith(BLACKBOARD_WRITE_PREFIX):
-        return f"the blackboard entry {event.removeprefix(BLACKBOARD_WRITE_PREFIX)}"
+    if entry := written_entry(event):
+        return f"the blackboard entry {entry}"
     if is_blackboard_request(event):
         return "a request to the blackboard"
     return "the blackboard" if is_blackboard_answer(event) else ""

@@ -16,6 +16,7 @@ from roaml.jani.node import Origin
 from roaml.jani.semantics import Value
 from roaml.record import Record, field
 from roaml.scxml.names import (
+    ENTRY_PREFIX,
     NODE_AUTOMATON,
     OPEN,
     PENDING,
@@ -23,6 +24,7 @@ from roaml.scxml.names import (
     STATUS_NAMES,
     VIOLATED,
     TreeEventKind,
+    is_blackboard,
     is_generated,
     is_observer,
     observer_automaton,
@@ -31,11 +33,12 @@ from roaml.scxml.names import (
     read_tree_event,
     received_by,
     sent_by,
+    written_entry,
 )
-from roaml.smc.record import AutomatonStep, TraceStep
+from roaml.smc.record import AutomatonStep, RecordedVariable, TraceStep
 from roaml.smc.story import Story
 from roaml.views.actors import actors_of, message_phrase, names_of
-from roaml.views.arrays import ArrayReader, DeclaredChange, DeclaredValue
+from roaml.views.arrays import ArrayReader, DeclaredChange, DeclaredValue, initial_values
 from roaml.views.events import EventReader
 from roaml.views.library_nodes import is_library_node
 from roaml.views.locations import states_of
@@ -56,8 +59,9 @@ class Turn(Record):
             receives an event, or no other automaton takes part.
         parts: the part of the automaton in each step.
         changes: the changes of the variables of the automaton, and of variables of the model that do not belong to an
-            event.
-        messages: the events that the automaton has sent.
+            event. For a node of a library, the changes of the blackboard entries that it writes replace those of its
+            copies of entries.
+        messages: the events that the automaton has sent, without those that change an entry in `changes`.
         matters: whether one of the steps is relevant for the property.
         last: the number of the last step.
         ends: whether the automaton takes part in a step that ends the trace.
@@ -254,6 +258,8 @@ class _Reader:
         self._arrays = ArrayReader(story.automata, story.start)
         self.inner = frozenset(n for n, automaton in enumerate(story.automata) if is_inner(automaton))
         self._library_nodes = frozenset(n for n, automaton in enumerate(story.automata) if is_library_node(automaton))
+        boards = (automaton for automaton in story.automata if is_blackboard(automaton.name))
+        self._entries = {name: value for board in boards for name, value in initial_values(board).items()}
         self._known_phrases: dict[int, Mapping[str, str]] = {}
         self._known_states: dict[int, Mapping[str, str]] = {}
         self._messages: dict[str, Message] = {}
@@ -316,9 +322,25 @@ class _Reader:
         return self._known_states[instance]
 
     def _send(self, event: str, sender: Turn | None, time: float | None) -> None:
-        self._messages[event] = Message(event, self._name(event), self._events.parameters(event), sender, time)
-        if sender is not None:
-            sender.messages.append(self._messages[event])
+        message = Message(event, self._name(event), self._events.parameters(event), sender, time)
+        self._messages[event] = message
+        change = self._written(message, sender)
+        if sender is not None and change is not None:
+            sender.changes.append(change)
+        elif sender is not None:
+            sender.messages.append(message)
+
+    def _written(self, message: Message, sender: Turn | None) -> DeclaredChange | None:
+        """The change of a blackboard entry that a node of a library causes with a message; `None` if it causes none."""
+        entry = written_entry(message.event)
+        if not entry:
+            return None
+        before, after = self._entries.get(entry), message.values.get("value")
+        if after is not None:
+            self._entries[entry] = after
+        if sender is None or not sender.is_library_node or before is None or after is None or before == after:
+            return None
+        return DeclaredChange(RecordedVariable(sender.instance, f"{ENTRY_PREFIX}{entry}"), before, after)
 
     def _heard(self, step: TraceStep) -> Message | None:
         event = received_by(step.action or "")
@@ -338,6 +360,8 @@ class _Reader:
         own = f"{prefix_of_observer(part.automaton)}__" if is_observer(part.automaton) else ""
         for change in changes:
             instance, name = change.variable
+            if name in self._phrases(part.instance) and name.startswith(ENTRY_PREFIX):
+                continue  # a copy: the node that writes the entry has the change
             is_lasting = instance < 0 and (name.startswith(own) if own else is_last and not self._is_others(name))
             if instance == part.instance or is_lasting:
                 yield change
