@@ -59,5 +59,14 @@ def test_a_choice_that_makes_a_difference(choices: Mapping[int, Sequence[Branche
     assert chances(choices) is None
 
 
+def test_last_states_with_the_same_outcome_are_one() -> None:
+    choices = {0: [[(1.0, 1)], [(0.5, 2), (0.5, 4)]], 1: [[(0.5, 3), (0.5, 4)]]}
+    assert merged_choices(lambda state: choices.get(state, ()), 0) is None
+    chain = merged_choices(lambda state: choices.get(state, ()), 0, {2: "ends", 3: "ends", 4: "fails"}.get)
+    assert chain is not None
+    assert chain[0] == [(1.0, 1)]
+    assert chain[1] in ([(0.5, 3), (0.5, 4)], [(0.5, 4), (0.5, 3)])
+
+
 def test_a_cycle_may_be_left() -> None:
     assert chances({0: [[(1.0, 1)]], 1: [[(0.5, 0), (0.5, 2)]]}) == {2: pytest.approx(1.0)}

@@ -38,9 +38,7 @@ def loaded(path: str, *mocks: str) -> LoadedTree:
 
 
 def exact(model: LoadedTree) -> TreeOutcome:
-    outcome = measure_exactly(model.mocked, model.target, SHARED_LIMITS)
-    assert outcome is not None
-    return outcome
+    return measure_exactly(model.mocked, model.target, SHARED_LIMITS)
 
 
 @pytest.mark.parametrize(

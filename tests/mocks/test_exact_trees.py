@@ -13,7 +13,7 @@ from as2fm_lsp.cli.main import run
 from roaml import api
 from roaml.api.trees import LoadedTree, load_tree
 from roaml.durations import ANY_TIME, moment, short_moment
-from roaml.experiments.exact_trees import measure_exactly
+from roaml.experiments.exact_trees import NotMeasuredError, measure_exactly
 from roaml.mocks.mock import read_mock
 from roaml.mocks.network import MockOptions
 from roaml.project.settings import Settings
@@ -46,7 +46,6 @@ def loaded(path: str, *mocks: str, max_time: int = 600) -> LoadedTree:
 
 def exact(model: LoadedTree) -> TreeOutcome:
     outcome = measure_exactly(model.mocked, model.target, SHARED_LIMITS)
-    assert outcome is not None
     assert outcome.is_exact
     return outcome
 
@@ -180,7 +179,32 @@ def test_a_loop_over_texts(tmp_path: Path) -> None:
 
 def test_too_many_states_have_no_values() -> None:
     model = loaded(str(FETCH), *fetch_mocks())
-    assert measure_exactly(model.mocked, model.target, replace(SHARED_LIMITS, states=50)) is None
+    with pytest.raises(NotMeasuredError, match=r"^there are more than 50 states \(max-states\)$"):
+        measure_exactly(model.mocked, model.target, replace(SHARED_LIMITS, states=50))
+
+
+def test_the_report_says_whether_states_or_choices_prevent_measurements(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    command = ["verify", str(FETCH), "--exhaustive", "--mock", "*: 0.9 in 1 s"]
+    assert run([*command, "--max-states", "50"]) == 1, "undecided"
+    assert "influences, because there are more than 50 states (max-states); omit" in capsys.readouterr().out
+    monkeypatch.setattr("roaml.experiments.exact_trees.merged_choices", lambda *_: None)
+    assert run(command) == 0
+    assert "because they depend on the order in which nodes take their steps; omit" in capsys.readouterr().out
+
+
+def test_the_order_in_which_the_last_leaf_writes_is_no_choice(tmp_path: Path) -> None:
+    """The tree ends while the blackboard still receives what its last leaf writes: two flags, in any order."""
+    content = (
+        '<Sequence><Read tag="{tag}"/><Fallback><SkipUnlessUpdated entry="{tag}"><Store tag="{tag}"/>'
+        '</SkipUnlessUpdated><WasEntryUpdated entry="{tag}"/><AlwaysSuccess/></Fallback></Sequence>'
+    )
+    outcome = exact(loaded(tree(tmp_path, content), "Read: 0.9 in 1 s", "Store: 0.8 in 2 s"))
+    # If `Store` fails, `WasEntryUpdated` succeeds in the same tick.
+    assert outcome.success.value == pytest.approx(0.9, abs=1e-12)
+    assert outcome.time is not None
+    assert outcome.time.value == pytest.approx(3.1, abs=1e-12)
 
 
 def test_nodes_react_at_once_unless_a_setting_says_otherwise() -> None:

@@ -147,7 +147,7 @@ def _run_tree(
     interrupts: Interrupts,
 ) -> int:
     """Verify a tree without a system, with mocks (docs/spec/mocks.md)."""
-    from roaml.experiments.exact_trees import measure_exactly  # noqa: PLC0415
+    from roaml.experiments.exact_trees import NotMeasuredError, measure_exactly  # noqa: PLC0415
     from roaml.verification.tree_outcome import (  # noqa: PLC0415 - systems start faster without it
         TRACES,
         measure,
@@ -167,9 +167,13 @@ def _run_tree(
                 options.main, declared, options.max_time, settings, MESSAGES, counts=True, texts=options.texts
             )
             status.stage("exploring the states")
-            outcome = None
+            outcome: TreeOutcome | str = ""
             if options.exhaustive or not asks_for_traces(options):
-                outcome = measure_exactly(tree.mocked, tree.target, state_limits_in(options))
+                try:
+                    outcome = measure_exactly(tree.mocked, tree.target, state_limits_in(options))
+                except NotMeasuredError as error:
+                    outcome = str(error)
+            is_exact = not isinstance(outcome, str)
             status.stage("compiling")
             names = options.property or [SUCCEEDS]
             verifier = api.verifier(
@@ -178,11 +182,11 @@ def _run_tree(
                 limits,
                 expectations,
                 only_uniform=True,
-                exact_if_small=outcome is not None and not options.exhaustive,
+                exact_if_small=is_exact and not options.exhaustive,
                 example_traces=EXAMPLE_TRACES,
                 limits=state_limits_in(options),
             )
-            if outcome is None and not options.exhaustive:
+            if not is_exact and not options.exhaustive:
                 status.stage("making traces")
                 outcome = measure(tree.mocked, tree.target, limits)
     except api.MockError as error:
@@ -196,14 +200,14 @@ def _run_tree(
 
 class _Verification:
     """One call of the command, after all files have been read. If a tree without a system is verified, `tree` contains
-    the tree and its measurements."""
+    the tree and its measurements, or the reason why there are none."""
 
     def __init__(
         self,
         options: argparse.Namespace,
         verifier: Verifier,
         interrupts: Interrupts,
-        tree: tuple[MockedTree, TreeOutcome | None] | None = None,
+        tree: tuple[MockedTree, TreeOutcome | str] | None = None,
     ) -> None:
         self.tree = tree
         self.options = options

@@ -49,7 +49,7 @@ class Answered(Record, frozen=True):
         options: those of the command line.
         faults: the errors in the model because of which properties could not be decided.
         stuck_result: the result of the check whether the system gets stuck; `None` if that was not checked.
-        tree: a tree without a system, and its measurements.
+        tree: a tree without a system, and its measurements, or the reason why there are none.
     """
 
     options: argparse.Namespace
@@ -57,7 +57,7 @@ class Answered(Record, frozen=True):
     results: tuple[Result, ...]
     faults: tuple[FaultError, ...] = ()
     stuck_result: stuck.StuckResult | None = None
-    tree: tuple[MockedTree, TreeOutcome | None] | None = None
+    tree: tuple[MockedTree, TreeOutcome | str] | None = None
 
     @property
     def target(self) -> VerificationTarget:
@@ -138,7 +138,7 @@ def _tree_row(answered: Answered) -> dict[str, Any] | None:
     from as2fm_lsp.verification.tree_report import as_row  # noqa: PLC0415
 
     mocked, outcome = answered.tree
-    return None if outcome is None else as_row(mocked, outcome)
+    return None if isinstance(outcome, str) else as_row(mocked, outcome)
 
 
 def _tree_text(answered: Answered, text: str, has_story: bool) -> str:
@@ -147,14 +147,14 @@ def _tree_text(answered: Answered, text: str, has_story: bool) -> str:
 
     assert answered.tree is not None
     mocked, outcome = answered.tree
-    if outcome is None:
-        text += tree_report.NOT_MEASURED
+    if isinstance(outcome, str):
+        text += tree_report.not_measured(outcome)
     else:
         text += tree_report.as_text(mocked, outcome, answered.place, is_whole=is_verbose())
     succeeds = next((result for result in answered.results if result.name == SUCCEEDS), None)
     story = None if succeeds is None or has_story else _unwanted_story(answered, succeeds)
     if story is not None:
-        always_fails = outcome is not None and outcome.success.value == 0
+        always_fails = not isinstance(outcome, str) and outcome.success.value == 0
         text += tree_report.story_as_text(mocked, story, answered.place, has_table=always_fails, is_whole=is_verbose())
     return f"{text}{tree_report.assumptions(mocked)}\n"
 

@@ -35,11 +35,6 @@ NEGLIGIBLE = 0.0001
 MAX_LINES = 40
 """The maximum number of shown lines of a trace; the lines in its middle are folded."""
 
-NOT_MEASURED = (
-    "  not computed: times, recoveries and influences, because there are too many states or choices; omit --exhaustive "
-    "to estimate them from traces\n"
-)
-
 PlaceOf = Callable[[Location], str]
 
 
@@ -48,6 +43,14 @@ def as_text(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf, *, is_w
     result of a property. `is_whole` selects all leaves and counters, each in its own line; otherwise, each kind has one
     line with the first of them."""
     return "".join(f"{line}\n" for line in _lines(mocked, outcome, place_of, is_whole))
+
+
+def not_measured(reason: str) -> str:
+    """A line that states why there are no measurements, although all states were to be explored."""
+    return (
+        f"  not computed: times, recoveries and influences, because {reason}; omit --exhaustive to estimate them from "
+        "traces\n"
+    )
 
 
 def assumptions(mocked: MockedTree) -> str:

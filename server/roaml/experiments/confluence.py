@@ -3,14 +3,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from typing import TypeAlias
 
 Branches: TypeAlias = Sequence[tuple[float, int]]
 """The destinations of a choice with their probabilities."""
 
 
-def merged_choices(choices_of: Callable[[int], Sequence[Branches]], root: int) -> dict[int, Branches] | None:
+def merged_choices(
+    choices_of: Callable[[int], Sequence[Branches]],
+    root: int,
+    outcome_of: Callable[[int], Hashable] = lambda last: last,
+) -> dict[int, Branches] | None:
     """The Markov chain that the states reachable from `root` are under all schedulers: state -> its destinations.
 
     States that behave alike from their next step on are one state. If all choices of a state then have the same
@@ -18,12 +22,16 @@ def merged_choices(choices_of: Callable[[int], Sequence[Branches]], root: int) -
 
     Args:
         choices_of: returns the choices of a state; none for a last state.
+        outcome_of: returns what matters of a last state. Last states in which this is equal behave alike: they may
+            differ in what nobody reads any more, such as an event that is still under way. By default, all are
+            different.
 
     Returns:
         `None` if a choice may make a difference.
     """
     alike: dict[int, int] = {}  # a state -> the state that stands for it
     known: dict[tuple[tuple[int, float], ...], int] = {}
+    outcomes: dict[Hashable, int] = {}
     chain: dict[int, Branches] = {}
     entered = {root}
     first = choices_of(root)
@@ -38,6 +46,10 @@ def merged_choices(choices_of: Callable[[int], Sequence[Branches]], root: int) -
                 stack.append((below, inner, _successors(inner)))
             continue
         stack.pop()
+        if not choices:
+            chain[state] = []
+            alike[state] = outcomes.setdefault(outcome_of(state), state)
+            continue
         found = set()
         for branches in choices:
             destinations = _merged(branches, alike)
@@ -45,11 +57,11 @@ def merged_choices(choices_of: Callable[[int], Sequence[Branches]], root: int) -
             found.add(((known[destinations], 1.0),) if destinations in known else destinations)
         if len(found) > 1:
             return None
-        destinations = found.pop() if found else ()
+        (destinations,) = found
         chain[state] = [(chance, successor) for successor, chance in destinations]
         if len(destinations) == 1:
             alike[state] = destinations[0][0]
-        elif destinations:
+        else:
             alike[state] = known.setdefault(destinations, state)
     return chain
 

@@ -14,7 +14,7 @@ a constant of the model.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 
 from roaml.experiments.confluence import Branches, merged_choices
 from roaml.experiments.derivatives import NoDerivativeError, derivative
@@ -64,30 +64,37 @@ _ROUNDING = 1e-9
 """The share of the traces that rounding may lose."""
 _RANGE = (0.05, 0.95)
 """A range of probabilities in which the influences are determined; each value in it gives the same states."""
+_CHOICES, _UNDEFINED, _INACCURATE = (
+    "they depend on the order in which nodes take their steps",
+    "the model executes an undefined operation",
+    "the tree repeats its steps so often that rounding errors are too great",
+)
+"""Reasons of `NotMeasuredError`."""
 
 
-def measure_exactly(mocked: MockedTree, target: VerificationTarget, limits: StateLimits) -> TreeOutcome | None:
-    """The measurements of a tree, from all states; `None` if there are too many, or if they depend on a scheduler.
+class NotMeasuredError(Exception):
+    """The states give no measurements. The message is the reason, a clause for users."""
+
+
+def measure_exactly(mocked: MockedTree, target: VerificationTarget, limits: StateLimits) -> TreeOutcome:
+    """The measurements of a tree, from all states.
 
     The model must have counters (`MockOptions.counts`).
 
     Args:
         limits: those of the search for each measurement.
+
+    Raises:
+        NotMeasuredError: there are too many states, or the measurements depend on a scheduler.
     """
     limits = replace(limits, states=min(limits.states, MAX_STATES))
     root = root_automaton(mocked)
     ends = _Ends.of(mocked, target.model, root, TICKS, limits)
-    if ends is None:
-        return None
-    counts = []
-    for node, counter in counters_of(mocked):
-        of_counter = _Ends.of(mocked, target.model, node.automaton, counter, limits)
-        if of_counter is None:
-            return None
-        counts.append((node, counter, exactly(of_counter.mean)))
+    counts = [
+        (node, counter, exactly(_Ends.of(mocked, target.model, node.automaton, counter, limits).mean))
+        for node, counter in counters_of(mocked)
+    ]
     influences = _influences(mocked, target, limits)
-    if influences is None:
-        return None
     tick_time = mocked.options.tick_time
     times = {float(ticks * tick_time): share for ticks, share in ends.successes.items() if share > 0}
     success = math.fsum(times.values())
@@ -136,19 +143,26 @@ class _Ends(Record, frozen=True):
     mean: float
 
     @classmethod
-    def of(cls, mocked: MockedTree, model: Model, automaton: str, counter: str, limits: StateLimits) -> _Ends | None:
-        """The ends with the values of a counter of an automaton; `None` as for `measure_exactly`."""
+    def of(cls, mocked: MockedTree, model: Model, automaton: str, counter: str, limits: StateLimits) -> _Ends:
+        """The ends with the values of a counter of an automaton.
+
+        Raises:
+            NotMeasuredError: as for `measure_exactly`.
+        """
         space = _space(_with_global(model, automaton, counter), mocked.tree.root, limits)
-        visits = None if space is None else _visits(space)
-        if space is None or visits is None:
-            return None
         layout = space.checker.legend.layout
         # The cells of a state are the locations of all instances and then the integers.
         cells = {storage.name: len(layout.instances) + storage.base for storage in layout.shared}
         status, counted = cells[status_variable(mocked.tree.root)], cells[_COUNTER]
         search, successes = space.search, dict[int, float]()
         failure = unfinished = stuck = mean = 0.0
-        for state, share in visits.items():
+
+        def outcome(state: int) -> Hashable:
+            label, key = search.label[state], search.key(state)
+            is_ended = label & codes.STATUS != UNKNOWN
+            return key[counted], key[status] if is_ended else None, label & codes.GETS_STUCK
+
+        for state, share in _visits(space, outcome).items():
             label = search.label[state]
             is_ended = label & codes.STATUS != UNKNOWN
             if not is_ended and search.choices_of(state):
@@ -164,11 +178,17 @@ class _Ends(Record, frozen=True):
             else:
                 unfinished += share
         whole = math.fsum((*successes.values(), failure, unfinished, stuck))
-        return cls(successes, failure, unfinished, stuck, mean) if abs(whole - 1) <= _ROUNDING else None
+        if abs(whole - 1) > _ROUNDING:
+            raise NotMeasuredError(_INACCURATE)
+        return cls(successes, failure, unfinished, stuck, mean)
 
 
-def _space(model: Model, root: int, limits: StateLimits) -> Space | None:
-    """All states until the tree has ended, where the goal reads the counter."""
+def _space(model: Model, root: int, limits: StateLimits) -> Space:
+    """All states until the tree has ended, where the goal reads the counter.
+
+    Raises:
+        NotMeasuredError: there are too many states, or an operation in the model is undefined.
+    """
     reads = Binary(BinaryOperator.GREATER_EQUAL, Name(_COUNTER), Integer(0))
     ended = Binary(BinaryOperator.AND, returned(root, SUCCESS, *FAILURES), reads)
     property_: Property = eventually("ends", ended)
@@ -177,23 +197,40 @@ def _space(model: Model, root: int, limits: StateLimits) -> Space | None:
         checker, compiled = alone(checker, checker.compiled_properties[0])
         reduces = limits.reduces and can_be_reduced(checker.program, compiled.goal)
         space = explore(checker, compiled, limits, is_reduced=reduces)
-    except (LimitError, FaultError):
-        return None
-    return None if space.problem is not None or len(space.roots) != 1 else space
+    except LimitError as error:
+        raise NotMeasuredError(_too_many(error, limits)) from None
+    except FaultError:
+        raise NotMeasuredError(_UNDEFINED) from None
+    if space.problem is not None:
+        raise NotMeasuredError(_UNDEFINED)
+    if len(space.roots) != 1:
+        raise NotMeasuredError(_CHOICES)
+    return space
 
 
-def _visits(space: Space) -> dict[int, float] | None:
-    """The expected number of visits of states, which for a last state is the probability of reaching it; `None` if
-    that depends on choices."""
+def _too_many(error: LimitError, limits: StateLimits) -> str:
+    if error.states < limits.states:
+        return f"there are too many states: the search {error}"
+    option = "the maximum of these values" if limits.states == MAX_STATES else "max-states"
+    return f"there are more than {limits.states:,} states ({option})"
+
+
+def _visits(space: Space, outcome_of: Callable[[int], Hashable]) -> dict[int, float]:
+    """The expected number of visits of states, which for a last state is the probability of reaching it, or one with
+    the same outcome.
+
+    Raises:
+        NotMeasuredError: the number depends on choices, or rounding errors are too great.
+    """
     search = space.search
 
     def choices_of(state: int) -> list[Branches]:
         is_ended = search.label[state] & codes.STATUS != UNKNOWN
         return [] if is_ended else [branches for _, _, branches in search.choices_of(state)]
 
-    chain = merged_choices(choices_of, space.roots[0])
+    chain = merged_choices(choices_of, space.roots[0], outcome_of)
     if chain is None:
-        return None
+        raise NotMeasuredError(_CHOICES)
     chances: list[float] = []
     steps: dict[int, Sequence[tuple[int, int]]] = {}
     for state, branches in chain.items():
@@ -203,7 +240,7 @@ def _visits(space: Space) -> dict[int, float] | None:
     try:
         return expected_visits(steps, space.roots[0], chances.__getitem__)
     except SlowChainError:
-        return None
+        raise NotMeasuredError(_INACCURATE) from None
 
 
 def _with_global(model: Model, automaton: str, counter: str) -> Model:
@@ -224,8 +261,12 @@ def _with_global(model: Model, automaton: str, counter: str) -> Model:
     return replace(model, automata=tuple(map(of, model.automata)), variables=variables)
 
 
-def _influences(mocked: MockedTree, target: VerificationTarget, limits: StateLimits) -> tuple[Influence, ...] | None:
-    """The influences of the leaves, the greatest first; `None` if they are not known."""
+def _influences(mocked: MockedTree, target: VerificationTarget, limits: StateLimits) -> tuple[Influence, ...]:
+    """The influences of the leaves, the greatest first.
+
+    Raises:
+        NotMeasuredError: they are not known.
+    """
     leaves = {f"probability_{leaf.node.number}": leaf for leaf in mocked.leaves if 0 < leaf.probability < 1}
     if not leaves:
         return ()
@@ -242,12 +283,12 @@ def _influences(mocked: MockedTree, target: VerificationTarget, limits: StateLim
         limits,
     )
     if space is None:
-        return None
+        raise NotMeasuredError("there are too many states for the influences")
     setting = tuple((name, repr(leaf.probability)) for name, leaf in leaves.items())
     try:
         slopes = dict(derivative(space, setting, tuple(leaves)).slopes)
-    except NoDerivativeError:
-        return None
+    except NoDerivativeError as error:
+        raise NotMeasuredError(f"the influences are not known: {error}") from None
     found = (Influence(leaf, slopes[name], Bounds(slopes[name], slopes[name])) for name, leaf in leaves.items())
     return tuple(sorted(found, key=lambda influence: -abs(influence.value)))
 
