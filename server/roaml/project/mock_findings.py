@@ -108,6 +108,15 @@ def _missing(source: SourceFile, trees: Forest, mocks: Sequence[Mock]) -> Iterat
     yield MISSING_MOCK.at(span, message, Fix("Add the missing mocks as they are proposed", (added,)))
 
 
+def mock_patterns(text: str) -> Iterator[str]:
+    """What the valid mocks in the text of a file name."""
+    for span in mock_spans(text):
+        try:
+            yield read_mock(text[span.start : span.end]).pattern
+        except MockError:
+            continue
+
+
 def mocked_durations(file: TreeFile, text: str) -> Mapping[TreeNode, Fraction]:
     """The leaves of a tree that a mock can let succeed, each with the time, in ns, that it then takes; empty if the
     text is not a file of mocks. A duration that is drawn from a distribution may be 0."""

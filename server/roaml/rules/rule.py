@@ -133,6 +133,7 @@ class TreeContext(Record, frozen=True):
             relative to this file.
         mocked: the leaves of a file without a system that a mock can let succeed, each with the time, in ns, that it
             then takes.
+        mock_patterns: what the mocks beside the files of a tree without a system name.
     """
 
     source: SourceFile
@@ -149,6 +150,7 @@ class TreeContext(Record, frozen=True):
     refusals: tuple[UntranslatablePart, ...] = ()
     found_includes: Mapping[str, str] = field(default_factory=dict)
     mocked: Mapping[TreeNode, Fraction] = field(default_factory=dict)
+    mock_patterns: frozenset[str] = frozenset()
 
     @property
     def forest(self) -> Forest | None:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Generic, TypeAlias, TypeVar
 
 from roaml.diagnostics import Finding, Symbol
 from roaml.disk import UnreadableReason
+from roaml.forest.forest import Forest
 from roaml.interfaces.parse import parse as parse_interface
 from roaml.interfaces.registry import NotFound, Reason
 from roaml.interfaces.report import CODE as INTERFACE_SYNTAX
@@ -491,6 +492,7 @@ class _Reader:
             self._refusals(),
             self._found_includes(),
             self._mocked_durations(file) if self.system_path is None else {},
+            self._mock_patterns(trees) if self.system_path is None and trees is not None else frozenset(),
         )
 
     def _mocked_durations(self, file: TreeFile) -> Mapping[TreeNode, Fraction]:
@@ -501,6 +503,16 @@ class _Reader:
         from roaml.project.mock_findings import mocked_durations  # noqa: PLC0415 - few projects have mocks
 
         return mocked_durations(file, mocks.text)
+
+    def _mock_patterns(self, trees: Forest) -> frozenset[str]:
+        """What the mocks beside the trees that are checked together name."""
+        sources = (self.rooms.sources.source(mocks_path(path)) for path, _ in trees.files)
+        texts = [source.text for source in sources if source is not None]
+        if not texts:
+            return frozenset()
+        from roaml.project.mock_findings import mock_patterns  # noqa: PLC0415 - few projects have mocks
+
+        return frozenset(pattern for text in texts for pattern in mock_patterns(text))
 
     def _refusals(self) -> tuple[UntranslatablePart, ...]:
         """The nodes of this file that cannot be translated, with the reasons, if the tree is executed as

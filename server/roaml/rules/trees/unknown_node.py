@@ -38,7 +38,10 @@ def check(context: TreeContext) -> Iterator[Finding]:
             continue
         if name.value in trees.beside and name.value not in trees.trees:
             continue
-        for finding in _certain(context, trees, node, name) or _undeclared(trees, node, name):
+        findings = _certain(context, trees, node, name)
+        if not findings and name.value not in context.mock_patterns:
+            findings = list(_undeclared(trees, node, name))
+        for finding in findings:
             # Without a system, a node that no model describes is reported once for each name.
             if trees.system is not None or finding.fixes or name.value not in undescribed:
                 yield finding
