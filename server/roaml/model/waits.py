@@ -10,15 +10,17 @@ from fractions import Fraction
 from roaml.expr.infer import constant, constant_fraction
 from roaml.expr.operators import Operator
 from roaml.expr.tree import Binary, Expr, Name, walk
-from roaml.model.machine import Assign, Chart, If, Machine, ReturnStatus, Statement, statements
+from roaml.model.machine import Assign, Chart, Handler, If, Machine, ReturnStatus, State, Statement, statements
 from roaml.model.syntax import Expression, PortRead, Value
+from roaml.model.triggers import trigger
 from roaml.record import Record
 from roaml.roles import ProtocolPart
 from roaml.text import Span
 
 
 class TickCount(Record, frozen=True):
-    """A variable that starts at 0 and that a tick of a timer increases by at most `step`."""
+    """A variable that starts at 0 and that a tick of a timer increases by at most `step`: in its handler, or in the
+    `<onentry>` of a state that only its ticks enter."""
 
     timer: str
     step: Fraction
@@ -66,6 +68,34 @@ def waits(chart: Chart, expressions: Iterable[Expression]) -> Iterator[CountedWa
                 yield from _wait(node.span, counts, limits, greater, smaller)
 
 
+def ending_waits(machine: Machine, chart: Chart) -> Iterator[CountedWait]:
+    """The conditions that hold until a counter has reached a limit, such as `n < 5`, where something else is done from
+    then on: the next handler for the same trigger, or another branch."""
+    counts = _counts(chart)
+    limits = fixed_variables(chart)
+    for cond in _alternating(machine, chart) if counts else ():
+        tree = cond.tree
+        if isinstance(tree, Binary) and tree.operator in _ENDS:
+            smaller, greater = (tree.left, tree.right) if _ENDS[tree.operator] else (tree.right, tree.left)
+            yield from _wait(tree.span, counts, limits, smaller, greater)
+
+
+def _alternating(machine: Machine, chart: Chart) -> Iterator[Expression]:
+    """The conditions without which another handler or branch is executed."""
+    for state in chart.states:
+        for number, handler in enumerate(state.handlers):
+            own = trigger(machine, handler)
+            if handler.cond is not None and own is not None:
+                if any(trigger(machine, following) == own for following in state.handlers[number + 1 :]):
+                    yield handler.cond
+    for statement in chart.executed:
+        if isinstance(statement, If):
+            alternatives = (*statement.branches[1:], statement.otherwise)
+            for branch, following in zip(statement.branches, alternatives, strict=True):
+                if branch.cond is not None and following is not None:
+                    yield branch.cond
+
+
 def port_waits(machine: Machine) -> Iterator[PortWait]:
     """The ports that set how long a plugin takes until it can return SUCCESS."""
     chart = machine.chart
@@ -86,6 +116,15 @@ _REACHES = {
     Operator.LESS: False,
 }
 """The comparisons that hold when a number that grows has reached a limit -> whether the number is on the left side."""
+
+_ENDS = {
+    Operator.LESS: True,
+    Operator.LESS_EQUAL: True,
+    Operator.NOT_EQUAL: True,
+    Operator.GREATER_EQUAL: False,
+    Operator.GREATER: False,
+}
+"""The comparisons that hold until a number that grows has reached a limit -> whether the number is on the left side."""
 
 
 def _wait(
@@ -125,31 +164,74 @@ def _scaled(tree: Expr) -> tuple[str, Fraction]:
 
 def _counts(chart: Chart) -> dict[str, TickCount]:
     """The variables that count ticks: all other assignments set them to 0."""
-    steps: dict[str, list[TickCount]] = {}
-    others: set[str] = set()
-    counting: dict[Statement, TickCount] = {}
-    for handler in (h for state in chart.states for h in state.handlers):
-        for statement in (s for target in handler.targets for s in statements(target.body)):
+    steps: dict[str, dict[str, _Steps]] = {}
+    counting: set[Statement] = set()
+    for timer, is_entry, body in _at_ticks(chart):
+        counted: dict[str, Fraction] = {}
+        for statement in statements(body):
             step = _step(statement)
-            if step is not None and handler.trigger is ProtocolPart.TICK and handler.handle is not None:
-                counting[statement] = TickCount(handler.handle.value, step)
+            if step is not None:
+                counting.add(statement)
+                counted[step[0]] = counted.get(step[0], Fraction(0)) + step[1]
+        for name, step_ in counted.items():
+            most = steps.setdefault(name, {}).setdefault(timer, _Steps())
+            steps[name][timer] = most.with_body(step_, is_entry)
+    others: set[str] = set()
     for statement in chart.executed:
-        if isinstance(statement, Assign) and statement.location is not None:
-            name = statement.location.tree.name if isinstance(statement.location.tree, Name) else ""
-            if statement in counting:
-                steps.setdefault(name, []).append(counting[statement])
-            elif not _is_zero(statement.value):
-                others.add(name)
+        if isinstance(statement, Assign) and statement.location is not None and statement not in counting:
+            if not _is_zero(statement.value):
+                others.add(statement.location.tree.name if isinstance(statement.location.tree, Name) else "")
     others |= {data.id.value for data in chart.data if data.id and not _is_zero(data.value)}
     return {
-        name: TickCount(counts[0].timer, sum((count.step for count in counts), Fraction(0)))
-        for name, counts in steps.items()
-        if name not in others and len({count.timer for count in counts}) == 1
+        name: TickCount(timer, most.of_handler + most.of_entry)
+        for name, by_timer in steps.items()
+        if name not in others and len(by_timer) == 1
+        for timer, most in by_timer.items()
     }
 
 
-def _step(statement: Statement) -> Fraction | None:
-    """The number by which an assignment increases its variable."""
+class _Steps(Record, frozen=True):
+    """The most by which a target of a handler and an `<onentry>` increase a variable; a tick executes one of each."""
+
+    of_handler: Fraction = Fraction(0)
+    of_entry: Fraction = Fraction(0)
+
+    def with_body(self, step: Fraction, is_entry: bool) -> _Steps:
+        return _Steps(
+            self.of_handler if is_entry else max(self.of_handler, step),
+            max(self.of_entry, step) if is_entry else self.of_entry,
+        )
+
+
+def _at_ticks(chart: Chart) -> Iterator[tuple[str, bool, tuple[Statement, ...]]]:
+    """The bodies that a machine executes at most once for each tick of a timer, each with the name of the timer and
+    whether it is an `<onentry>`."""
+    for handler in (h for state in chart.states for h in state.handlers):
+        timer = _timer(handler)
+        for target in handler.targets if timer else ():
+            yield timer, False, target.body
+    initial = chart.initial.value if chart.initial is not None else ""
+    for state in chart.states:
+        if state.entry is not None and state.id is not None and state.id.value != initial:
+            timers = {_timer(handler) for handler in _entering(chart, state)}
+            if len(timers) == 1 and "" not in timers:
+                (timer,) = timers
+                yield timer, True, state.entry.statements
+
+
+def _timer(handler: Handler) -> str:
+    """The timer for whose tick a handler waits; "" for other handlers."""
+    return handler.handle.value if handler.trigger is ProtocolPart.TICK and handler.handle is not None else ""
+
+
+def _entering(chart: Chart, state: State) -> Iterator[Handler]:
+    for handler in (h for other in chart.states for h in other.handlers):
+        if any(t.state is not None and state.id is not None and t.state.value == state.id.value for t in handler.targets):
+            yield handler
+
+
+def _step(statement: Statement) -> tuple[str, Fraction] | None:
+    """The variable that an assignment increases, and the number by which it does."""
     if not isinstance(statement, Assign) or statement.location is None or not isinstance(statement.value, Expression):
         return None
     location, tree = statement.location.tree, statement.value.tree
@@ -158,7 +240,7 @@ def _step(statement: Statement) -> Fraction | None:
     for side, other in ((tree.left, tree.right), (tree.right, tree.left)):
         step: Fraction | None = constant_fraction(other)
         if isinstance(side, Name) and side.name == location.name and step is not None and step > 0:
-            return step
+            return location.name, step
     return None
 
 

@@ -17,7 +17,7 @@ from roaml.model.system import System, SystemAutomaton
 from roaml.model.system_file import TICK_RATE
 from roaml.model.timing import NANOSECONDS_PER_SECOND, TimerRate, period, rate
 from roaml.model.tree import TreeNode
-from roaml.model.waits import CountedWait, waits
+from roaml.model.waits import CountedWait, ending_waits, waits
 from roaml.record import Record
 from roaml.roles import SymbolKind
 from roaml.rules.rule import MachineContext, SystemContext, TreeContext
@@ -73,11 +73,21 @@ def counted_waits(context: MachineContext) -> Iterator[tuple[CountedWait, Fracti
     timer in Hz and the time in ns; in the automaton in which it is least."""
     for chart in context.machine.charts:
         values = (v.value for v in context.typed.values if v.place.chart is chart)
-        for wait in waits(chart, (value for value in values if isinstance(value, Expression))):
-            hertz = [rate for a in context.automata if (rate := _rate_of(a, wait.timer)) is not None]
-            if not wait.port and wait.limit > 0 and hertz and len(hertz) == len(context.automata):
-                ticks = math.ceil(wait.ticks(wait.limit))
-                yield wait, max(hertz), ticks * period(max(hertz)).nanoseconds
+        yield from _timed(context, waits(chart, (value for value in values if isinstance(value, Expression))))
+
+
+def ending_counts(context: MachineContext) -> Iterator[tuple[CountedWait, Fraction, int]]:
+    """The same for the conditions that hold until the number is reached, and behind which something else is done."""
+    for chart in context.machine.charts:
+        yield from _timed(context, ending_waits(context.machine, chart))
+
+
+def _timed(context: MachineContext, found: Iterable[CountedWait]) -> Iterator[tuple[CountedWait, Fraction, int]]:
+    for wait in found:
+        hertz = [rate for a in context.automata if (rate := _rate_of(a, wait.timer)) is not None]
+        if not wait.port and wait.limit > 0 and hertz and len(hertz) == len(context.automata):
+            ticks = math.ceil(wait.ticks(wait.limit))
+            yield wait, max(hertz), ticks * period(max(hertz)).nanoseconds
 
 
 def tick_period(context: TreeContext) -> int | None:

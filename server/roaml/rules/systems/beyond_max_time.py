@@ -19,6 +19,7 @@ from roaml.rules.support.timing import (
     counted_waits,
     duration,
     durations,
+    ending_counts,
     port_durations,
     running_first,
     timers,
@@ -49,6 +50,13 @@ def _machine(context: MachineContext) -> Iterator[Finding]:
             message = (
                 f"this never holds: `{wait.variable}` counts ticks of `{wait.timer}`, which take {duration(ns)}, and "
                 f"the system runs for {duration(end)} (`max_time`)"
+            )
+            yield RULE.at(wait.span, message)
+    for wait, hertz, ns in ending_counts(context):
+        if end < ns and period(hertz).nanoseconds <= end:
+            message = (
+                f"this always holds: `{wait.variable}` counts ticks of `{wait.timer}`, which take {duration(ns)} until "
+                f"the limit, and the system runs for {duration(end)} (`max_time`)"
             )
             yield RULE.at(wait.span, message)
 
