@@ -23,7 +23,7 @@ from roaml.expr.infer import (
     infer,
 )
 from roaml.expr.operators import Operator
-from roaml.expr.tree import Binary, Name, walk
+from roaml.expr.tree import Binary, Expr, Name, walk
 from roaml.expr.types import BOOL, UNKNOWN, ScalarKind, Type, is_kind
 from roaml.model.globals import GlobalVariable
 from roaml.model.initial import check_initial
@@ -41,7 +41,7 @@ from roaml.model.property_sentences import sentence
 from roaml.model.syntax import Expression
 from roaml.model.syntax import Name as WrittenName
 from roaml.model.system import System
-from roaml.model.timing import periods
+from roaml.model.timing import TimerRate, periods
 from roaml.model.values.domain import ValueSet
 from roaml.observers.properties import (
     CLOSE,
@@ -341,8 +341,12 @@ class _Linker:
         if conditions is None or scope is None or window is None:
             return None
         kind, limits = scope
-        if pattern is Pattern.RECURRENCE and window.upper is not None:
-            self._compare_with_the_sender(conditions[LEFT], written.intervals[0], window.upper)
+        if window.upper is not None and self.step is not None and written.intervals:
+            time = window.upper * self.step
+            if pattern is Pattern.RECURRENCE or (pattern is Pattern.EXISTENCE and kind is ScopeKind.GLOBALLY):
+                self._compare_with_the_sender(pattern, conditions[LEFT], written.intervals[0], time)
+            elif pattern is Pattern.RESPONSE:
+                self._compare_with_the_answer(conditions, written.intervals[0], time)
         if pattern is Pattern.UNIVERSALITY and kind is ScopeKind.GLOBALLY and window.lower == 0:
             self._check_start(conditions[LEFT])
         return PatternProperty(pattern, kind, window), {**conditions, **limits}
@@ -353,19 +357,53 @@ class _Linker:
             message = f"`{name}` is false at the start of every trace and between events, so this property never holds"
             self.report(ProblemKind.FALSE_AT_START, condition.span, message)
 
-    def _compare_with_the_sender(self, condition: Expression, interval: TimeInterval, upper: int) -> None:
-        """Report an event that is required more often than the timer ticks that is the only reason to send it."""
-        event, written = self._event(condition.tree), interval.time or interval.within
-        timer = self.ports.slowest_timer(event[0].written) if event is not None else None
-        if event is None or timer is None or written is None or self.step is None:
+    def _compare_with_the_sender(
+        self, pattern: Pattern, condition: Expression, interval: TimeInterval, time: int
+    ) -> None:
+        """Report an event that is required more often, or earlier, than the timer ticks that is the only reason to send
+        it."""
+        timer, written = self._slowest_timer(condition.tree), interval.time or interval.within
+        if timer is None or written is None or time >= timer.period.nanoseconds:
             return
-        if upper * self.step < timer.period.nanoseconds:
-            sender = timer.automaton.name if timer.automaton is not None else ""
+        sender = timer.automaton.name if timer.automaton is not None else ""
+        what = "the time between two messages" if pattern is Pattern.RECURRENCE else "the time until the first message"
+        message = (
+            f"this is shorter than {what}, {_duration(timer.period.nanoseconds)}: only the timer `{timer.name}` makes "
+            f"`{sender}` send them, so the property never holds"
+        )
+        self.report(ProblemKind.SHORT, written.span, message)
+
+    def _compare_with_the_answer(
+        self, conditions: Mapping[str, Expression], interval: TimeInterval, time: int
+    ) -> None:
+        """Report a response that is required earlier than the next tick of the timer that is the only reason to send
+        it, if what it answers is sent between two ticks."""
+        first, answer = (self._slowest_timer(conditions[side].tree) for side in (LEFT, RIGHT))
+        written = interval.time or interval.within
+        if first is None or answer is None or written is None or time >= answer.period.nanoseconds:
+            return
+        if first.period.nanoseconds % answer.period.nanoseconds == 0:
+            return  # the ticks are at the same time, and the answer may be sent at once
+        # The longest time from a tick of the first timer to the next tick of the other one.
+        longest = answer.period.nanoseconds - math.gcd(first.period.nanoseconds, answer.period.nanoseconds)
+        if time < longest:
+            sender = answer.automaton.name if answer.automaton is not None else ""
             message = (
-                f"this is shorter than the time between two messages, {_duration(timer.period.nanoseconds)}: only the "
-                f"timer `{timer.name}` makes `{sender}` send them, so the property never holds"
+                f"only the timer `{answer.name}` makes `{sender}` send the response, every "
+                f"{_duration(answer.period.nanoseconds)}; after some events, the next tick is {_duration(longest)} "
+                "later, so the property does not hold"
             )
             self.report(ProblemKind.SHORT, written.span, message)
+
+    def _slowest_timer(self, tree: Expr) -> TimerRate | None:
+        """The timer without which the events are not sent that a condition requires; of several, the slowest."""
+        timers: list[TimerRate] = []
+        for part in _parts(tree, Operator.AND):
+            events = [self._event(alternative) for alternative in _parts(part, Operator.OR)]
+            known = [self.ports.slowest_timer(event[0].written) if event is not None else None for event in events]
+            if known[0] is not None and all(timer == known[0] for timer in known):
+                timers.append(known[0])
+        return max(timers, key=lambda timer: timer.period.nanoseconds, default=None)
 
     def _conditions(self, written: WrittenProperty, pattern: Pattern) -> dict[str, Expression] | None:
         needed = 2 if pattern.is_binary else 1
@@ -521,6 +559,15 @@ _HINTS = (
     ProblemKind.BEYOND_END,
     ProblemKind.SHORT,
 )
+
+
+def _parts(tree: Expr, operator: Operator) -> Iterator[Expr]:
+    """What a condition joins with `&&` or `||`; the condition itself if it joins nothing."""
+    if isinstance(tree, Binary) and tree.operator is operator:
+        yield from _parts(tree.left, operator)
+        yield from _parts(tree.right, operator)
+    else:
+        yield tree
 
 
 def _text(name: WrittenName | None) -> str:
