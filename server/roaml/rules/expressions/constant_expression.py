@@ -39,7 +39,7 @@ def _constant(values: ChartValues, facts: ConditionFacts, expression: Expression
             continue
         if use in CONDITIONS and not (isinstance(node, Binary) and node.operator.kind is OperatorKind.ARITHMETIC):
             continue
-        constant = _of_itself(node) or _of_logic(facts, node) or _of_values(values, node)
+        constant = _of_itself(node) or _of_draw(node) or _of_logic(facts, node) or _of_values(values, node)
         if constant is not None:
             value, why = constant
             reported.append(node)
@@ -63,6 +63,15 @@ def _of_itself(node: Expr) -> tuple[ValueSet, str] | None:
     if place is None or "[" in place or place != place_of(node.right):
         return None
     return exactly(_SAME[node.operator]), f"both sides are `{place}`"
+
+
+def _of_draw(node: Expr) -> tuple[ValueSet, str] | None:
+    """The value of a random number that is rounded down before anything else is done with it."""
+    if not isinstance(node, Call) or not isinstance(node.function, Member) or node.function.name != "floor":
+        return None
+    if len(node.arguments) != 1 or not is_draw(node.arguments[0]):
+        return None
+    return exactly(0), "`Math.random()` is less than 1; multiply it before you round it"
 
 
 def _of_logic(facts: ConditionFacts, node: Expr) -> tuple[ValueSet, str] | None:

@@ -17,6 +17,7 @@ from roaml.text import Span
 
 _RELATIONS = frozenset(("next", "following", "new", "last", "previous", "prev", "old", "current", "first", "end"))
 """Words that relate a value to another one: the next waypoint is the current one + 1."""
+_BACK = {Operator.ADD: Operator.SUBTRACT, Operator.SUBTRACT: Operator.ADD}
 
 
 class Step(NamedTuple):
@@ -46,16 +47,21 @@ class _Guard(NamedTuple):
 
 
 def steps_from_others(chart: Chart) -> Iterator[tuple[Step, Step]]:
-    """Counters that are computed from a similar counter, as in `b_count = a_count + 1`, each with the step of the
+    """Counters that are computed from a similar counter, as in `b_count = a_count + 1`, or from another one that is
+    counted up and down, as in `y = x - 1` beside `x = x - 1`, `x = x + 1` and `y = y + 1`; each with the step of the
     other one."""
     steps = [step for s in chart.statements if isinstance(s, Assign) and (step := _step(s)) is not None]
     own = {(step.place, step.amount): step for step in steps if step.place == step.read}
     counted = {place for place, _ in own}
     for step in steps:
         other = own.get((step.read, step.amount))
-        if step.place in counted or other is None or difference(step.place, step.read) is None:
+        if other is None or difference(step.place, step.read) is None:
             continue
-        if len(words_of(step.place)) < 2 or any(_RELATIONS & {*words_of(name)} for name in (step.place, step.read)):
+        if any(_RELATIONS & {*words_of(name)} for name in (step.place, step.read)):
+            continue
+        back = (_BACK[step.amount[0]], step.amount[1])
+        completes = (step.place, step.amount) not in own and all((n, back) in own for n in (step.place, step.read))
+        if not completes and (step.place in counted or len(words_of(step.place)) < 2):
             continue
         yield step, other
 

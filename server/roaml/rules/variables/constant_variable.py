@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.expr.tree import Index, Member, Name, access_path, walk
 from roaml.expr.types import Scalar, leaves
-from roaml.model.machine import Assign, Chart, Data, Declaration, bodies
+from roaml.model.machine import Assign, Chart, Data, Declaration, ReturnStatus, bodies
 from roaml.model.ros import InterfaceType
 from roaml.model.syntax import Expression
 from roaml.model.value_types import CONDITIONS, INTERFACE_KINDS, ValueUse, find_handle, section_of
@@ -63,7 +63,7 @@ def _constant(
     elif not statements and len(words_of(name)) > 1 and words_of(name)[0] in _PREVIOUS and not _is_named(name, value):
         message = f"`{name}` is always {shown}, because nothing assigns it; assign the value that it should keep"
         yield RULE.at(data.id.span, message)
-    elif value.value and (not statements or not isinstance(value.value, bool)):
+    elif value.value and len(statements) < (1 if isinstance(value.value, bool) else _MIN_ASSIGNED):
         return  # a named constant
     elif statements and any(isinstance(s.value, Expression) and _variables(s.value) for s in statements):
         return  # a consequence of other variables
@@ -75,6 +75,10 @@ def _constant(
         if unread is not None:
             message = f"`{name}` is always {shown}, because nothing assigns it, and nothing reads `{unread}`"
             yield RULE.at(data.id.span, f"{message}; assign received data to it, or remove it")
+
+
+_MIN_ASSIGNED = 2
+"""How many assignments of its initial value to a variable are no reset of a named constant."""
 
 
 def _forgotten(name: str, span: Span, value: ValueSet, similar: Assign) -> Finding:
@@ -175,7 +179,7 @@ def _read(context: MachineContext, chart: Chart) -> set[str]:
     """The variables that are read, but not in a condition whose result is always the same, and not as the id of a goal,
     which wrong-goal-id checks."""
     values = context.local_values.charts.get(chart.scope)
-    read: set[str] = set()
+    read = {s.status.value for s in chart.statements if isinstance(s, ReturnStatus) and s.status is not None}
     explained: set[str] = set()
     for value in context.typed.values:
         if value.place.chart is chart and isinstance(value.value, Expression) and value.use is not ValueUse.LOCATION:
