@@ -373,9 +373,7 @@ class _Linker:
         )
         self.report(ProblemKind.SHORT, written.span, message)
 
-    def _compare_with_the_answer(
-        self, conditions: Mapping[str, Expression], interval: TimeInterval, time: int
-    ) -> None:
+    def _compare_with_the_answer(self, conditions: Mapping[str, Expression], interval: TimeInterval, time: int) -> None:
         """Report a response that is required earlier than the next tick of the timer that is the only reason to send
         it, if what it answers is sent between two ticks."""
         first, answer = (self._slowest_timer(conditions[side].tree) for side in (LEFT, RIGHT))

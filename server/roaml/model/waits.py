@@ -226,7 +226,9 @@ def _timer(handler: Handler) -> str:
 
 def _entering(chart: Chart, state: State) -> Iterator[Handler]:
     for handler in (h for other in chart.states for h in other.handlers):
-        if any(t.state is not None and state.id is not None and t.state.value == state.id.value for t in handler.targets):
+        if any(
+            t.state is not None and state.id is not None and t.state.value == state.id.value for t in handler.targets
+        ):
             yield handler
 
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
@@ -36,6 +36,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         assigned = _assigned(chart)
         yield from _counters(chart, assigned)
         yield from _loops(context.machine, chart, assigned)
+        yield from _phases(context.machine, chart)
         yield from _flags(context.machine, chart, assigned)
         yield from _latches(context, chart, assigned)
         yield from _resets(context, chart, assigned)
@@ -90,7 +91,7 @@ def _loops(machine: Machine, chart: Chart, assigned: Mapping[str, Sequence[_Assi
     the state again, and all assignments lead towards the limit or behind the initial value."""
     initial = {data.id.value: data.value for data in chart.data if data.id is not None}
     for state in chart.states:
-        for handler, name, limit in _counting(machine, chart, state):
+        for handler, _, name, limit in _counting(machine, chart, state):
             steps, begin = assigned.get(name, ()), initial.get(name)
             start = constant(begin.tree) if isinstance(begin, Expression) else None
             values = [(constant(s.value), step_of(s.value, name)) for s in steps if s.value is not None]
@@ -108,9 +109,78 @@ def _loops(machine: Machine, chart: Chart, assigned: Mapping[str, Sequence[_Assi
             yield RULE.at(limit.span, message, related=related, severity=_severity(name, _POSITIONS | _ONCE))
 
 
-def _counting(machine: Machine, chart: Chart, state: State) -> Iterator[tuple[Handler, str, Expression]]:
-    """The handlers of timers that count while a variable is less than a limit, with the variable and the condition, if
-    the next handler of the timer leaves the state in which the machine may later be again."""
+def _phases(machine: Machine, chart: Chart) -> Iterator[Finding]:
+    """Report the handler of a timer that leaves a state in which the machine counts, and does not reset the counter,
+    before a state that counts up to the same limit or a lower one, although another such handler resets it. A higher
+    limit may be a later time on the same clock."""
+    loops = [(state, *loop) for state in chart.states for loop in _counting(machine, chart, state)]
+    for name in {name: None for _, _, _, name, _ in loops}:
+        own = [(state, leaving, limit) for state, _, leaving, of, limit in loops if of == name]
+        resets = [leaving for _, leaving, _ in own if any(_sets(t.body, name) for t in leaving.targets)]
+        limits = {id(state): _number(limit) for state, _, limit in own}
+        if len(own) < 2 or not resets:
+            continue
+        for state, leaving, limit in own:
+            end = limits[id(state)]
+            entered = None if leaving in resets else _continued(chart, state, leaving, name, limits)
+            later = limits[id(entered)] if entered is not None else None
+            if (
+                entered is not None
+                and entered.id is not None
+                and end is not None
+                and later is not None
+                and later <= end
+            ):
+                message = (
+                    f"nothing resets `{name}` here, so it is already at the limit in the state `{entered.id.value}`, "
+                    "which does not wait; assign the initial value, as where the machine leaves the other states"
+                )
+                related = [Related(limit.span, "the limit"), Related(resets[0].element.name_span, "reset here")]
+                yield RULE.at(leaving.element.name_span, message, related=related)
+
+
+def _number(limit: Expression) -> float | None:
+    return constant(limit.tree.right) if isinstance(limit.tree, Binary) else None
+
+
+def _continued(chart: Chart, state: State, leaving: Handler, name: str, counting: Collection[int]) -> State | None:
+    """The state, one of those with the ids `counting`, that a machine enters after a handler without having assigned a
+    variable."""
+    states = {other.id.value: other for other in chart.states if other.id is not None}
+    if state.exit is not None and _sets(state.exit.statements, name):
+        return None
+    todo = _unset_targets(leaving, name)
+    seen: set[str] = set()
+    while todo:
+        entered = states.get(todo.pop())
+        if entered is None or entered.id is None or entered.id.value in seen:
+            continue
+        seen.add(entered.id.value)
+        if entered.entry is not None and _sets(entered.entry.statements, name):
+            continue
+        if id(entered) in counting:
+            return entered
+        if entered.exit is None or not _sets(entered.exit.statements, name):
+            todo += [following for handler in entered.handlers for following in _unset_targets(handler, name)]
+    return None
+
+
+def _unset_targets(handler: Handler, name: str) -> list[str]:
+    return [t.state.value for t in handler.targets if t.state is not None and not _sets(t.body, name)]
+
+
+def _sets(body: tuple[Statement, ...], name: str) -> bool:
+    """Whether a body assigns a variable."""
+    return any(
+        isinstance(s, Assign) and s.location is not None and name in variables_in((s.location.tree,))
+        for s in statements(body)
+    )
+
+
+def _counting(machine: Machine, chart: Chart, state: State) -> Iterator[tuple[Handler, Handler, str, Expression]]:
+    """The handlers of timers that count while a variable is less than a limit, each with the handler that leaves the
+    state, the variable and the condition, if the next handler of the timer leaves the state in which the machine may
+    later be again."""
     own = state.id.value if state.id is not None else ""
     timers = [h for h in state.handlers if h.trigger is ProtocolPart.TICK]
     for handler, following in itertools.pairwise(timers):
@@ -126,7 +196,7 @@ def _counting(machine: Machine, chart: Chart, state: State) -> Iterator[tuple[Ha
         is_alike = trigger(machine, handler) == trigger(machine, following)
         is_limit = test.operator in (Operator.LESS, Operator.LESS_EQUAL) and counts and stays and is_alike
         if is_limit and own not in ends and _returns(chart, state, ends):
-            yield handler, test.left.name, handler.cond
+            yield handler, following, test.left.name, handler.cond
 
 
 def _is_limit(tree: Expr, name: str, sign: int) -> bool:
