@@ -59,7 +59,7 @@ class PortWait(Record, frozen=True):
 
 def waits(chart: Chart, expressions: Iterable[Expression]) -> Iterator[CountedWait]:
     """The waits in expressions of a chart."""
-    counts = _counts(chart)
+    counts = tick_counts(chart)
     limits = fixed_variables(chart)
     for expression in expressions if counts else ():
         for node in walk(expression.tree):
@@ -71,7 +71,7 @@ def waits(chart: Chart, expressions: Iterable[Expression]) -> Iterator[CountedWa
 def ending_waits(machine: Machine, chart: Chart) -> Iterator[CountedWait]:
     """The conditions that hold until a counter has reached a limit, such as `n < 5`, where something else is done from
     then on: the next handler for the same trigger, or another branch."""
-    counts = _counts(chart)
+    counts = tick_counts(chart)
     limits = fixed_variables(chart)
     for cond in _alternating(machine, chart) if counts else ():
         tree = cond.tree
@@ -84,10 +84,9 @@ def _alternating(machine: Machine, chart: Chart) -> Iterator[Expression]:
     """The conditions without which another handler or branch is executed."""
     for state in chart.states:
         for number, handler in enumerate(state.handlers):
-            own = trigger(machine, handler)
-            if handler.cond is not None and own is not None:
-                if any(trigger(machine, following) == own for following in state.handlers[number + 1 :]):
-                    yield handler.cond
+            own, following = trigger(machine, handler), state.handlers[number + 1 :]
+            if handler.cond is not None and own is not None and own in (trigger(machine, h) for h in following):
+                yield handler.cond
     for statement in chart.executed:
         if isinstance(statement, If):
             alternatives = (*statement.branches[1:], statement.otherwise)
@@ -130,13 +129,13 @@ _ENDS = {
 def _wait(
     span: Span, counts: Mapping[str, TickCount], limits: Mapping[str, PortRead | Fraction], growing: Expr, limit: Expr
 ) -> Iterator[CountedWait]:
-    name, factor = _scaled(growing)
+    name, factor = scaled(growing)
     if name not in counts or factor <= 0:
         return
     known: PortRead | Fraction | None = constant_fraction(limit)
     scale = Fraction(1)
     if known is None:
-        other, scale = _scaled(limit)
+        other, scale = scaled(limit)
         known = limits.get(other)
     if known is None or scale <= 0:
         return
@@ -147,7 +146,7 @@ def _wait(
         yield CountedWait(span, name, counts[name].timer, port, value, ticks)
 
 
-def _scaled(tree: Expr) -> tuple[str, Fraction]:
+def scaled(tree: Expr) -> tuple[str, Fraction]:
     """The variable and the factor of an expression such as `n * 0.1`; ("", 0) for other expressions."""
     if isinstance(tree, Name):
         return tree.name, Fraction(1)
@@ -162,7 +161,7 @@ def _scaled(tree: Expr) -> tuple[str, Fraction]:
     return "", Fraction(0)
 
 
-def _counts(chart: Chart) -> dict[str, TickCount]:
+def tick_counts(chart: Chart) -> dict[str, TickCount]:
     """The variables that count ticks: all other assignments set them to 0."""
     steps: dict[str, dict[str, _Steps]] = {}
     counting: set[Statement] = set()
@@ -178,9 +177,9 @@ def _counts(chart: Chart) -> dict[str, TickCount]:
             steps[name][timer] = most.with_body(step_, is_entry)
     others: set[str] = set()
     for statement in chart.executed:
-        if isinstance(statement, Assign) and statement.location is not None and statement not in counting:
-            if not _is_zero(statement.value):
-                others.add(statement.location.tree.name if isinstance(statement.location.tree, Name) else "")
+        is_other = isinstance(statement, Assign) and statement not in counting and not _is_zero(statement.value)
+        if is_other and isinstance(statement, Assign) and statement.location is not None:
+            others.add(statement.location.tree.name if isinstance(statement.location.tree, Name) else "")
     others |= {data.id.value for data in chart.data if data.id and not _is_zero(data.value)}
     return {
         name: TickCount(timer, most.of_handler + most.of_entry)

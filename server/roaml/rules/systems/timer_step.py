@@ -10,14 +10,14 @@ from typing import NamedTuple
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.durations import NANOSECONDS
 from roaml.expr.infer import constant_fraction
-from roaml.expr.operators import Operator
-from roaml.expr.tree import Binary, Expr
+from roaml.expr.operators import Operator, OperatorKind
+from roaml.expr.tree import Binary, Expr, walk
 from roaml.expr.tree import Name as NameExpr
 from roaml.model.machine import Assign, Chart, statements
 from roaml.model.syntax import Expression, Name, PortRead
 from roaml.model.timing import period
 from roaml.model.values.evaluate import place_of
-from roaml.model.waits import fixed_variables
+from roaml.model.waits import fixed_variables, scaled, tick_counts
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.timing import duration, timers
@@ -32,9 +32,9 @@ _UNITS = {
 }
 """The last word in the name of a variable -> the time that it counts, in ns."""
 
+_SETTINGS = frozenset(("backoff", "delay", "duration", "interval", "limit", "max", "min", "period", "timeout"))
 _OTHER = frozenset(
     (
-        *("backoff", "delay", "duration", "interval", "limit", "max", "min", "period", "timeout"),  # settings
         *("cm", "deg", "km", "m", "mm", "per", "rad", "rate", "speed", "velocity"),  # of speeds, such as `mm_s`
         *("scaled", "sim", "simulated", "virtual"),
     )
@@ -43,7 +43,7 @@ _OTHER = frozenset(
 
 
 def _unit(words: Sequence[str]) -> int | None:
-    """The time in ns that a variable with these words in its name counts."""
+    """The unit of the time, in ns, that a variable with these words in its name contains."""
     return _UNITS.get(words[-1]) if words and _OTHER.isdisjoint(words) else None
 
 
@@ -56,11 +56,13 @@ def check(context: MachineContext) -> Iterator[Finding]:
         steps: dict[str, list[_Step]] = {}
         for name, statement, amount in _steps(chart, fixed):
             place = place_of(statement.location.tree) if statement.location is not None else None
-            unit = _unit(words_of(place)) if place is not None else None
+            words = words_of(place) if place is not None else []
+            unit = _unit(words) if _SETTINGS.isdisjoint(words) else None
             if name in rates and place is not None and unit is not None and isinstance(statement.value, Expression):
                 steps.setdefault(name, []).append(_Step(place, statement.value.span, amount * unit))
         for name, of_timer in steps.items():
             yield from _findings(name, *rates[name], of_timer)
+        yield from _ticks(context, chart, rates)
 
 
 class _Step(NamedTuple):
@@ -87,6 +89,29 @@ def _findings(name: str, rate: Name, hertz: Fraction, steps: Sequence[_Step]) ->
             f"{duration(ns)}; change the step or the rate"
         )
         yield RULE.at(step.span, message, related=[Related(rate.span, "the rate in Hz")])
+
+
+def _ticks(context: MachineContext, chart: Chart, rates: Mapping[str, tuple[Name, Fraction]]) -> Iterator[Finding]:
+    """Report numbers of ticks that are compared with a time, such as `n * 0.1 >= wait_s`, if they are multiplied by
+    another time than the period."""
+    counts = tick_counts(chart)
+    expressions = (v.value for v in context.typed.values if v.place.chart is chart) if counts else ()
+    for node in (n for value in expressions if isinstance(value, Expression) for n in walk(value.tree)):
+        if not isinstance(node, Binary) or node.operator.kind is not OperatorKind.ORDER:
+            continue
+        for side, limit in ((node.left, node.right), (node.right, node.left)):
+            (counter, factor), (time, other) = scaled(side), scaled(limit)
+            unit, count = _unit(words_of(time)), counts.get(counter)
+            if count is None or unit is None or count.timer not in rates or _unit(words_of(counter)) is not None:
+                continue
+            rate, hertz = rates[count.timer]
+            ns, counted = period(hertz).nanoseconds, factor * count.step * unit / other
+            if abs(counted - ns) * 100 > ns:
+                message = (
+                    f"`{counter}` counts ticks of `{count.timer}`, whose period is {duration(ns)}, but each of them is "
+                    f"compared with `{time}` as {duration(counted)}; change the factor or the rate"
+                )
+                yield RULE.at(side.span, message, related=[Related(rate.span, "the rate in Hz")])
 
 
 def _steps(chart: Chart, fixed: Mapping[str, PortRead | Fraction]) -> Iterator[tuple[str, Assign, Fraction]]:
