@@ -24,6 +24,7 @@ class ExpansionProblem(enum.Enum):
     INSTANCE = "invalid-instance"
     NAMESPACE = "repeated-namespace"
     INCONSISTENT = "inconsistent-parameter"
+    INVERTED = "inverted-rate"
     CHANNEL = "invalid-channel"
     DISTRIBUTION = "invalid-distribution"
     MISPLACED = "misplaced-random"

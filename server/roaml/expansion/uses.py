@@ -10,11 +10,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
+from roaml.diagnostics import Fix
 from roaml.expansion.declarations import PARAM, PARAMETER, SECTIONS
 from roaml.expansion.problems import ExpansionProblem, Problems
 from roaml.expansion.values import Content, ParameterValue, Scope, evaluate, number_text
+from roaml.expr.operators import Operator
 from roaml.expr.parse import parse
-from roaml.expr.tree import Expr, Index, Member, children, walk
+from roaml.expr.tree import Binary, Expr, Index, Member, Number, children, walk
 from roaml.expr.tree import Name as NameExpr
 from roaml.expr.types import ScalarKind
 from roaml.language import BEHAVIOR_TREE, Grammar
@@ -84,6 +86,8 @@ class ParameterUses:
             role = type_.attributes.get(attribute.name) if type_ else None
             if attribute.has_value:
                 decoded = self.document.decoded(attribute.value_span)
+                if (element.name, attribute.name) in _RATES:
+                    self._check_rate(decoded, attribute)
                 self._text(decoded, attribute.value_span, role.value if role else None, inner, attribute)
         if type_ is not None and type_.value is not None and element.find("bt_get_input") is None:
             content = self.document.content(element)
@@ -209,6 +213,22 @@ class ParameterUses:
             text = number_text(value, is_real=False)
             self._edit(span, text + (unit[0] if unit else ""), attribute)
 
+    def _check_rate(self, decoded: Decoded, attribute: Attribute) -> None:
+        """Report a parameter that is a time, as its name says, and is used as a rate, and the inverse of a rate."""
+        tree, _ = parse(decoded)
+        match tree:
+            case NameExpr(name=name) if _is_time(name):
+                message, meant = f"`{name}` is a time, as its name says, but this is a rate in Hz", f"1 / {name}"
+            case Binary(operator=Operator.DIVIDE, left=Number(value=1), right=NameExpr(name=name)) if _is_rate(name):
+                message, meant = f"`{name}` is a rate, as its name says, so this is a time, not a rate in Hz", name
+            case _:
+                return
+        if name in self.scope:
+            fix = Fix(f"Change to `{meant}`", (TextEdit(attribute.value_span, meant),))
+            self._problems.add(
+                ExpansionProblem.INVERTED, attribute.value_span, f"{message}; did you mean `{meant}`?", fixes=(fix,)
+            )
+
     def _edit(self, span: Span, text: str, attribute: Attribute | None) -> None:
         self.edits.append(TextEdit(span, _escaped(self.document.text, text, attribute)))
 
@@ -224,6 +244,21 @@ _STRING_LITERAL = regex(r"""'(?:[^'\\]|\\.)*'|"(?:[^"\\]|\\.)*\"""", re.DOTALL)
 def _is_in_literal(text: str, position: int) -> bool:
     """Whether a position in an expression is inside a string literal."""
     return any(literal.start() < position < literal.end() for literal in _STRING_LITERAL.finditer(text))
+
+
+_RATES = frozenset((("ros_time_rate", "rate_hz"), ("input", "tick_rate"), ("bt_tick_rate", "value")))
+"""The attributes that contain a rate in Hz, with their elements."""
+_RATE_WORDS = frozenset(("fps", "freq", "frequency", "hz", "per", "rate"))
+_TIME_WORDS = frozenset(("delay", "duration", "interval", "period", "sec", "secs", "seconds", "time", "timeout"))
+
+
+def _is_rate(name: str) -> bool:
+    return not _RATE_WORDS.isdisjoint(name.lower().split("_"))
+
+
+def _is_time(name: str) -> bool:
+    """Whether a parameter is a time in s, as its name says. The inverse of one in ms would be no rate in Hz, either."""
+    return name.lower().split("_")[-1] in _TIME_WORDS and not _is_rate(name)
 
 
 _UNIT = regex(r"\s+(?:s|ms|us|ns)\s*\Z")

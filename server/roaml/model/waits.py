@@ -84,8 +84,8 @@ def _alternating(machine: Machine, chart: Chart) -> Iterator[Expression]:
     """The conditions without which another handler or branch is executed."""
     for state in chart.states:
         for number, handler in enumerate(state.handlers):
-            own, following = trigger(machine, handler), state.handlers[number + 1 :]
-            if handler.cond is not None and own is not None and own in (trigger(machine, h) for h in following):
+            own, later = trigger(machine, handler), state.handlers[number + 1 :]
+            if handler.cond is not None and own is not None and own in (trigger(machine, h) for h in later):
                 yield handler.cond
     for statement in chart.executed:
         if isinstance(statement, If):

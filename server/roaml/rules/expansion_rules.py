@@ -34,6 +34,7 @@ RULES = (
         Severity.WARNING,
         "The value of a parameter has another number than its instance, unlike at all other instances.",
     ),
+    _rule(ExpansionProblem.INVERTED, Severity.WARNING, "A time is used as a rate, or the inverse of a rate."),
     _rule(ExpansionProblem.DECLARATION, Severity.ERROR, "The declaration of a parameter is incomplete or invalid."),
     _rule(ExpansionProblem.VALUE, Severity.ERROR, "The value of a parameter has another type, or is out of range."),
     _rule(ExpansionProblem.UNKNOWN, Severity.ERROR, "A parameter is used or set that is not declared."),
