@@ -9,9 +9,10 @@ from collections.abc import Collection, Mapping
 from roaml.libraries import library_node
 from roaml.libraries.programs.effects import ALL_EFFECTS, ChildEffects, Effects, effects_on
 from roaml.libraries.programs.linked import ANY, OF_MACHINE, LinkedNode, Possible, linked
-from roaml.libraries.programs.statuses import FAILURE, RUNNING, SKIPPED, SUCCESS
+from roaml.libraries.programs.statuses import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from roaml.model.expand import Instance, PortConstant, entered_uses
 from roaml.model.system import System, SystemAutomaton
+from roaml.scxml.names import STATUSES
 
 _NO_SUCCESS = frozenset((FAILURE, RUNNING))
 
@@ -41,6 +42,10 @@ class TreeEffects:
         """Whether a node of a library never returns SUCCESS at its first tick, whatever its children return."""
         instance, bound = self._of_automaton(node)
         return bound.program is not None and SUCCESS not in bound.effects([ANY] * len(instance.children)).first
+
+    def statuses(self, instance: Instance) -> frozenset[int]:
+        """The numbers of the statuses that a node can return at any tick."""
+        return self._possible[instance.number].ever - {IDLE}
 
     def time_to_success(self, system: System, node: SystemAutomaton, waits: Mapping[int, int]) -> int:
         """The least time that passes until a node returns SUCCESS.
@@ -107,3 +112,11 @@ def tree_effects(system: System) -> TreeEffects:
     if "effects" not in known:
         known["effects"] = TreeEffects(system)
     return known["effects"]
+
+
+def statuses(system: System, instance: Instance) -> frozenset[int]:
+    """The numbers of the statuses that a node of the trees of a system can return (docs/spec/plugins.md#status)."""
+    automaton = system.by_instance.get(instance.number)
+    if automaton is not None and automaton.path:
+        return frozenset(STATUSES[name] for name in automaton.outline.plugin.statuses.ever)
+    return tree_effects(system).statuses(instance) if system.is_library_tree else frozenset(STATUSES.values())

@@ -204,7 +204,7 @@ class PropertiesContext(Record, frozen=True):
         variables: the global variables of the translated system, by name; `None` if the file belongs to no system.
         taken: the names of the properties in the files that the system lists before this file, each with a phrase that
             names its file.
-        values: the values of the global variables for integer fields of topics, by name.
+        values: the values of the global variables for integers of interfaces, codes of results and statuses, by name.
     """
 
     source: SourceFile

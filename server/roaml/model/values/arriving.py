@@ -9,16 +9,26 @@ from typing import TypeAlias
 
 from roaml.expr.parse import parse
 from roaml.interfaces.registry import NotFound
-from roaml.model.expand import PortConstant
+from roaml.model.expand import Instance, PortConstant
 from roaml.model.machine import Declaration, Machine, Port
+from roaml.model.node_effects import statuses
 from roaml.model.property_file import ObservedPart, PortKind, PortVariableKind
 from roaml.model.property_links import LinkedFile
-from roaml.model.property_ports import LinkedPort
+from roaml.model.property_ports import LinkedPort, LinkedVariable
 from roaml.model.ros import InterfaceType
 from roaml.model.system import Channel, ChannelEndpoint, System, SystemAutomaton
+from roaml.model.tree_paths import nodes_called
 from roaml.model.value_types import INTERFACE_KINDS, section_of
-from roaml.model.values.analyse import Arriving, DataChannel, Fields, Sent, merged, values_by_type
-from roaml.model.values.domain import ANYTHING, ValueSet, exactly, joined
+from roaml.model.values.analyse import (
+    RESULT_CODE,
+    Arriving,
+    DataChannel,
+    Fields,
+    Sent,
+    merged,
+    values_by_type,
+)
+from roaml.model.values.domain import ANYTHING, ValueSet, exactly, join, joined, listed
 from roaml.model.values.evaluate import literal
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.scxml.names import sanitise
@@ -84,17 +94,36 @@ def observed_values(file: LinkedFile, system: System, sent: Mapping[str, Sent | 
     """
     known: dict[str, ValueSet] = {}
     for port in file.ports:
-        messages = list(_messages(port, system))
         for variable in port.variables:
-            initial, field = variable.written.initial, variable.written.field
-            if variable.kind is not PortVariableKind.STATE or not messages or field is None or initial is None:
+            initial = variable.written.initial
+            if initial is None or variable.kind in (PortVariableKind.EVENT, PortVariableKind.GOAL_ID):
                 continue
-            start = dict(literal("", initial.tree)).get("", ANYTHING)
-            values = [_sent(field.value, channel, sent.get(path)) for path, channel in messages]
-            possible = joined((start, *values))
-            if possible != ANYTHING:
-                known[variable.id] = possible
+            possible = _observed(port, variable, system, sent)
+            if possible is not None:
+                possible = join(dict(literal("", initial.tree)).get("", ANYTHING), possible)
+                if possible != ANYTHING:
+                    known[variable.id] = possible
     return known
+
+
+def _observed(
+    port: LinkedPort, variable: LinkedVariable, system: System, sent: Mapping[str, Sent | None]
+) -> ValueSet | None:
+    """The values that the events of a port give one of its variables; `None` if nothing is known about them."""
+    name = variable.written.field
+    field = RESULT_CODE if variable.kind is PortVariableKind.RESULT_CODE else name.value if name is not None else None
+    if field is None:
+        return None
+    if port.written.kind is PortKind.NODE:
+        instance = _observed_node(port, system)
+        return listed(statuses(system, instance)) if instance is not None and field == "status" else None
+    messages = list(_messages(port, system))
+    return joined(_sent(field, channel, sent.get(path)) for path, channel in messages) if messages else None
+
+
+def _observed_node(port: LinkedPort, system: System) -> Instance | None:
+    nodes = nodes_called(system, port.written.name.value) if port.written.name is not None else ()
+    return nodes[0] if len(nodes) == 1 else None
 
 
 def _channels(machine: Machine) -> Iterator[tuple[Declaration, DataChannel]]:
@@ -160,6 +189,11 @@ def _constant(automaton: SystemAutomaton, port: Port) -> ValueSet:
 def _messages(port: LinkedPort, system: System) -> Iterator[tuple[str, DataChannel]]:
     """The paths of the machines that send what a port observes, each with its channel."""
     written = port.written
+    if written.kind is PortKind.PLAIN:
+        event = system.events.get(written.name.value) if written.name is not None else None
+        for automaton, _ in event.senders if event is not None else ():
+            yield automaton.path, DataChannel(ProtocolPart.EVENT, written.name.value if written.name else "")
+        return
     channel = _observed_channel(port, system)
     if channel is None or written.part is None:
         return

@@ -16,7 +16,7 @@ from roaml.model.property_links import LinkedFile
 from roaml.model.system import System
 from roaml.model.values.analyse import Arriving, MachineValues, Sent, analyse
 from roaml.model.values.arriving import arriving, arriving_by_type, observed_values
-from roaml.model.values.global_values import GlobalValues, topic_values
+from roaml.model.values.global_values import GlobalValues, global_values
 from roaml.model.values.remembered import Memory
 from roaml.project.analysis.linking import Linking
 from roaml.project.analysis.sources import SourceFiles
@@ -68,14 +68,14 @@ class ReachedValues:
         return self._sources.memo.get("observed properties", (path, system), (file, of_file), compute)
 
     def of_globals(self, system: str) -> Mapping[str, GlobalValues]:
-        """The values of the global variables of topics, which properties in JANI use, by name."""
+        """The values of the global variables of interfaces and trees, which properties in JANI use, by name."""
         linked = self._linking.system(system)
         if linked is None or not linked.complete:
             return {}
         sent = self._sent(linked, system)
         interface = self._interfaces.interface
         return self._sources.memo.get(
-            "values of globals", system, (linked, sent), lambda: topic_values(linked, sent, interface)
+            "values of globals", system, (linked, sent), lambda: global_values(linked, sent, interface)
         )
 
     def _sent(self, linked: System, system: str) -> dict[str, Sent | None]:

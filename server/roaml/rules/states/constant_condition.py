@@ -11,14 +11,23 @@ from roaml.expr.tree import Binary, Expr
 from roaml.expr.types import INTEGER_RANGES, Scalar
 from roaml.facts import Facts
 from roaml.forest.scripts import ScriptUse, parsed, scripts_of
+from roaml.model.property_file import WrittenProperty
 from roaml.model.property_links import LinkedFile
 from roaml.model.syntax import Expression
 from roaml.model.value_types import CONDITIONS
 from roaml.model.values.describe import described
-from roaml.model.values.domain import MAX_LISTED
+from roaml.model.values.domain import FALSE, MAX_LISTED, TRUE, ValueSet
 from roaml.observers.properties import Pattern
 from roaml.rules.rule import MachineContext, PropertiesContext, Rule, TreeContext
-from roaml.rules.support.compared_numbers import by_type, comparisons, contradictions, never_holds, required
+from roaml.rules.support.compared_numbers import (
+    by_type,
+    compared_constants,
+    comparisons,
+    contradictions,
+    only_ways,
+    required,
+    result_for,
+)
 from roaml.rules.support.constant_causes import at_step, at_target
 from roaml.rules.support.constant_conditions import (
     ConstantPart,
@@ -88,26 +97,46 @@ def check_properties(file: LinkedFile) -> Iterator[Finding]:
             for conjunction, name in () if expression.broken else contradictions(expression.tree):
                 message = f"this is never true: the comparisons of `{name}` contradict each other; did you mean `||`?"
                 yield RULE.at(conjunction.span, message)
-            for node, name, number in () if expression.broken else comparisons(expression.tree):
-                type_ = types.get(name)
-                if not isinstance(type_, Scalar) or type_.name not in INTEGER_RANGES:
-                    continue
-                result = by_type(node, name, type_, number)
-                known = file.values.get(name)
-                if result is not None:
-                    holds, message = result
+            for node, name, value in () if expression.broken else compared_constants(expression.tree):
+                type_, known = types.get(name), file.values.get(name)
+                of_type = None
+                if isinstance(type_, Scalar) and type_.name in INTEGER_RANGES and not isinstance(value, str):
+                    of_type = by_type(node, name, type_, value)
+                if of_type is not None:
+                    holds, message = of_type
                     # As a part, `x >= 0` states a range completely: `x >= 0 && x <= 9`.
                     is_range = holds and node is not expression.tree
                     yield RULE.at(node.span, message, severity=Severity.INFORMATION if is_range else None)
-                elif (
-                    (pattern in _OCCURRING or expression in limits or _is_part(pattern, expression.tree, node))
-                    and any(node is part for part in parts)
-                    and known is not None
-                    and known.value is None
-                    and never_holds(node, name, known, number)
+                    continue
+                if known is None or known.value is not None:
+                    continue
+                is_required = any(node is part for part in parts)
+                if is_required and (
+                    pattern in _OCCURRING or expression in limits or _is_part(pattern, expression.tree, node)
                 ):
-                    sent = described(known, most=MAX_LISTED)
-                    yield RULE.at(node.span, f"this comparison is never true: the values of `{name}` are {sent}")
+                    result = result_for(node, name, known, value)
+                    is_empty = result == TRUE and node is expression.tree and not _decides_at_start(written, expression)
+                    if result == FALSE or is_empty:
+                        yield _of_sent(node, name, known, result)
+                is_only_way = pattern == Pattern.UNIVERSALITY.value and any(
+                    n is node for n in only_ways(expression.tree)
+                )
+                if is_only_way and result_for(node, name, known, value) == FALSE:
+                    yield _of_sent(node, name, known, FALSE)
+
+
+def _of_sent(node: Binary, name: str, known: ValueSet, result: ValueSet) -> Finding:
+    how = "always" if result == TRUE else "never"
+    sent = described(known, most=MAX_LISTED)
+    return RULE.at(node.span, f"this comparison is {how} true: the values of `{name}` are {sent}")
+
+
+def _decides_at_start(written: WrittenProperty, expression: Expression) -> bool:
+    """Whether `decided-at-start` reports a condition that always holds."""
+    pattern = written.pattern.value if written.pattern is not None else ""
+    is_first = bool(written.conditions) and expression is written.conditions[0]
+    decisive = pattern == Pattern.EXISTENCE.value or (pattern == Pattern.PRECEDENCE.value and not written.intervals)
+    return is_first and decisive
 
 
 def check_jani(context: PropertiesContext) -> Iterator[Finding]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Comparisons of variables with numbers in a condition."""
+"""Comparisons of variables with constants in a condition."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from collections.abc import Iterator
 
 from roaml.expr.infer import constant
 from roaml.expr.operators import MIRRORED, Operator, OperatorKind
-from roaml.expr.tree import Binary, Expr, Name, walk
+from roaml.expr.tree import Binary, Expr, Name, String, walk
 from roaml.expr.types import Scalar
 from roaml.model.values.analyse import of_type
 from roaml.model.values.describe import described
-from roaml.model.values.domain import FALSE, TRUE, Origin, ValueSet, exactly
+from roaml.model.values.domain import BOTH, FALSE, TRUE, Origin, ValueSet, exactly
 from roaml.model.values.evaluate import compared
 
 
@@ -24,6 +24,16 @@ def comparisons(tree: Expr) -> Iterator[tuple[Binary, str, float]]:
                 number = constant(other)
                 if isinstance(variable, Name) and number is not None:
                     yield node, variable.name, number
+
+
+def compared_constants(tree: Expr) -> Iterator[tuple[Binary, str, float | str]]:
+    """The comparisons of a variable with a number or a text, each with the name of the variable and the constant."""
+    yield from comparisons(tree)
+    for node in walk(tree):
+        if isinstance(node, Binary) and node.operator.kind is OperatorKind.EQUALITY:
+            for variable, other in ((node.left, node.right), (node.right, node.left)):
+                if isinstance(variable, Name) and isinstance(other, String):
+                    yield node, variable.name, other.value
 
 
 def required(tree: Expr) -> Iterator[Expr]:
@@ -72,13 +82,35 @@ def by_type(node: Binary, name: str, type_: Scalar, number: float) -> tuple[bool
     return result == TRUE, message
 
 
-def never_holds(node: Binary, name: str, known: ValueSet, number: float) -> bool:
-    """Whether a comparison with a number is false for all values that are sent."""
-    if node.operator is Operator.EQUAL:
-        return known.only is not None and not known.includes(number)
+def result_for(node: Binary, name: str, known: ValueSet, value: float | str) -> ValueSet:
+    """The results of a comparison with a constant for all values that are sent, as far as they are known."""
+    if node.operator.kind is OperatorKind.EQUALITY:
+        if known.only is None or known.includes(value):
+            return BOTH
+        return FALSE if node.operator is Operator.EQUAL else TRUE
     is_left = isinstance(node.left, Name) and node.left.name == name
-    sides = (reached(known), exactly(number)) if is_left else (exactly(number), reached(known))
-    return node.operator.kind is OperatorKind.ORDER and compared(node.operator, *sides) == FALSE
+    sides = (reached(known), exactly(value)) if is_left else (exactly(value), reached(known))
+    return compared(node.operator, *sides) if node.operator.kind is OperatorKind.ORDER else BOTH
+
+
+def only_ways(tree: Expr) -> Iterator[Expr]:
+    """The equalities in what must always hold that are the only one about their variable: `!done || code == 4` requires
+    that the code becomes 4. Several, as in `mode == 1 || mode == 2`, state which values are allowed."""
+    if not isinstance(tree, Binary) or tree.operator is not Operator.OR:
+        return
+    equalities: dict[str, list[Expr]] = {}
+    stack: list[Expr] = [tree]
+    while stack:
+        node = stack.pop()
+        if isinstance(node, Binary) and node.operator in (Operator.OR, Operator.AND):
+            stack += (node.left, node.right)
+        elif isinstance(node, Binary):
+            for side in (node.left, node.right):
+                if isinstance(side, Name):
+                    equalities.setdefault(side.name, []).append(node)
+    for alike in equalities.values():
+        if len(alike) == 1 and isinstance(alike[0], Binary) and alike[0].operator is Operator.EQUAL:
+            yield alike[0]
 
 
 def reached(values: ValueSet) -> ValueSet:

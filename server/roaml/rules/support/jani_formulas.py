@@ -45,7 +45,7 @@ _NEVER = frozenset(("avoid", "avoids", "cannot", "never", "no", "not", "without"
 
 
 def constant_comparisons(context: PropertiesContext) -> Iterator[ConstantPart]:
-    """The comparisons of a topic's integer with a number that have the same result for all values of its type; and, in
+    """The comparisons of an integer with a number that have the same result for all values of its type; and, in
     what has to occur at some time, those of equality that hold for none of the values that machines send."""
     for property_ in context.properties:
         is_never = not _NEVER.isdisjoint(words_of(property_.name))
@@ -67,7 +67,7 @@ def constant_comparisons(context: PropertiesContext) -> Iterator[ConstantPart]:
             # An order that never holds often states that a limit is never exceeded.
             never = operator is operators.Operator.EQUAL and not variable.sent.includes(number)
             if never and variable.sent.value is None and id(node) in expected:
-                why = f"the values of the field are {described(variable.sent, most=MAX_LISTED)}"
+                why = f"the values of the variable are {described(variable.sent, most=MAX_LISTED)}"
                 yield ConstantPart(_place(context, node), f"this comparison is never true: {why}")
 
 
