@@ -42,12 +42,14 @@ def report_repeated(instances: Iterable[ListedInstance], problems: Problems) -> 
 
 def report_inconsistent(instances: Iterable[ListedInstance], problems: Problems) -> None:
     """Report the values of parameters with another number than the name or namespace, which are equal in all other
-    instances of the file."""
+    instances of the file; and namespaces with another number than the name and a parameter."""
     values = []
+    namespaces = []
     alike = []
     for instance in instances:
         namespace = name_of(instance.element.get("namespace"))
         texts = [("name", instance.name), ("namespace", namespace)]
+        namespaces += [namespace.span] if namespace is not None and not instance.is_plugin else []
         for key, attribute in instance.params:
             value = Name(attribute.value, attribute.value_span)
             values.append(value.span)
@@ -55,15 +57,17 @@ def report_inconsistent(instances: Iterable[ListedInstance], problems: Problems)
         keys = tuple(key for key, text in texts if text is not None)
         keyed = tuple(KeyedText(key, text) for key, text in texts if text is not None)
         alike.append(Alike((instance.src.value, *keys), keyed))
-    own = set(values)
+    kinds = dict.fromkeys(values, ExpansionProblem.INCONSISTENT)
+    if all(finding.code != ExpansionProblem.NAMESPACE.value for finding in problems.findings):
+        kinds |= dict.fromkeys(namespaces, ExpansionProblem.NAMESPACE)
     for odd in odd_numbers(alike):
-        if odd.text.span in own:
+        if odd.text.span in kinds:
             message = (
                 f"`{odd.text.value}` does not match `{odd.other.value}`, unlike at all other instances of this file; "
                 f"did you mean `{odd.fixed}`?"
             )
             related = [(odd.other.span, f"has the number {odd.expected}")]
-            problems.add(ExpansionProblem.INCONSISTENT, odd.text.span, message, close=(odd.fixed,), related=related)
+            problems.add(kinds[odd.text.span], odd.text.span, message, close=(odd.fixed,), related=related)
 
 
 def _report(src: str, pair: list[ListedInstance], missing: str, problems: Problems) -> None:

@@ -18,6 +18,8 @@ from roaml.regex import regex
 _NUMBER = regex(r"\d+")
 _MIN_CONSISTENT = 3
 """How many elements must have equal numbers at two places before another element is suspicious."""
+_MIN_OF_COPIES = 2
+"""The same, if the number is that of another element and differs from two other numbers of its own element."""
 _MAX_PLACES = 16
 """How many places with numbers of an element are compared with each other."""
 
@@ -74,7 +76,7 @@ class _Place(Record, frozen=True):
 
 def odd_numbers(elements: Iterable[Alike]) -> Iterator[OddNumber]:
     """The odd numbers of elements. Elements are alike if their shapes are equal and their texts differ only in numbers;
-    at least three of them must be consistent, with different numbers."""
+    at least three of them must be consistent, with different numbers; or two, if the third repeats a number of them."""
     groups: dict[object, list[list[_Place]]] = defaultdict(list)
     for element in elements:
         masked = tuple((text.key, _NUMBER.sub("#", text.name.value)) for text in element.texts)
@@ -82,7 +84,7 @@ def odd_numbers(elements: Iterable[Alike]) -> Iterator[OddNumber]:
         if 2 <= len(places) <= _MAX_PLACES:
             groups[element.shape, masked].append(places)
     for group in groups.values():
-        if len(group) > _MIN_CONSISTENT:
+        if len(group) > _MIN_OF_COPIES:
             yield from _odd_in(group)
 
 
@@ -92,7 +94,7 @@ def _odd_in(group: Sequence[Sequence[_Place]]) -> Iterator[OddNumber]:
     suspects: dict[int, list[tuple[int, int]]] = defaultdict(list)
     for first, second in pairs:
         equal = [element[first].number for element in group if element[first].number == element[second].number]
-        if len(equal) != len(group) - 1 or len(set(equal)) < _MIN_CONSISTENT:
+        if len(equal) != len(group) - 1 or len(set(equal)) < min(_MIN_CONSISTENT, len(equal)):
             continue
         (odd,) = (n for n, element in enumerate(group) if element[first].number != element[second].number)
         suspects[odd].append((first, second))
@@ -115,6 +117,9 @@ def _odd_place(
     if len(candidates) != 1:
         return None
     (wrong,) = candidates
+    is_copy = most > 1 and _is_repeated(group, odd, wrong)
+    if len(group) <= _MIN_CONSISTENT and not is_copy:
+        return None
     right = next(second if first == wrong else first for first, second in disagreements if wrong in (first, second))
     place, expected = group[odd][wrong], group[odd][right]
     end = place.start + len(place.number)

@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import after
 from roaml.language import HL_SCXML
-from roaml.model.behavior.explore import Behavior
-from roaml.model.behavior.phases import Subject
+from roaml.model.behavior.explore import Behavior, BehaviorStep
+from roaml.model.behavior.phases import OWED, Phase, Subject
 from roaml.model.machine import Handler, RosSend, State
 from roaml.model.value_types import GOAL_STATUSES, find_handle
 from roaml.model.values.analyse import RESULT_CODE, DataChannel
@@ -115,8 +115,11 @@ def _responses(context: MachineContext, behavior: Behavior, state: State) -> Ite
     for handlers in _by_handle(context, state, ProtocolPart.RESPONSE).values():
         cond = handlers[-1].cond
         left = values.uncovered.get(cond.span) if values is not None and cond is not None else None
-        if left is None or cond is None or any(s.ignored and s.handler is handlers[-1] for s in behavior.steps):
-            continue  # unanswered-tick and unanswered-request report responses that are discarded for other reasons
+        if left is None or cond is None:
+            continue
+        ignored = [step for step in behavior.steps if step.ignored and step.handler is handlers[-1]]
+        if ignored and (_may_leave(state, handlers) or any(_owes(behavior, step) for step in ignored)):
+            continue  # a timer ends the wait, or unanswered-tick and unanswered-request report the lost answer
         known = {place: v for place, v in left.items() if place.startswith("_res.") and v.only}
         compared = [place for place in known if place in cond.text]
         if compared:
@@ -126,6 +129,21 @@ def _responses(context: MachineContext, behavior: Behavior, state: State) -> Ite
                 f"condition in this state holds, so the machine waits for ever; handle it after this condition"
             )
             yield RULE.at(cond.span, message)
+
+
+def _may_leave(state: State, handlers: Sequence[Handler]) -> bool:
+    """Whether other handlers than `handlers` lead out of a state."""
+    others = (handler for handler in state.handlers if handler.effective and handler not in handlers)
+    own = state.id.value if state.id is not None else ""
+    return any(target.state is None or target.state.value != own for h in others for target in h.targets)
+
+
+def _owes(behavior: Behavior, step: BehaviorStep) -> bool:
+    """Whether a tick, a halt, a request or a goal waits for an answer before a step."""
+    before = behavior.configurations[step.source]
+    return before.tree in (Phase.TICKED, Phase.HALTING) or any(
+        subject in OWED.values() for (subject, _), _ in before.phases
+    )
 
 
 def _by_handle(context: MachineContext, state: State, part: ProtocolPart) -> dict[str, list[Handler]]:

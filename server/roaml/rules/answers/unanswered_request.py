@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.language import HL_SCXML
+from roaml.model.behavior.duties import forward
 from roaml.model.behavior.explore import Behavior
 from roaml.model.behavior.phases import Duty, DutyKind
 from roaml.model.machine import Handler, State
@@ -66,12 +67,13 @@ def _waiting(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
 
 
 def _ended(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
-    """Report states without handlers of a server of several services, which it enters although a client may send
-    further requests. A server of one service may answer once, if its client asks once."""
+    """Report states without handlers of a server, which it enters although a client may send further requests. A server
+    of one service may answer once, if its client asks once, so it is reported only if it answers again and again before
+    it enters the state."""
     names = {step.event.name for step in behavior.steps if step.event and step.event.part is ProtocolPart.REQUEST}
     requested = sorted(name for name in names if _clients(context, name))
     entered = {configuration.state for configuration in behavior.configurations}
-    for state in behavior.chart.states if len(requested) > 1 else ():
+    for state in behavior.chart.states if len(requested) > 1 or (requested and _answers_again(behavior)) else ():
         if state.id is None or state.id.value not in entered or any(h.effective for h in state.handlers):
             continue
         if state.element.complete and not any(map(_is_unknown, state.element.elements)):
@@ -80,6 +82,13 @@ def _ended(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
                 f"`{requested[0]}` that arrives in it is never answered; add a `<transition>`"
             )
             yield RULE.at(state.id.span, message, severity=Severity.WARNING)
+
+
+def _answers_again(behavior: Behavior) -> bool:
+    """Whether a request can arrive after an earlier one."""
+    requests = [step for step in behavior.steps if step.event and step.event.part is ProtocolPart.REQUEST]
+    later = forward({step.target for step in requests}, behavior.steps)
+    return any(step.source in later for step in requests)
 
 
 def _is_unknown(element: Element) -> bool:
