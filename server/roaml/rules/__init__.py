@@ -211,6 +211,7 @@ from roaml.rules.trees import (
     unknown_remap,
     unreached_node,
     unrepeated_rate,
+    unset_output,
     untranslatable_tree,
     unused_plugin,
     unused_port,
