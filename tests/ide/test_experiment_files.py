@@ -87,6 +87,14 @@ def test_a_right_file_has_no_findings(folder: Path) -> None:
         ("scheduler", f'find = "capacity"\n{MEETS}scheduler', "property", "computes the property in `meets`; remove"),
         (ASKED, f'find = "capacity"\n{MEETS}resume = "a.json"\n', "resume", "`find` saves no points; remove `resume`"),
         ("scheduler", 'beside = ["a.csv"]\nscheduler', '"a.csv"', "there is no file `a.csv`"),
+        ('"20:120:10"', '"20:20:220"', '"20:20:220"', "`capacity` must be at most 200, but one of the values is 220"),
+        ('"20:120:10"', "[50, 10]", "10", "`capacity` must be at least 20, but one of the values is 10"),
+        (
+            '"20:120:10"',
+            '"20:10:200"\npresent = [0, 1.5]',
+            "1.5",
+            "`present` must be at most 1, but one of the values is",
+        ),
         ("[set]", "[unit]\npresent = '%'\n[set]", "present", "`present` is not a parameter of this experiment"),
     ],
 )

@@ -6,10 +6,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
+from roaml.exact_number import exact_number
 from roaml.expansion.problems import ExpansionProblem, Problems
 from roaml.expansion.values import Content, ParameterValue, Scope, evaluate, number_text, read_value
 from roaml.expr.parse import parse
-from roaml.expr.types import BASE_TYPES, ScalarKind
+from roaml.expr.types import BASE_TYPES, INTEGER_RANGES, ScalarKind
 from roaml.language import SYSTEM
 from roaml.language.validate import misspelled_attribute
 from roaml.model.syntax import Name, name_of
@@ -46,6 +47,20 @@ class Declared(Record, frozen=True, eq=False):
     value: Attribute | None
     least: Attribute | None
     most: Attribute | None
+
+
+def bounds_of(parameter: Declared) -> tuple[Fraction | None, Fraction | None]:
+    """The least and the greatest value of a parameter, as far as its attributes or the range of its type state them as
+    numbers."""
+    least, most = (
+        exact_number(attribute.value) if attribute is not None else None
+        for attribute in (parameter.least, parameter.most)
+    )
+    low, high = INTEGER_RANGES.get(parameter.type, (None, None))
+    return (
+        Fraction(low) if parameter.least is None and low is not None else least,
+        Fraction(high) if parameter.most is None and high is not None else most,
+    )
 
 
 def declaration_elements(document: Document) -> Iterator[Element]:

@@ -10,12 +10,14 @@ from __future__ import annotations
 import enum
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from fractions import Fraction
 from typing import Any
 
 from roaml.diagnostics import Finding, Fix
+from roaml.exact_number import exact_fraction
 from roaml.jani.property_text import is_property_text
 from roaml.project.paths import resolve
-from roaml.record import Record
+from roaml.record import Record, field
 from roaml.regex import regex
 from roaml.suggest import close_names, did_you_mean
 from roaml.text import SourceFile, Span, TextEdit
@@ -111,10 +113,15 @@ KEYS: Mapping[str, ExperimentKey] = {
 
 
 class AskedModel(Record, frozen=True):
-    """The names that an experiment with a system can use: its parameters and properties."""
+    """The names that an experiment with a system can use: its parameters and properties.
+
+    Attributes:
+        bounds: parameter of the system -> its least and its greatest value, included; `None` if there is none.
+    """
 
     parameters: tuple[str, ...]
     properties: tuple[str, ...]
+    bounds: Mapping[str, tuple[Fraction | None, Fraction | None]] = field(default_factory=dict)
 
 
 def key_name(written: str) -> str:
@@ -209,6 +216,8 @@ class _Reader:
         for path, name, span in self._named(table, SET, "constant"):
             swept.append(name)
             yield from self._unknown(span, path, name, names.parameters, "parameter")
+        for path, name, text in self._values(table):
+            yield from self._outside(path, name, text, names)
         for path, name in _texts((PROPERTY,), table.get(PROPERTY, [])):
             if not is_property_text(name):
                 yield from self._unknown(None, path, name, names.properties, "property")
@@ -230,6 +239,28 @@ class _Reader:
                 yield from (((key, name), name, self._known.keys.get((key, name))) for name in value)
             else:
                 yield from ((path, text.partition("=")[0].strip(), None) for path, text in _texts((key,), value))
+
+    def _values(self, table: Mapping[str, Any]) -> Iterator[tuple[Path, str, str]]:
+        """The values of each parameter, as far as they are texts or numbers: their places, the names of the parameters,
+        and the texts of the values."""
+        for key in (SET, "constant"):
+            value = table.get(key, {})
+            for name, entry in value.items() if isinstance(value, dict) else ():
+                yield from ((path, name, text) for path, text in _texts((key, name), _as_texts(entry)))
+            for path, text in () if isinstance(value, dict) else _texts((key,), value):
+                name, _, values = text.partition("=")
+                yield path, name.strip(), values
+
+    def _outside(self, path: Path, name: str, text: str, names: AskedModel) -> Iterator[Finding]:
+        """Report a value that is less than the least or greater than the greatest value of its parameter."""
+        least, most = names.bounds.get(name, (None, None))
+        for number in _ends(text):
+            if (least is not None and number < least) or (most is not None and number > most):
+                bound = (
+                    f"at least {_number(least)}" if least is not None and number < least else f"at most {_number(most)}"
+                )
+                yield self._at(None, path, f"`{name}` must be {bound}, but one of the values is {_number(number)}")
+                return
 
     def _unknown(
         self, span: Span | None, path: Path, name: str, known: tuple[str, ...], what: str
@@ -263,3 +294,24 @@ def _texts(path: Path, value: Any) -> Iterator[tuple[Path, str]]:
 
 def _listed(names: Iterable[str]) -> str:
     return ", ".join(f"`{name}`" for name in names)
+
+
+def _as_texts(value: Any) -> Any:
+    """A number as a text, also in a list; other values as they are."""
+    if isinstance(value, list):
+        return [_as_texts(entry) for entry in value]
+    return str(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else value
+
+
+def _ends(text: str) -> Iterator[Fraction]:
+    """The numbers in a list of values, of a range only its ends: the step is its last or its second number."""
+    for entry in text.split(","):
+        numbers = [exact_fraction(part) for part in entry.split(":")]
+        known = [number for number in numbers if number is not None]
+        if known and len(known) == len(numbers):
+            yield known[0]
+            yield from (max(known[1:]),) if len(known) > 1 else ()
+
+
+def _number(value: Fraction) -> str:
+    return str(value.numerator) if value.denominator == 1 else f"{float(value):g}"

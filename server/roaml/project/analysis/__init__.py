@@ -18,6 +18,7 @@ import functools
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING
 
+from roaml.expansion.declarations import bounds_of
 from roaml.forest.settings import NEWEST, TreeSettings
 from roaml.interfaces.registry import Registry
 from roaml.model.parameters import NO_OVERRIDES, Overrides
@@ -166,7 +167,8 @@ def _asked(systems: Systems, expanded: Callable[[str], Expanded[Analysis] | None
     made = expanded(model)
     if made is None:
         return AskedModel((), systems.property_names(model))
-    return AskedModel(tuple(sorted(made.expansion.settable)), made.analysis.property_names(model))
+    bounds = {parameter.name.value: bounds_of(parameter) for parameter in made.expansion.declared}
+    return AskedModel(tuple(sorted(made.expansion.settable)), made.analysis.property_names(model), bounds)
 
 
 def _analysed(registry: Registry, overrides: Overrides, trees: TreeSettings, made: ExpandedFiles) -> Expanded[Analysis]:
