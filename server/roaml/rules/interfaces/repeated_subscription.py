@@ -36,14 +36,23 @@ def check(context: MachineContext | TreeContext) -> Iterator[Finding]:
 
 
 def _is_another_missed(system: System, use: InterfaceUse, topic: Channel) -> bool:
-    """Whether machines publish messages of the same type on another topic, to which nothing subscribes. Ports are
-    written to connect a node with the machines, so a property that observes the topic is not enough for them."""
+    """Whether machines publish messages of the same type on another topic, to which nothing subscribes, or whose name
+    the handle is. Ports are written to connect a node with the machines, so a property that observes the topic is not
+    enough for them."""
+    is_own = use.handle == _last(use.name or topic.name)
     for other in system.topics.values():
-        if other is topic or not any(source.use.type == use.type for source in other.sources):
+        sources = [source for source in other.sources if source.use.type == use.type]
+        if other is topic or not sources:
             continue
+        if not use.port and not is_own and any(use.handle == _last(source.use.name) for source in sources):
+            return True
         if not is_subscribed(system, other) and (use.port or not system.is_observed(topic_message(other.name))):
             return True
     return False
+
+
+def _last(name: str) -> str:
+    return name.rpartition("/")[2]
 
 
 def _subscribers(
