@@ -20,7 +20,8 @@ from roaml.rules.support.interfaces import channels_of
 
 def check(context: MachineContext) -> Iterator[Finding]:
     """Report all places where a machine publishes the same Boolean or number on a topic, if there are several, a
-    subscriber reads the value, and nothing else publishes on the topic."""
+    subscriber reads the value, and nothing else publishes on the topic. A Boolean is also reported if no machine
+    subscribes to the topic: the two places are meant for a property, or for a machine that is not modelled."""
     if not context.automata:
         return
     for declaration, statements in _published(context).items():
@@ -29,8 +30,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
         if len(statements) < 2 or len(values) < len(statements) or len({value.value for value in values}) > 1:
             continue
         channels = list(channels_of(context, declaration))
-        if not any(end.use.reads for _, channel in channels for end in channel.users):
-            continue  # a signal, such as a heartbeat
+        users = [end for _, channel in channels for end in channel.users]
+        if not any(end.use.reads for end in users) and (users or not isinstance(values[0], Boolean)):
+            continue  # a signal, such as a heartbeat, whose receivers read no value
         if any(end.automaton is not own for own, channel in channels for end in channel.sources):
             continue  # the value differs from that of another publisher, as in the order of a monitor to stop
         for value in values:
