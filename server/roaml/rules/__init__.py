@@ -99,6 +99,7 @@ from roaml.rules.files import (
     missing_include,
     not_checked,
     unknown_document,
+    unlisted_file,
     unused_suppression,
     wrong_file_kind,
 )

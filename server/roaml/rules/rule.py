@@ -167,6 +167,8 @@ class SystemContext(Record, frozen=True):
         gaps: the facts that unreadable parts of this file may contain.
         size: the size of the translation.
         limits: the maximum sizes.
+        unlisted: the property files beside the system file, or beside those that it lists, that no system file in the
+            folder lists; relative to the folder.
     """
 
     source: SourceFile
@@ -178,6 +180,7 @@ class SystemContext(Record, frozen=True):
     gaps: tuple[PlacedGap, ...]
     size: Size
     limits: Limits
+    unlisted: tuple[str, ...] = ()
 
 
 class StructsContext(Record, frozen=True):

@@ -273,6 +273,7 @@ class _Reader:
                     listed,
                     self.rooms.linking.system(self.path),
                     self.rooms.linking.size_of_translation(self.path),
+                    self.rooms.systems.unlisted_properties(self.path),
                 )
             case FileKind.TREE:
                 includes = (tuple(self._missing_includes().items()), tuple(self._found_includes().items()))
@@ -596,7 +597,8 @@ class _Reader:
         assert size is not None
         files, gaps = self.rooms.systems.listed(self.path), self._gaps()
         interface = self.rooms.interfaces.interface
-        return SystemContext(self.source, document, file, files, system, interface, gaps, size, limits)
+        unlisted = self.rooms.systems.unlisted_properties(self.path)
+        return SystemContext(self.source, document, file, files, system, interface, gaps, size, limits, unlisted)
 
     def _structs_context(self) -> StructsContext:
         declarations = self.rooms.sources.struct_declarations(self.path)

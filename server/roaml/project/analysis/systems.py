@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 
@@ -14,6 +15,8 @@ from roaml.project.analysis.sources import SourceFiles
 from roaml.project.analysis.tree_files import TreeFiles
 from roaml.project.files import MAX_CHARACTERS
 from roaml.project.paths import is_below, resolve
+
+_PROPERTIES = (FileKind.PROPERTIES, FileKind.XML_PROPERTIES)
 
 
 class Systems:
@@ -35,6 +38,26 @@ class Systems:
             file = self._sources.system_file(path)
             self._listed[path] = tuple(self._listed_file(path, entry) for entry in file.inputs) if file else ()
         return self._listed[path]
+
+    def unlisted_properties(self, path: str) -> tuple[str, ...]:
+        """The property files beside a system file, or beside the property files below its folder that it lists, that
+        neither it nor another system file in its folder lists: their paths relative to the folder. Files with
+        parameters are left out: a system may list them under other names, one for each instance."""
+        folder = os.path.dirname(path)
+        own = [file.path for file in self.listed(path)]
+        places = [path, *(p for p in own if self._sources.kind(p) in _PROPERTIES and is_below(p, folder))]
+        beside = {p for place in places for end in (".jani", ".xml") for p in self._sources.files.beside(place, end)}
+        unlisted = {p for p in beside.difference(own) if self._sources.kind(p) in _PROPERTIES and not self._varies(p)}
+        if unlisted:
+            for other in self._sources.files.beside(path, ".xml"):
+                if self._sources.kind(other) is FileKind.SYSTEM:
+                    unlisted -= {file.path for file in self.listed(other)}
+        return tuple(sorted(os.path.relpath(p, folder).replace(os.sep, "/") for p in unlisted))
+
+    def _varies(self, path: str) -> bool:
+        """Whether a file has parameters, or uses those of the system."""
+        source = self._sources.source(path)
+        return source is not None and ("<parameter" in source.text or "$(" in source.text)
 
     def lists_all(self, system: str, section: SystemSection) -> bool:
         """Whether all files that a system lists in the section `section` are known and can be used."""

@@ -9,6 +9,7 @@ from roaml.diagnostics import Finding, Related, Severity
 from roaml.forest.cpp_types import ANY
 from roaml.forest.entries import BoundUse, Entries, Use
 from roaml.forest.forest import Forest
+from roaml.model.expand import node_at
 from roaml.model.gaps import GapAct
 from roaml.model.tree import is_variable_name
 from roaml.roles import Direction
@@ -54,7 +55,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 overwriting.setdefault(diverted, use)
             elif not is_hosted:
                 reported.add(use)
-                yield _unwritten(forest, bound, close)
+                yield _unset(context, bound, entries) or _unwritten(forest, bound, close)
     for writer, reader in misspelled.items():
         yield _unread(writer, reader)
     for writer, reader in overwriting.items():
@@ -166,6 +167,34 @@ def _unwritten(forest: Forest, bound: BoundUse, close: tuple[str, ...]) -> Findi
     severity = Severity.ERROR if certain else Severity.WARNING if close else Severity.INFORMATION
     variable = bound.variable.removeprefix(bound.frame.board)
     return RULE.at(use.span, f"no node writes {described(variable, use.name)}{hint}", *fixes, severity=severity)
+
+
+def _unset(context: TreeContext, bound: BoundUse, entries: Entries) -> Finding | None:
+    """The finding at a `<SubTree>` that does not set an entry of its tree, if another one does."""
+    frame, name = bound.frame, bound.use.name
+    if frame.use is None or frame.use.path != context.source.path or context.trees is None:
+        return None
+    other = next(
+        (
+            inner.frame
+            for uses in entries.by_entry.values()
+            for inner in uses
+            if inner.frame is not frame and inner.frame.tree is frame.tree and name in inner.frame.remapped
+        ),
+        None,
+    )
+    node = node_at(context.file, frame.use)
+    if other is None or other.use is None or node is None:
+        return None
+    message = (
+        f"this `<SubTree>` does not set `{name}`, unlike another one of the tree `{bound.use.tree}`, in which no node "
+        "writes it; set it"
+    )
+    setting = node_at(context.file, other.use) if other.use.path == context.source.path else None
+    related = [Related(bound.use.span, f"`{name}` is needed here")]
+    related += [Related(setting.element.name_span, "set here")] if setting is not None else []
+    severity = Severity.ERROR if context.trees.system is not None else Severity.WARNING
+    return RULE.at(node.element.name_span, message, severity=severity, related=related)
 
 
 def _overwritten(writer: Use, reader: Use) -> Finding:
