@@ -255,12 +255,14 @@ class _Reader:
         """Report a value that is less than the least or greater than the greatest value of its parameter."""
         least, most = names.bounds.get(name, (None, None))
         for number in _ends(text):
-            if (least is not None and number < least) or (most is not None and number > most):
-                bound = (
-                    f"at least {_number(least)}" if least is not None and number < least else f"at most {_number(most)}"
-                )
-                yield self._at(None, path, f"`{name}` must be {bound}, but one of the values is {_number(number)}")
-                return
+            if least is not None and number < least:
+                bound = f"at least {_number(least)}"
+            elif most is not None and number > most:
+                bound = f"at most {_number(most)}"
+            else:
+                continue
+            yield self._at(None, path, f"`{name}` must be {bound}, but one of the values is {_number(number)}")
+            return
 
     def _unknown(
         self, span: Span | None, path: Path, name: str, known: tuple[str, ...], what: str
