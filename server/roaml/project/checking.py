@@ -31,6 +31,7 @@ from roaml.project.memo import Memo
 from roaml.project.settings import Settings
 from roaml.project.suppress import Suppression, covering, suppressions
 from roaml.record import replace
+from roaml.recursion import deep_recursion
 from roaml.rules import BY_CODE, RULES
 from roaml.rules.elements import invalid_value
 from roaml.rules.files import file_too_large, unused_suppression
@@ -410,7 +411,8 @@ def machine_checks(context: MachineContext) -> list[Check]:
 
 def found(path: str, checks: Iterable[Check], memo: Memo) -> tuple[Finding, ...]:
     """The findings of checks in the file `path`."""
-    findings = without_misnamed_ends(tuple(_all(path, checks, memo)))
+    with deep_recursion():
+        findings = without_misnamed_ends(tuple(_all(path, checks, memo)))
     if any(finding.code in _FORM for finding in findings):
         # A declaration that seems unused may be used in an unreadable part.
         return tuple(finding for finding in findings if Tag.UNNECESSARY not in finding.tags)

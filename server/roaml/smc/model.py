@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import MappingProxyType
 
@@ -12,6 +11,7 @@ from roaml.jani.model import Model, ModelType
 from roaml.jani.passive import without_passive
 from roaml.jani.properties import Formula, Property, identifiers, walk
 from roaml.record import replace
+from roaml.recursion import deep_recursion
 from roaml.smc.batch import Payload, TraceProblem
 from roaml.smc.choices import Choices, check_choices
 from roaml.smc.compile import Compilation, Legend
@@ -33,9 +33,6 @@ from roaml.smc.run import Answer, Inquiry, Options, TraceFaultError, Watch, answ
 from roaml.smc.size import check_size
 from roaml.smc.sums import sum_names, with_sums
 from roaml.smc.tally import Tally
-
-RECURSION_LIMIT = 15_000
-"""Python's recursion limit during compilation, because expressions may be nested as deeply as JSON allows."""
 
 
 class ModelChecker:
@@ -77,35 +74,38 @@ class ModelChecker:
         self._actors = actors
         chosen = model.properties if properties is None else tuple(properties)
         self._names = tuple(dict.fromkeys(property_.name for property_ in chosen))
-        depth = sys.getrecursionlimit()
-        sys.setrecursionlimit(max(depth, RECURSION_LIMIT))
         try:
-            check_size(model, chosen)
-            read: list[Formula] = [expression for output in outputs.values() for expression in output.expressions]
-            read += [property_.expression for property_ in (*chosen, *assumptions.values())]
-            sums = [Name(name) for property_ in chosen for name in sum_names(property_).values()]
-            self._compilation = Compilation(with_sums(model, chosen), [*read, *sums])
-            self.compiled_properties: tuple[CompiledProperty, ...] = ()
-            self.refused: dict[str, FaultError] = {}
-            for property_ in chosen:
-                try:
-                    compiled = self._compile(property_)
-                    assumed = assumptions.get(property_.name)
-                    self.compiled_properties += (
-                        compiled if assumed is None else conditional(compiled, self._compile(assumed)),
-                    )
-                except FaultError as fault:
-                    self.refused[property_.name] = fault
-            self.stuck: CompiledProperty = compile_stuck(self._compilation)
-            if includes_stuck:
-                self.compiled_properties += (self.stuck,)
-                self._names += (self.stuck.question.name,)
-            self.program: Program = self._compilation.program(marks)
-            self.initial_states = self._compilation.initial_states
+            with deep_recursion():
+                self._prepare(chosen, assumptions, includes_stuck=includes_stuck)
         except RecursionError:
             raise FaultError("an expression of this model is nested too deeply", model.origin) from None
-        finally:
-            sys.setrecursionlimit(depth)
+
+    def _prepare(
+        self, chosen: Sequence[Property], assumptions: Mapping[str, Property], *, includes_stuck: bool
+    ) -> None:
+        model, outputs, marks = self.model, self.outputs, self._marks
+        check_size(model, chosen)
+        read: list[Formula] = [expression for output in outputs.values() for expression in output.expressions]
+        read += [property_.expression for property_ in (*chosen, *assumptions.values())]
+        sums = [Name(name) for property_ in chosen for name in sum_names(property_).values()]
+        self._compilation = Compilation(with_sums(model, chosen), [*read, *sums])
+        self.compiled_properties: tuple[CompiledProperty, ...] = ()
+        self.refused: dict[str, FaultError] = {}
+        for property_ in chosen:
+            try:
+                compiled = self._compile(property_)
+                assumed = assumptions.get(property_.name)
+                self.compiled_properties += (
+                    compiled if assumed is None else conditional(compiled, self._compile(assumed)),
+                )
+            except FaultError as fault:
+                self.refused[property_.name] = fault
+        self.stuck: CompiledProperty = compile_stuck(self._compilation)
+        if includes_stuck:
+            self.compiled_properties += (self.stuck,)
+            self._names += (self.stuck.question.name,)
+        self.program: Program = self._compilation.program(marks)
+        self.initial_states = self._compilation.initial_states
 
     def _compile(self, property_: Property) -> CompiledProperty:
         return compile_property(self._compilation, property_, self.outputs.get(property_.name, NO_OUTPUTS))
