@@ -597,6 +597,8 @@ class _Interpreter(Record, eq=False, dict=True):
         if "[" in place:
             return self._with_element(location, known)
         after = {other: v for other, v in known.items() if not is_within(other, place)}
+        if place.endswith(".length"):  # a greater length adds elements
+            after = _without_elements(after, place.removesuffix(".length"))
         for path, values in value.items():
             after[place + path] = values
         return after
@@ -634,6 +636,8 @@ class _Interpreter(Record, eq=False, dict=True):
                     length = self._length(after[place], location.index, place, known)
                     most = self.capacities.get(place)
                     after[place] = length if most is None else _at_most(length, most)
+                if array is not None:
+                    after = _without_elements(after, array)
             location = location.object
         return after
 
@@ -686,6 +690,11 @@ class _Interpreter(Record, eq=False, dict=True):
 
     def _add(self, channel: DataChannel, fields: Fields) -> None:
         self.sent[channel] = merged(self.sent[channel], fields) if channel in self.sent else fields
+
+
+def _without_elements(known: Valuation, array: str) -> Valuation:
+    """The values without those of the elements of an array, one of which has changed."""
+    return {place: values for place, values in known.items() if not place.startswith(f"{array}[")}
 
 
 def _is_whole_in(whole: set[str], place: str) -> bool:

@@ -128,7 +128,7 @@ class Evaluator(Record, eq=False):
             case Member():
                 return self._member(known, expr)
             case Index():
-                self._index(known, expr)
+                self._inner_indices(known, expr)
                 place = place_of(expr)
                 return known.get(place) or self.types.get(place, ANYTHING) if place is not None else ANYTHING
             case Unary():
@@ -440,10 +440,18 @@ def _extreme(is_least: bool, first: ValueSet, second: ValueSet) -> ValueSet:
 
 
 def literal(place: str, expr: Expr) -> Iterator[tuple[str, ValueSet]]:
-    """The values that a constant gives to `place` and to the places in it. Elements of arrays are left out."""
+    """The values that a constant gives to `place` and to the places in it. The elements of an array share a place; they
+    are left out unless all of them are constants."""
     match expr:
         case ArrayLiteral():
             yield f"{place}.length", exactly(len(expr.elements))
+            if expr.elements and all(map(_is_constant, expr.elements)):
+                inside: dict[str, ValueSet] = {}
+                for element in expr.elements:
+                    # An array without elements says nothing about the places of elements in it.
+                    for path, values in literal(f"{place}[]", element):
+                        inside[path] = join(inside[path], values) if path in inside else values
+                yield from inside.items()
         case Number() | String() | Boolean():
             yield place, exactly(expr.value)
         case Unary(operator=UnaryOperator.NEGATE, operand=Number() as number):
@@ -453,3 +461,13 @@ def literal(place: str, expr: Expr) -> Iterator[tuple[str, ValueSet]]:
         case ObjectLiteral():
             for member in expr.members:
                 yield from literal(f"{place}.{member.key}", member.value)
+
+
+def _is_constant(expr: Expr) -> bool:
+    """Whether an expression contains only constants."""
+    match expr:
+        case ArrayLiteral():
+            return all(map(_is_constant, expr.elements))
+        case ObjectLiteral():
+            return all(_is_constant(member.value) for member in expr.members)
+    return isinstance(expr.operand if isinstance(expr, Unary) else expr, Number | String | Boolean)

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import IndexOutOfBounds, constant, infer
 from roaml.expr.operators import MIRRORED, OPPOSITE, Operator, UnaryOperator
-from roaml.expr.tree import Binary, Boolean, Expr, Index, Member, Name, Unary, walk
+from roaml.expr.tree import ArrayLiteral, Binary, Boolean, Expr, Index, Member, Name, Unary, access_path, walk
 from roaml.expr.types import Array, Type
 from roaml.model.machine import Assign, Chart, Handler
 from roaml.model.syntax import Expression
@@ -23,6 +23,8 @@ from roaml.text import TextEdit
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
+    for chart in context.machine.charts:
+        yield from _never_filled(chart)
     for value in context.typed.values:
         for problem in value.problems:
             if isinstance(problem, IndexOutOfBounds):
@@ -156,6 +158,45 @@ def _beyond_length(context: MachineContext, value: TypedValue) -> Iterator[Findi
             what = f"`{name}` has no element {reached.low if always else reached.high:g} here"
             where = f": its length is {described(length)}" if always else f", but `{text}` can be {reached.high:g}"
             yield RULE.at(node.index.span, f"{what}{where}", severity=Severity.WARNING)
+
+
+def _never_filled(chart: Chart) -> Iterator[Finding]:
+    """Report reads of an element behind the initial ones, if all assignments to this element read it first."""
+    assigns = [s for s in chart.executed if isinstance(s, Assign) and s.location is not None]
+    for data in chart.data:
+        initial = data.value.tree if isinstance(data.value, Expression) else None
+        if data.id is None or not isinstance(initial, ArrayLiteral) or not initial.elements:
+            continue
+        name, count = data.id.value, len(initial.elements)
+        own = [s for s in assigns if s.location is not None and (access_path(s.location.tree) or ("",))[0] == name]
+        places = [_element_of(s.location.tree, name) for s in own if s.location is not None]
+        if any(place is None for place in places):
+            continue  # the array grows elsewhere
+        for statement, place in zip(own, places, strict=True):
+            reads = _reads(statement, name, place)
+            same = [_reads(s, name, place) for s, other in zip(own, places, strict=True) if other == place]
+            if place is not None and place >= count and all(same):
+                message = (
+                    f"`{name}` has no element {place} here: its initial value has {count} element"
+                    f"{'s' * (count > 1)}, and this reads the element before it is first assigned; give it an initial "
+                    "value"
+                )
+                yield from (RULE.at(node.index.span, message, severity=Severity.WARNING) for node in reads)
+
+
+def _element_of(location: Expr, name: str) -> int | None:
+    """The constant index of an element of the variable `name`; `None` for other places."""
+    if not isinstance(location, Index) or not isinstance(location.object, Name) or location.object.name != name:
+        return None
+    number = constant(location.index)
+    return number if isinstance(number, int) else None
+
+
+def _reads(statement: Assign, name: str, index: int | None) -> list[Index]:
+    """Where an assignment reads an element of the variable `name`."""
+    tree = statement.value.tree if isinstance(statement.value, Expression) else None
+    nodes = walk(tree) if tree is not None else ()
+    return [node for node in nodes if isinstance(node, Index) and _element_of(node, name) == index]
 
 
 def _append(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[Finding]:

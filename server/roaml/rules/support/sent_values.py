@@ -22,6 +22,7 @@ from roaml.rules.rule import MachineContext, close_names
 from roaml.rules.support.compared_numbers import reached
 from roaml.rules.support.constant_conditions import ConstantPart
 from roaml.rules.support.message_constants import wrong_fields
+from roaml.rules.support.received_lengths import length_never_sent
 from roaml.text import Span, TextEdit
 
 _FROM_SENDERS = {ProtocolPart.MESSAGE: "_msg.", ProtocolPart.EVENT: "_event.data."}
@@ -92,7 +93,9 @@ def _numbers_never_sent(context: MachineContext, reported: Collection[Span]) -> 
                         yield from _compared_with_sent(context, chart, node, field, other, tree, sent)
                         continue
                     chosen, limited = stored[value.place.chart.scope]
-                    if node.operator is Operator.EQUAL and value.use in CONDITIONS:
+                    if (message := length_never_sent(chart, node, field, chosen)) is not None:
+                        yield ConstantPart(node.span, message)
+                    elif node.operator is Operator.EQUAL and value.use in CONDITIONS:
                         yield from _never_chosen(context, value.place, chart, node, field, other, chosen)
                     elif node.operator.kind is OperatorKind.ORDER and place_of(field) in limited:
                         known = chart.at(field)
