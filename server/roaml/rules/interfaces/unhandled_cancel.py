@@ -6,11 +6,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
+from roaml.model.behavior.phases import Duty, DutyKind
 from roaml.model.gaps import InterfaceAct
-from roaml.model.machine import RosSend
+from roaml.model.machine import Declaration, RosSend, State
 from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.answers import behaviors
 from roaml.rules.support.interfaces import declared
 
 _HANDLES = InterfaceAct(SymbolKind.ACTION_SERVER, ProtocolPart.CANCEL)
@@ -21,6 +23,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     system = context.system
     if system is None:
         return
+    yield from _rejected(context)
     reported: set[RosSend] = set()
     for declaration, _, action in declared(context, SymbolKind.ACTION_CLIENT):
         if not action.sources or any(ProtocolPart.CANCEL in server.use.receives for server in action.sources):
@@ -44,6 +47,42 @@ def check(context: MachineContext) -> Iterator[Finding]:
                     )
                     related = (Related(action.sources[0].symbol, "the server"),)
                     yield RULE.at(statement.element.name_span, message, related=related)
+
+
+def _rejected(context: MachineContext) -> Iterator[Finding]:
+    """Report the only state of a server in which a goal is executed and requests to cancel it are rejected."""
+    servers = {declaration: action for declaration, _, action in declared(context, SymbolKind.ACTION_SERVER)}
+    for declaration, action in servers.items():
+        if declaration.handle is None or not any(ProtocolPart.CANCEL in user.use.sends for user in action.users):
+            continue
+        for behavior in behaviors(context):
+            executing = {
+                configuration.state
+                for configuration in behavior.configurations
+                if configuration.owes(Duty(DutyKind.RESULT, declaration.handle.value))
+            }
+            waiting = [s for s in behavior.chart.states if s.id and s.id.value in executing and _waits(s)]
+            rejecting = [state for state in waiting if not _handles_cancel(context, state, declaration)]
+            if len(rejecting) == 1 and len(waiting) > 1 and rejecting[0].id is not None:
+                name = rejecting[0].id.value
+                message = (
+                    f"a request to cancel a goal that arrives in the state `{name}` is rejected, unlike in the other "
+                    "states in which a goal is executed; add a `<ros_action_handle_cancel_goal>`"
+                )
+                yield RULE.at(rejecting[0].id.span, message)
+
+
+def _waits(state: State) -> bool:
+    """Whether a machine stays in a state until something arrives."""
+    handlers = [handler for handler in state.handlers if handler.effective]
+    return bool(handlers) and all(handler.trigger is not None for handler in handlers)
+
+
+def _handles_cancel(context: MachineContext, state: State, declaration: Declaration) -> bool:
+    return any(
+        handler.trigger is ProtocolPart.CANCEL and find_handle(context.machine, handler) is declaration
+        for handler in state.handlers
+    )
 
 
 RULE = Rule(
