@@ -13,7 +13,8 @@ from roaml.rules.rule import Rule, SystemContext
 
 def check(context: SystemContext) -> Iterator[Finding]:
     section = context.file.element.find(SystemSection.PROPERTIES.value)
-    if SystemSection.PROPERTIES in context.file.unread or (section is not None and not section.complete):
+    is_unfinished = section is not None and not (section.complete and section.elements)
+    if SystemSection.PROPERTIES in context.file.unread or is_unfinished:
         return
     for path in context.unlisted:
         message = (
