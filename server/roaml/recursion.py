@@ -7,7 +7,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-RECURSION_LIMIT = 15_000
+RECURSION_LIMIT = 8_000
 """Python's recursion limit for functions that follow the nesting of expressions."""
 
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 
 from roaml.expr.transform import map_children
-from roaml.expr.tree import Boolean, Conditional, Expr, Name, Number
+from roaml.expr.tree import Boolean, Conditional, Expr, Index, Name, Number, walk
 from roaml.expr.types import ScalarKind, is_kind
 from roaml.jani.expressions import Expression, Integer, LValue
 from roaml.jani.model import Variable
@@ -43,6 +43,8 @@ class ObservedValues(Record, frozen=True):
         copies: id of a variable -> its copy in the observer. Variables without a copy are left out.
         shapes: the shapes of the global variables, including the copies.
         declared: the declarations of the copies.
+        initial: variables that are named like those of the property and have their initial values.
+        initial_shapes: the shapes of these variables.
     """
 
     property: ObservedProperty
@@ -50,6 +52,8 @@ class ObservedValues(Record, frozen=True):
     copies: Mapping[str, _Copy]
     shapes: Mapping[str, ArrayShape]
     declared: tuple[Variable, ...]
+    initial: tuple[Variable, ...]
+    initial_shapes: Mapping[str, ArrayShape]
 
     def conditions(self, true_events: frozenset[str]) -> dict[str, Expression]:
         """Input of the observer -> the condition of the property as an expression.
@@ -66,13 +70,14 @@ class ObservedValues(Record, frozen=True):
 
     def at_start(self) -> dict[str, bool]:
         """Input of the observer -> whether the condition of the property is true at the start of the trace."""
-        initial = {variable.id: variable.initial for port in self.property.ports for variable in port.variables}
+        scope = JaniScope(self.initial_shapes, "", {})
+        environment = {v.name: evaluate(v.initial_value, {}) for v in self.initial if v.initial_value is not None}
 
         def value(name: Name) -> Expr:
-            return initial.get(name.name) or Boolean(name.span, False)
+            return name if name.name in self.initial_shapes else Boolean(name.span, False)
 
         return {
-            name: bool(evaluate(_CONSTANTS.scalar(_replaced(condition, value)), {}))
+            name: bool(evaluate(scope.scalar(_replaced(condition, value)), environment))
             for name, condition in self.property.conditions.items()
         }
 
@@ -107,12 +112,18 @@ def observed_values(
     values: dict[str, Expr] = {}
     copies: dict[str, _Copy] = {}
     declared: list[Variable] = []
+    at_start: list[Variable] = []
+    initial_shapes: dict[str, ArrayShape] = {}
     for port in property_.ports:
         for variable in port.variables:
             if variable.initial is None:
                 continue
             shape = shape_of(variable.type, size, sent=True)
+            initial_shapes[variable.id] = shape
+            at_start += _declared(_Copy(variable.id, shape), variable.initial, property_.origin)
             value = _stored(port, variable, variable.initial, shape, shapes)
+            if isinstance(value, Conditional) and _is_indexed(property_, variable):
+                value = None
             if value is None:
                 copy = _Copy(f"{prefix}__{variable.id}", shape)
                 copies[variable.id] = copy
@@ -120,7 +131,7 @@ def observed_values(
                 value = Name(NO_SPAN, copy.name)
             values[variable.id] = value
     known = {**shapes, **{copy.name: copy.shape for copy in copies.values()}}
-    return ObservedValues(property_, values, copies, known, tuple(declared))
+    return ObservedValues(property_, values, copies, known, tuple(declared), tuple(at_start), initial_shapes)
 
 
 def _stored(
@@ -138,6 +149,15 @@ def _stored(
     if _is_zero(initial, shape):
         return value
     return Conditional(NO_SPAN, Name(NO_SPAN, flag_of(event.name)), value, initial)
+
+
+def _is_indexed(property_: ObservedProperty, variable: ObservedVariable) -> bool:
+    """Whether a condition reads an element of a variable. A choice between two arrays has no elements in JANI."""
+    return any(
+        isinstance(part, Index) and isinstance(part.object, Name) and part.object.name == variable.id
+        for condition in property_.conditions.values()
+        for part in walk(condition)
+    )
 
 
 def _declared(copy: _Copy, initial: Expr, origin: Location) -> Iterator[Variable]:
