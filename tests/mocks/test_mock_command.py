@@ -119,6 +119,22 @@ def test_mocks_that_are_not_valid(mock: str, reason: str, tmp_path: Path, capsys
     assert reason in refused(capsys, tree(tmp_path, "<Drive/>"), "--mock", mock)
 
 
+def test_all_missing_entries_are_named_at_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Those of ports and scripts, of one node and of several, at their places behind escapes."""
+    path = tree(
+        tmp_path,
+        "<Sequence><ScriptCondition code='a &gt; 2 &amp;&amp; bcd &lt; a'/><Sleep msec='{eta}' _skipIf='f &gt; g'/>"
+        "<Switch2 variable='{way}' case_1='a' case_2='b'><Drive/><Drive/><Drive/></Switch2></Sequence>",
+    )
+    text = refused(capsys, path, "--mock", "Drive: 1")
+    lines = Path(path).read_text(encoding="utf-8").splitlines()
+    named = re.findall(r":(\d+):(\d+): error: nothing sets the entry `(\w+)`; .*, with `--entry (\w+)=VALUE`", text)
+    assert [name for *_, name, _ in named] == ["a", "bcd", "eta", "f", "g", "way"]
+    for line, column, name, option in named:
+        assert name == option
+        assert lines[int(line) - 1][int(column) - 1 :].lstrip("{").startswith(name)
+
+
 @pytest.mark.parametrize(
     ("content", "reason"),
     [

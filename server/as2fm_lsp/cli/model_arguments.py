@@ -127,7 +127,8 @@ def error_report(error: api.ModelError | api.JaniError) -> CheckReport:
         diagnostics = error.result.diagnostics
         if error.unset:
             diagnostics = tuple(
-                replace(d, message=f"{d.message}, with `--entry {error.unset}=VALUE`") for d in diagnostics
+                replace(d, message=f"{d.message}, with `--entry {name}=VALUE`") if name else d
+                for d, name in zip(diagnostics, error.unset, strict=True)
             )
         return report_of(diagnostics, error.result.source, len(error.result.files))
     source = error.source

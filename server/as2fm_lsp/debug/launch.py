@@ -169,7 +169,7 @@ def load(launch: Launch, log: Log, watch: Watch) -> Debugger:
     try:
         return start(_sources(launch, log), launch.start, log, watch)
     except api.ModelError as error:
-        hint = ", with `entries` in the launch configuration" if error.unset else ""
+        hint = ", with `entries` in the launch configuration" if any(error.unset[:1]) else ""
         raise RequestError(f"{_first(error.result.diagnostics, error.result.source)}{hint}") from None
     except api.JaniError as error:
         source = error.source

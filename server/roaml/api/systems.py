@@ -38,11 +38,11 @@ class ModelError(ValueError):
 
     Attributes:
         result: only these errors.
-        unset: the entry of the blackboard of a tree without a system that needs a value at the start, if this is the
-            reason; otherwise "".
+        unset: for a tree without a system, for each of these errors the entry of the blackboard that needs a value at
+            the start, if this is the reason, otherwise ""; empty for a system.
     """
 
-    def __init__(self, result: CheckResult, unset: str = "") -> None:
+    def __init__(self, result: CheckResult, unset: tuple[str, ...] = ()) -> None:
         first = result.diagnostics[0]
         more = f", and {len(result.diagnostics) - 1} more" if len(result.diagnostics) > 1 else ""
         super().__init__(f"{first.path}: {first.message}{more}")

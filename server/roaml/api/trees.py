@@ -127,7 +127,13 @@ def _forest(snapshot: Snapshot, path: str) -> Forest:
 
 def _untranslatable(snapshot: Snapshot, path: str, refusal: TreeRefusal) -> ModelError:
     """The error for a tree that cannot be translated."""
-    origin = refusal.origin
-    source = snapshot.analysis.source(origin.path)
-    reason = Diagnostic(origin.path, UNTRANSLATABLE, Severity.ERROR, origin.span, refusal.reason, source=source)
-    return ModelError(CheckResult((reason,), (path,), (), snapshot), refusal.unset)
+    from roaml.lower.programs.refusal import place_in  # noqa: PLC0415 - trees without errors do not need it
+
+    def reason(refusal: TreeRefusal) -> Diagnostic:
+        origin = refusal.origin
+        source = snapshot.analysis.source(origin.path)
+        span = origin.span if source is None else place_in(source.text, refusal)
+        return Diagnostic(origin.path, UNTRANSLATABLE, Severity.ERROR, span, refusal.reason, source=source)
+
+    reasons = tuple(map(reason, refusal.all))
+    return ModelError(CheckResult(reasons, (path,), (), snapshot), tuple(reason.unset for reason in refusal.all))

@@ -17,19 +17,16 @@ from roaml.forest.forest import node_of_machine
 from roaml.forest.scripts import script_attributes
 from roaml.libraries import Node, library_node, node_in_libraries
 from roaml.libraries.programs.assembly import NodeProgram, programs
-from roaml.libraries.programs.statuses import FAILURE, RUNNING, SUCCESS
 from roaml.lower.programs.automaton import CONDITION_MACHINE, MACHINE, MACHINES, NodeTooLargeError, node_automaton
 from roaml.lower.programs.board import Board, build_board, set_entry
-from roaml.lower.programs.code import Child, NodeCode
+from roaml.lower.programs.code import STATUSES, Child, NodeCode
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree, FrameNames, TreeLinks
 from roaml.lower.programs.nodes import (
     EVENT_PROBABILITY,
-    PortValues,
-    compiled_scripts,
     event_probability,
     flags_at,
-    port_values,
     program_of,
+    values_and_scripts,
 )
 from roaml.lower.programs.refusal import TreeRefusal
 from roaml.model.expand import Instance, entered_uses
@@ -42,9 +39,6 @@ from roaml.script.names import names_in
 from roaml.scxml.model import Automaton
 from roaml.scxml.names import CONDITIONS_PREFIX
 from roaml.text import Location
-
-STATUSES = frozenset((SUCCESS, FAILURE, RUNNING))
-"""The statuses with which a machine answers a tick, as codes."""
 
 
 class LibraryTree(Record, frozen=True, eq=False):
@@ -215,7 +209,7 @@ class LibraryTreeBuilder:
                         TreeRefusal(part.node.origin, f"`{part.node.name}` has too many states to be translated")
                     )
                 except TreeRefusal as refusal:
-                    refusals.append(refusal)
+                    refusals += refusal.all
             children[instance.number] = child
             codes[instance.number] = tuple(reversed(translated))
         addresses = {n: parts[-1].address for n, parts in self.parts.items() if len(parts) > 1}
@@ -275,7 +269,7 @@ class LibraryTreeBuilder:
         node = part.node
         number = self.index[id(part)]
         is_condition = node.type in (*MACHINES, "SubTree")
-        values = PortValues() if is_condition else port_values(node, program, self.board)
+        values, scripts = values_and_scripts(node, None if is_condition else program, self.board)
         if program.reads_world:
             probability = event_probability(node)
             values.known["event"] = EVENT_PROBABILITY if probability is None else probability
@@ -286,7 +280,7 @@ class LibraryTreeBuilder:
             children,
             values.known,
             values.bound,
-            compiled_scripts(node, self.board),
+            scripts,
             self.board.flag_of.get(number),
             (),
             values.elements,

@@ -15,23 +15,21 @@ from roaml.libraries.programs.assembly import NodeProgram, programs
 from roaml.libraries.programs.statuses import RUNNING, Known
 from roaml.lower.build import binary, event_data, integer, name
 from roaml.lower.interfaces import tree_event
-from roaml.lower.programs.automaton import NodeTooLargeError, node_automaton
+from roaml.lower.programs.automaton import NodeAutomaton, NodeTooLargeError, node_automaton
 from roaml.lower.programs.blackboard import board_automaton
 from roaml.lower.programs.board import Board, build_board
-from roaml.lower.programs.code import Child, NodeCode
+from roaml.lower.programs.code import STATUSES, Child, NodeCode
 from roaml.lower.programs.entries import BoardEntry
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree
 from roaml.lower.programs.nodes import (
     EVENT_PROBABILITY,
-    PortValues,
-    compiled_scripts,
     event_probability,
     flags_at,
     is_own_parent,
-    port_values,
     program_of,
+    values_and_scripts,
 )
-from roaml.lower.programs.refusal import TreeRefusal
+from roaml.lower.programs.refusal import TreeRefusal, first_of
 from roaml.lower.programs.values import ticks_of
 from roaml.lower.timers import Timer, clock, clock_step
 from roaml.mocks.mock import Mock, MockError, drawn_ticks, mock_for
@@ -161,13 +159,17 @@ class _Builder:
         board = build_board(self.tree, self.options.entries, self.programs)
         automata: dict[int, Automaton] = {}
         children: dict[int, Child] = {}
+        refusals: list[TreeRefusal] = []
         for node in reversed(self.tree.nodes):
-            code = self.code(node, board, tuple(children[number] for number in node.children))
             try:
-                built = node_automaton(code)
-            except NodeTooLargeError:
-                raise TreeRefusal(node.origin, f"`{node.name}` has too many states") from None
+                built = self.built(node, board, tuple(children[number] for number in node.children))
+            except TreeRefusal as refusal:
+                refusals.append(refusal)
+                children[node.number] = Child(str(node.number), STATUSES, False, node.origin)
+                continue
             automata[node.number], children[node.number] = built.automaton, built.child
+        if refusals:
+            raise first_of(refusals)
         origin = self.tree.nodes[0].origin
         tick = ScxmlEvent(f"{TIMER_PREFIX}{self.tree.name}_tick", EventRole.TIMER_TICK)
         root = _root(self.tree, tick, children[self.tree.root].answers, origin, self.options.counts)
@@ -185,15 +187,20 @@ class _Builder:
 
     # ------------------------------------------------------------------- nodes
 
+    def built(self, node: ExecutedNode, board: Board, children: tuple[Child, ...]) -> NodeAutomaton:
+        code = self.code(node, board, children)
+        try:
+            return node_automaton(code)
+        except NodeTooLargeError:
+            raise TreeRefusal(node.origin, f"`{node.name}` has too many states") from None
+
     def code(self, node: ExecutedNode, board: Board, children: tuple[Child, ...]) -> NodeCode:
         program = self.programs[node.number]
         outputs: tuple[tuple[BoardEntry, tuple[Known, ...]], ...] = ()
+        values, scripts = values_and_scripts(node, program, board)
         if program is None:
-            values = PortValues()
             program = self.mock(node, values.known)
             outputs = tuple(self.outputs(node, board))
-        else:
-            values = port_values(node, program, board)
         if program.reads_world:
             values.known["event"] = self.event(node)
         return NodeCode(
@@ -203,7 +210,7 @@ class _Builder:
             children,
             values.known,
             values.bound,
-            compiled_scripts(node, board),
+            scripts,
             board.flag_of.get(node.number),
             outputs,
             values.elements,

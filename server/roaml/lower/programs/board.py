@@ -121,12 +121,16 @@ _PLAIN_ASSIGNMENTS = (":=", "=")
 
 
 def _facts(script: Script) -> _ScriptFacts:
+    typed = tuple(part for part in walk(script) if isinstance(part, (Assignment, Comparison)))
+    return _ScriptFacts(typed, tuple(dict.fromkeys(name.name for name in names_read(script))))
+
+
+def names_read(script: Script) -> tuple[Name, ...]:
+    """The names that a script reads, in the order of the text."""
     parts = list(walk(script))
-    typed = tuple(part for part in parts if isinstance(part, (Assignment, Comparison)))
-    plain = (part for part in typed if isinstance(part, Assignment) and part.operator in _PLAIN_ASSIGNMENTS)
-    targets = {id(part.target) for part in plain}
-    names = (part.name for part in parts if isinstance(part, Name) and id(part) not in targets)
-    return _ScriptFacts(typed, tuple(dict.fromkeys(names)))
+    assigned = (part for part in parts if isinstance(part, Assignment) and part.operator in _PLAIN_ASSIGNMENTS)
+    targets = {id(part.target) for part in assigned}
+    return tuple(part for part in parts if isinstance(part, Name) and id(part) not in targets)
 
 
 def _is_computed(assignment: Assignment) -> bool:

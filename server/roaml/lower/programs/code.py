@@ -10,7 +10,7 @@ from typing import TypeAlias
 from roaml.expr.tree import Expr
 from roaml.expr.types import BASE_TYPES, Type
 from roaml.libraries.programs.assembly import NodeProgram
-from roaml.libraries.programs.statuses import Known
+from roaml.libraries.programs.statuses import FAILURE, RUNNING, SUCCESS, Known
 from roaml.lower.programs.entries import BoardEntry, EntryKind
 from roaml.lower.programs.scripts import CompiledScript
 from roaml.record import Record
@@ -23,6 +23,10 @@ TYPES: Mapping[EntryKind, Type] = {
     EntryKind.REAL: BASE_TYPES["float64"],
     EntryKind.TEXT: BASE_TYPES["string"],
 }
+
+
+STATUSES = frozenset((SUCCESS, FAILURE, RUNNING))
+"""The statuses with which a machine answers a tick, as codes."""
 
 
 class Child(Record, frozen=True, eq=False):

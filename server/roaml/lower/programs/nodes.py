@@ -4,25 +4,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from roaml.forest.cpp_types import mismatch
 from roaml.forest.forest import CPP, port_type
+from roaml.forest.scripts import script_attributes
 from roaml.libraries import LIBRARIES, Port, library, node_in_libraries
 from roaml.libraries.node import EVENT_ATTRIBUTE
 from roaml.libraries.programs.assembly import NodeProgram, is_executable, programs
 from roaml.libraries.programs.statuses import RUNNING, STATUS_CODES, Known
 from roaml.libraries.scripts import script_ports
 from roaml.libraries.version import NEWEST_VERSION, Version
-from roaml.lower.programs.board import Board, node_scripts, set_entry
+from roaml.lower.programs.board import Board, names_read, node_scripts, set_entry
 from roaml.lower.programs.cases import case_value
 from roaml.lower.programs.entries import BoardEntry, EntryKind, kind_of_cpp, read_literal
 from roaml.lower.programs.executed import ExecutedNode
-from roaml.lower.programs.refusal import INVALID_SCRIPT, TreeRefusal
+from roaml.lower.programs.refusal import INVALID_SCRIPT, TreeRefusal, first_of
 from roaml.lower.programs.scripts import CompiledScript, ScriptRefusal, compiled
 from roaml.record import Record, field
 from roaml.roles import UNBOUNDED, NodeKind
-from roaml.text import Location
+from roaml.script.tree import Script
+from roaml.text import Location, Span
 
 EVENT_PROBABILITY = 0.1
 """The probability of an event of the world at a tick, unless the tree or a mock sets another one."""
@@ -95,6 +97,29 @@ def _range(least: int, most: int) -> str:
     return f"at least {least}" if most == UNBOUNDED else f"{least} to {most}"
 
 
+def values_and_scripts(
+    node: ExecutedNode, program: NodeProgram | None, board: Board
+) -> tuple[PortValues, dict[str, CompiledScript]]:
+    """The values of the ports of a node, none without a program; and its scripts, by their attributes or ports.
+
+    Raises:
+        TreeRefusal: a value or a script cannot be translated.
+    """
+    refusals: list[TreeRefusal] = []
+    values, scripts = PortValues(), dict[str, CompiledScript]()
+    try:
+        values = PortValues() if program is None else port_values(node, program, board)
+    except TreeRefusal as refusal:
+        refusals.append(refusal)
+    try:
+        scripts = compiled_scripts(node, board)
+    except TreeRefusal as refusal:
+        refusals.append(refusal)
+    if refusals:
+        raise first_of(refusals)
+    return values, scripts
+
+
 def compiled_scripts(node: ExecutedNode, board: Board) -> dict[str, CompiledScript]:
     """Attribute or port of a node -> its script.
 
@@ -102,6 +127,8 @@ def compiled_scripts(node: ExecutedNode, board: Board) -> dict[str, CompiledScri
         TreeRefusal: a script cannot be translated.
     """
     result = {}
+    unset: list[TreeRefusal] = []
+    places = {attribute.name: attribute.value_span for attribute in script_attributes(node.node)}
     for attribute, script, is_condition in node_scripts(node, board.version):
         try:
             result[attribute] = compiled(
@@ -111,14 +138,30 @@ def compiled_scripts(node: ExecutedNode, board: Board) -> dict[str, CompiledScri
                 is_condition=is_condition,
             )
         except ScriptRefusal as refusal:
+            if refusal.unset:
+                unset += _unset_names(node, script, places[attribute], board)
+                continue
             at = Location(node.origin.path, refusal.span)
             is_reported = refusal.reason == INVALID_SCRIPT
-            raise TreeRefusal(at, refusal.reason, is_reported=is_reported, unset=refusal.unset) from None
+            place = places[attribute]
+            raise TreeRefusal(at, refusal.reason, is_reported=is_reported, script=place) from None
+    if unset:
+        raise first_of(unset)
     if node.type in programs():
         for port in script_ports().get(node.type, ()):
             if port not in result:
                 raise _missing(node, port)
     return result
+
+
+def _unset_names(node: ExecutedNode, script: Script, place: Span, board: Board) -> Iterator[TreeRefusal]:
+    """A refusal for each name that a script reads and nothing sets, at its first place."""
+    named: set[str] = set()
+    for name in names_read(script):
+        if name.name not in named and node.frame.entry(name.name) not in board.entries:
+            named.add(name.name)
+            at = Location(node.origin.path, name.span)
+            yield TreeRefusal(at, board.unset(name.name), unset=name.name, script=place)
 
 
 def _missing(node: ExecutedNode, port: str) -> TreeRefusal:
@@ -207,6 +250,7 @@ class _Reader(Record, eq=False):
             return
         given = {port: (entry, text, span) for port, entry, text, span in node.ports()}
         declared = _declared_ports(node)
+        unset: list[TreeRefusal] = []
         kinds = {entry.kind for entry in self.switch_entries(program, given, board)}
         for port in declared:
             if port.name in ("if", "code", "entry", "queue", "value" if program.name.startswith("Loop") else ""):
@@ -222,9 +266,9 @@ class _Reader(Record, eq=False):
                 elif port.name in program.needed_ports:
                     # In systems, the rule blackboard-never-written reports it.
                     is_reported = board.in_system and not any(entry in library(name).entries for name in LIBRARIES)
-                    unset = "" if board.in_system else entry
+                    name = "" if board.in_system else entry
                     at = Location(node.origin.path, span)
-                    raise TreeRefusal(at, board.unset(entry), is_reported=is_reported, unset=unset)
+                    unset.append(TreeRefusal(at, board.unset(entry), is_reported=is_reported, unset=name))
                 continue
             if text is None:
                 continue
@@ -234,6 +278,8 @@ class _Reader(Record, eq=False):
             else:
                 known[port.name] = _literal(port.name, type_, text, Location(node.origin.path, span))
                 self.check_divisor(node, port.name, known[port.name], Location(node.origin.path, span))
+        if unset:
+            raise first_of(unset)
         needed: Sequence[str] = program.needed_ports
         if program.name.startswith("Switch"):
             needed = ("variable", *(f"case_{number}" for number in range(1, len(node.children))))

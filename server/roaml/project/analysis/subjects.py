@@ -520,8 +520,13 @@ class _Reader:
         BehaviorTree.CPP executes it. Reasons that other rules report are left out."""
         tree = self.rooms.linking.library_tree(self.system_path) if self.system_path else None
         refusals = () if tree is None else tree.refusals
-        own = (refusal for refusal in refusals if refusal.origin.path == self.path and not refusal.is_reported)
-        return tuple(UntranslatablePart(refusal.origin.span, refusal.reason, refusal.unset) for refusal in own)
+        own = [refusal for refusal in refusals if refusal.origin.path == self.path and not refusal.is_reported]
+        if not own:
+            return ()
+        from roaml.lower.programs.refusal import place_in  # noqa: PLC0415 - most trees can be translated
+
+        text = self.source.text
+        return tuple(UntranslatablePart(place_in(text, refusal), refusal.reason, refusal.unset) for refusal in own)
 
     def _tree_outlines(self) -> tuple[TreeFileOutline, ...]:
         """The outlines of the tree files with which this file is checked: those of its system; without a system, those
