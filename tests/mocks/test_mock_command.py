@@ -135,6 +135,32 @@ def test_all_missing_entries_are_named_at_once(tmp_path: Path, capsys: pytest.Ca
         assert lines[int(line) - 1][int(column) - 1 :].lstrip("{").startswith(name)
 
 
+def test_a_missing_entry_of_a_subtree_has_the_name_that_the_option_needs(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "tree.xml"
+    path.write_text(
+        """<root BTCPP_format="4" main_tree_to_execute="Main">
+  <BehaviorTree ID="Main">
+    <Sequence>
+      <Drive _skipIf="speed == 3 || mode == 'off'" _failureIf="level &gt; 2"/>
+      <Switch2 variable="{kind}" case_1="a" case_2="b"><Drive/><Drive/><Drive/></Switch2>
+      <SubTree ID="Dock"/>
+      <SubTree ID="Dock" tries="1"/>
+    </Sequence>
+  </BehaviorTree>
+  <BehaviorTree ID="Dock"><Drive _skipIf="tries == 3"/></BehaviorTree>
+</root>""",
+        encoding="utf-8",
+    )
+    command = ["verify", str(path), "--mock", "*: 1"]
+    assert run(command) == 1
+    error = capsys.readouterr().err
+    values = {"speed": "1", "mode": "on", "level": "0", "kind": "a", "Dock__tries": "1"}
+    assert sorted(re.findall(r"with `--entry (\w+)=VALUE`", error)) == sorted(values)
+    assert run([*command, *(part for name, value in values.items() for part in ("--entry", f"{name}={value}"))]) == 0
+
+
 @pytest.mark.parametrize(
     ("content", "reason"),
     [

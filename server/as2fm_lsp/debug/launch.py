@@ -34,6 +34,7 @@ from roaml.scxml.names import SUCCEEDS
 from roaml.simulation import RunError, SavedSession
 from roaml.smc.fault import FaultError
 from roaml.smc.record import TraceVerdict
+from roaml.suggest import listing
 from roaml.text import SourceFile
 from roaml.verification.target import VerificationTarget
 
@@ -169,7 +170,10 @@ def load(launch: Launch, log: Log, watch: Watch) -> Debugger:
     try:
         return start(_sources(launch, log), launch.start, log, watch)
     except api.ModelError as error:
-        hint = ", with `entries` in the launch configuration" if any(error.unset[:1]) else ""
+        hint, others = "", [name for name in error.unset[1:] if name]
+        if any(error.unset[:1]):
+            also = f"; nothing sets {listing(others)} either" if others else ""
+            hint = f", with `entries` in the launch configuration{also}"
         raise RequestError(f"{_first(error.result.diagnostics, error.result.source)}{hint}") from None
     except api.JaniError as error:
         source = error.source

@@ -158,10 +158,12 @@ def _unset_names(node: ExecutedNode, script: Script, place: Span, board: Board) 
     """A refusal for each name that a script reads and nothing sets, at its first place."""
     named: set[str] = set()
     for name in names_read(script):
-        if name.name not in named and node.frame.entry(name.name) not in board.entries:
+        entry = node.frame.entry(name.name)
+        if name.name not in named and entry not in board.entries:
             named.add(name.name)
             at = Location(node.origin.path, name.span)
-            yield TreeRefusal(at, board.unset(name.name), unset=name.name, script=place)
+            shown = name.name if board.in_system else entry  # without a system, an option names the entry
+            yield TreeRefusal(at, board.unset(shown), unset=shown, script=place)
 
 
 def _missing(node: ExecutedNode, port: str) -> TreeRefusal:
