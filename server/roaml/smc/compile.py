@@ -553,8 +553,13 @@ class Compilation:
                 if isinstance(meaning, Storage) and meaning.watch >= 0:
                     readers.setdefault((meaning.watch, number), {}).setdefault(location, []).append(group)
         watch_start, watch_instance, watch_table = [0], list[int](), list[int]()
-        watched_start, watched_group = [0], list[int]()
-        watched_index = list[int]()
+        watched_start, watched_group, watched_index = array("i", [0]), list[int](), array("i")
+
+        def skip(count: int) -> None:
+            """Add locations whose guards do not read the variable. A node with many children has thousands of them."""
+            watched_index.extend(array("i", [-1]) * count)
+            watched_start.extend(array("i", [len(watched_group)]) * count)
+
         by_variable: dict[int, list[int]] = {}
         for variable, number in sorted(readers):
             by_variable.setdefault(variable, []).append(number)
@@ -562,13 +567,16 @@ class Compilation:
             for number in by_variable.get(variable, ()):
                 watch_instance.append(number)
                 watch_table.append(len(watched_start) - 1)
-                places = readers[variable, number]
-                first = self.network.first_location[number]
-                for location in range(first, first + len(self.network.location_of[number])):
-                    index, groups = self._add_index(places.get(location, []), indexes)
+                next_location = self.network.first_location[number]
+                end = next_location + len(self.network.location_of[number])
+                for location, groups in sorted(readers[variable, number].items()):
+                    skip(location - next_location)
+                    index, others = self._add_index(groups, indexes)
                     watched_index.append(index)
-                    watched_group += groups
+                    watched_group += others
                     watched_start.append(len(watched_group))
+                    next_location = location + 1
+                skip(end - next_location)
             watch_start.append(len(watch_instance))
         tables = watch_start, watch_instance, watch_table, watched_start, watched_group, watched_index
         return tuple(map(_ints, tables))  # type: ignore[return-value]

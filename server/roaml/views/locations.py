@@ -7,7 +7,6 @@ A translation adds locations between two states, in which an automaton executes 
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 
 from roaml.jani.model import Automaton, Edge
@@ -44,8 +43,13 @@ def _is_state(location: str, edges: Sequence[Edge]) -> bool:
     actions = [edge.action or "" for edge in edges]
     if any(is_blackboard_answer(received_by(edge.action or "")) and _leaves(edge) for edge in edges):
         return False
-    own = re.compile(re.escape(location) + r"-[0-9]+")
-    return all(action == CLOCK_ACTION or received_by(action) or own.fullmatch(action) for action in actions)
+    return all(action == CLOCK_ACTION or received_by(action) or _is_eventless(location, action) for action in actions)
+
+
+def _is_eventless(location: str, action: str) -> bool:
+    """Whether an action is that of an eventless transition of a location: its name and a number."""
+    number = action.removeprefix(f"{location}-")
+    return number != action and number.isascii() and number.isdigit()
 
 
 def _leaves(edge: Edge) -> bool:
