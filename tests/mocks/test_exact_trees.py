@@ -135,6 +135,16 @@ def test_a_tree_that_does_not_end(tmp_path: Path) -> None:
     assert outcome.unfinished.value == pytest.approx(0.9**5, abs=1e-12)
 
 
+def test_a_trace_that_has_not_ended_in_time_has_not_failed(tmp_path: Path) -> None:
+    """Only traces that are cut off widen the intervals, because the tree might have ended later."""
+    model = loaded(tree(tmp_path, "<Repeat num_cycles='-1'><Drive/></Repeat>"), "Drive: 1 in 1 s", max_time=20)
+    outcome = measure(model.mocked, model.target, Options(max_traces=50))
+    assert outcome.unfinished.value == 1
+    assert outcome.failure.bounds.upper == outcome.success.bounds.upper < 0.1
+    cut = measure(model.mocked, model.target, Options(max_traces=50, max_steps=10))
+    assert cut.failure.bounds.upper == cut.success.bounds.upper == 1
+
+
 def test_an_exception_of_the_library(tmp_path: Path) -> None:
     """The condition of an `IfThenElse` is skipped."""
     condition = '<AlwaysSuccess _skipIf="n == 1"/>'

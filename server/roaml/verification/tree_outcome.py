@@ -194,11 +194,12 @@ class _Measuring:
         scores: list[list[float]] = []
         means = [Mean() for _ in counters]
         shortest: tuple[int, int] | None = None
-        stuck = 0
+        stuck = cut = 0
         for trace in range(traces):
-            answer, steps, is_stuck = self.trace(trace)
+            answer, steps, is_stuck, is_cut = self.trace(trace)
             answers.append(answer)
             stuck += is_stuck
+            cut += is_cut
             if answer == SUCCESS:
                 times.append(float(self.integer(self.ticks) * self.mocked.options.tick_time))
             elif shortest is None or steps < shortest[1]:
@@ -210,14 +211,14 @@ class _Measuring:
         time = Mean()
         for seconds in times:
             time = time.add(seconds)
-        undecided = traces - successes - failures
+        unfinished = traces - successes - failures - stuck
         counted = ((node, counter, mean) for (node, counter, _), mean in zip(counters, means, strict=True))
         return TreeOutcome(
             traces=traces,
             confidence=self.options.confidence,
-            success=self.share(successes, traces, undecided),
-            failure=self.share(failures, traces, undecided),
-            unfinished=self.share(undecided - stuck, traces),
+            success=self.share(successes, traces, cut),
+            failure=self.share(failures, traces, cut),
+            unfinished=self.share(unfinished, traces),
             exceptions=self.share(stuck, traces),
             rare=min(successes, traces - successes),
             time=self.mean(time) if times else None,
@@ -227,9 +228,9 @@ class _Measuring:
             shortest=None if shortest is None else shortest[0],
         )
 
-    def trace(self, number: int) -> tuple[int, int, bool]:
-        """The result of a trace: the status that the tree returned last (0 if it has not ended), the number
-        of steps, and whether a node has got stuck."""
+    def trace(self, number: int) -> tuple[int, int, bool, bool]:
+        """The result of a trace: the status that the tree returned last (0 if it has not ended), the number of steps,
+        whether a node has got stuck, and whether the trace was cut off, so that the tree might still have ended."""
         verdict = self.kernel.begin(self.options.seed, number, 0)
         if verdict == UNKNOWN:
             verdict = self.kernel.advance(self.options.max_steps)
@@ -240,7 +241,7 @@ class _Measuring:
             verdict == FALSE
             and self.clock_time() < self.mocked.options.max_time / 1e9 - 2 * self.mocked.options.tick_time
         )
-        return answer, self.kernel.outcome()[0], is_stuck
+        return answer, self.kernel.outcome()[0], is_stuck, verdict == UNKNOWN
 
     def integer(self, storage: Storage) -> int:
         return self.kernel.integer(storage.base)
