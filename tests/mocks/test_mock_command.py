@@ -119,6 +119,14 @@ def test_mocks_that_are_not_valid(mock: str, reason: str, tmp_path: Path, capsys
     assert reason in refused(capsys, tree(tmp_path, "<Drive/>"), "--mock", mock)
 
 
+def test_a_node_with_too_many_children_is_refused_with_its_limit(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    reason = "`ReactiveSequence` with 60 children has more than 20,000 states, the maximum of one node; divide its"
+    path = tree(tmp_path, f"<ReactiveSequence>{'<Drive/>' * 60}</ReactiveSequence>")
+    assert reason in refused(capsys, path, "--mock", "*: 1 in 1 s")
+
+
 def test_all_missing_entries_are_named_at_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Those of ports and scripts, of one node and of several, at their places behind escapes."""
     path = tree(

@@ -17,7 +17,14 @@ from roaml.forest.forest import node_of_machine
 from roaml.forest.scripts import script_attributes
 from roaml.libraries import Node, library_node, node_in_libraries
 from roaml.libraries.programs.assembly import NodeProgram, programs
-from roaml.lower.programs.automaton import CONDITION_MACHINE, MACHINE, MACHINES, NodeTooLargeError, node_automaton
+from roaml.lower.programs.automaton import (
+    CONDITION_MACHINE,
+    MACHINE,
+    MACHINES,
+    NodeTooLargeError,
+    node_automaton,
+    too_large,
+)
 from roaml.lower.programs.board import Board, build_board, set_entry
 from roaml.lower.programs.code import STATUSES, Child, NodeCode
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree, FrameNames, TreeLinks
@@ -205,9 +212,7 @@ class LibraryTreeBuilder:
                     child = self.child(code)
                     translated.append(code)
                 except NodeTooLargeError:
-                    refusals.append(
-                        TreeRefusal(part.node.origin, f"`{part.node.name}` has too many states to be translated")
-                    )
+                    refusals.append(TreeRefusal(part.node.origin, too_large(part.node.name, len(instance.children))))
                 except TreeRefusal as refusal:
                     refusals += refusal.all
             children[instance.number] = child

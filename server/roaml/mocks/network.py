@@ -15,7 +15,7 @@ from roaml.libraries.programs.assembly import NodeProgram, programs
 from roaml.libraries.programs.statuses import RUNNING, Known
 from roaml.lower.build import binary, event_data, integer, name
 from roaml.lower.interfaces import tree_event
-from roaml.lower.programs.automaton import NodeAutomaton, NodeTooLargeError, node_automaton
+from roaml.lower.programs.automaton import NodeAutomaton, NodeTooLargeError, node_automaton, too_large
 from roaml.lower.programs.blackboard import board_automaton
 from roaml.lower.programs.board import Board, build_board
 from roaml.lower.programs.code import STATUSES, Child, NodeCode
@@ -192,7 +192,7 @@ class _Builder:
         try:
             return node_automaton(code)
         except NodeTooLargeError:
-            raise TreeRefusal(node.origin, f"`{node.name}` has too many states") from None
+            raise TreeRefusal(node.origin, too_large(node.name, len(node.children))) from None
 
     def code(self, node: ExecutedNode, board: Board, children: tuple[Child, ...]) -> NodeCode:
         program = self.programs[node.number]

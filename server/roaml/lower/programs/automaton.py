@@ -57,6 +57,17 @@ class NodeTooLargeError(Exception):
     """Raised if the automaton of a node has more states than `MAX_STATES`."""
 
 
+def too_large(node: str, children: int) -> str:
+    """Why a node cannot be translated, and what to do.
+
+    Args:
+        node: the name of the node.
+        children: the number of its children.
+    """
+    has = f"`{node}` with {children:,} {'child' if children == 1 else 'children'} has"
+    return f"{has} more than {MAX_STATES:,} states, the maximum of one node; divide its children among nested nodes"
+
+
 class NodeAutomaton(Record, frozen=True, eq=False):
     """The automaton of a node, and the properties of the node on which its parent depends."""
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import removal
@@ -13,14 +13,17 @@ from roaml.model.gaps import GapAct
 from roaml.model.outline import MachineOutline
 from roaml.model.tree import TreeNode, nodes
 from roaml.roles import UNBOUNDED, NodeKind
+from roaml.rules.parser_rules import NESTING_TOO_DEEP
 from roaml.rules.rule import Rule, TreeContext
+from roaml.text import Span
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
+    omitted = [f.span for f in context.document.findings if f.code == NESTING_TOO_DEEP.code]
     for tree in context.file.trees:
         for node in nodes(tree):
-            if not node.element.complete:
-                continue  # its end is not known
+            if not node.element.complete or _lacks_content(node, omitted):
+                continue  # its end or its content is not known
             if node.is_subtree:
                 yield from _subtree(context, node)
             elif node.plugin is None:
@@ -33,6 +36,12 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 _, plugin = context.system.plugin(node.plugin.value)
                 if plugin is not None:
                     yield from _own(context, node, plugin)
+
+
+def _lacks_content(node: TreeNode, omitted: Sequence[Span]) -> bool:
+    """Whether a node without children contains elements that are nested too deeply to be analysed."""
+    whole = node.element.span
+    return not node.children and any(whole.start <= span.start < whole.end for span in omitted)
 
 
 def _subtree(context: TreeContext, node: TreeNode) -> Iterator[Finding]:
