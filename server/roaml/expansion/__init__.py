@@ -7,7 +7,9 @@
 - A system that uses none of these is not expanded.
 """
 
-from roaml.expansion.expand import SystemExpansion, expand, expand_file, has_channels, needs_expansion
+from roaml.expansion.declarations import has_channels
+from roaml.expansion.expand import expand, expand_file, needs_expansion
+from roaml.expansion.result import SystemExpansion
 from roaml.expansion.text import ExpandedText
 
 __all__ = ["ExpandedText", "SystemExpansion", "expand", "expand_file", "has_channels", "needs_expansion"]

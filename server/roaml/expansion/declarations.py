@@ -31,6 +31,8 @@ SETTING = "`--set` or a setting"
 SECTIONS = ("parameter_declarations", "parameters", "mc_parameters")
 """The sections of a system file that can contain declarations. AS2FM ignores the first, and rejects the elements in the
 others."""
+CHANNELS = "channels"
+"""The name of the section of a system file that declares channels."""
 
 
 class Declared(Record, frozen=True, eq=False):
@@ -61,6 +63,15 @@ def bounds_of(parameter: Declared) -> tuple[Fraction | None, Fraction | None]:
         Fraction(low) if parameter.least is None and low is not None else least,
         Fraction(high) if parameter.most is None and high is not None else most,
     )
+
+
+def has_channels(system: Document) -> bool:
+    """Whether a system file declares channels."""
+    return next(channel_sections(system), None) is not None
+
+
+def channel_sections(system: Document) -> Iterator[Element]:
+    return (child for child in (system.root.elements if system.root else ()) if child.name == CHANNELS)
 
 
 def declaration_elements(document: Document) -> Iterator[Element]:
