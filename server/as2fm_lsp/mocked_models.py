@@ -146,12 +146,7 @@ def load_mocked_tree(
         PathError, ModelError: as `load_tree`.
     """
     from roaml.api.trees import load_tree  # noqa: PLC0415 - systems start faster without these
-    from roaml.mocks.network import (  # noqa: PLC0415
-        DEFAULT_MAX_TIME,
-        DEFAULT_RATE,
-        MissingMocksError,
-        MockOptions,
-    )
+    from roaml.mocks.network import DEFAULT_MAX_TIME, DEFAULT_RATE, MissingMocksError, MockOptions  # noqa: PLC0415
     from roaml.mocks.unfolding import mockable_words  # noqa: PLC0415
     from roaml.model.kinds import mocks_path  # noqa: PLC0415
 
@@ -166,14 +161,7 @@ def load_mocked_tree(
         tree = load_tree(path, run, settings, texts)
     except MissingMocksError as missing:
         if texts or (declared.has_mocks and declared.file != beside):  # nothing is written beside standard input
-            parents = list(dict.fromkeys(leaf.type for leaf in missing.leaves if leaf.children))
-            if parents:
-                raise MockError(
-                    f"{messages.shown(path)}: no library describes these nodes with children: {', '.join(parents)}; "
-                    "declare in mocks which nodes of a library they behave like, for example "
-                    f"`{parents[0]}: as Sequence`"
-                ) from None
-            raise _missing_mocks(path, [leaf.type for leaf in missing.leaves], messages) from None
+            raise _without_proposal(path, missing.leaves, messages) from None
         leaves = missing.mockable
         if not uses_proposal:
             raise _review(path, beside, leaves, messages, is_new=declared.file is None) from None
@@ -185,6 +173,17 @@ def load_mocked_tree(
     if declared.file is None:
         return tree
     return replace(tree, target=replace(tree.target, files=(*tree.target.files, os.path.abspath(declared.file))))
+
+
+def _without_proposal(path: str, nodes: Sequence[ExecutedNode], messages: MockMessages) -> MockError:
+    """The error about nodes without a mock for which nothing can be proposed."""
+    parents = list(dict.fromkeys(node.type for node in nodes if node.children))
+    if not parents:
+        return _missing_mocks(path, [node.type for node in nodes], messages)
+    return MockError(
+        f"{messages.shown(path)}: no library describes these nodes with children: {', '.join(parents)}; "
+        f"declare in mocks which nodes of a library they behave like, for example `{parents[0]}: as Sequence`"
+    )
 
 
 def keep_proposal(path: str, leaves: Sequence[MockableLeaf]) -> str:

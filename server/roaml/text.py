@@ -35,6 +35,10 @@ class Span(NamedTuple):
         """Whether a caret at `offset` touches the span; both ends are included."""
         return self.start <= offset <= self.end
 
+    def encloses(self, other: Span) -> bool:
+        """Whether `other` is inside the span."""
+        return self.start <= other.start and other.end <= self.end
+
     def cover(self, other: Span) -> Span:
         """The smallest span that contains both spans."""
         return Span(min(self.start, other.start), max(self.end, other.end))

@@ -113,6 +113,13 @@ def parser() -> ArgumentParser:
         "Python package distributed)")  # fmt: skip
     add("--resume", type=InputPath, metavar="FILE", help="save the points in FILE, and do not compute those that are "
         "already there")  # fmt: skip
+    _add_outputs(result)
+    return result
+
+
+def _add_outputs(parser: ArgumentParser) -> None:
+    """The arguments about what is written."""
+    add = parser.add_argument
     add("--format", action=WordAction, words=TableFormat, default=TableFormat.TEXT, help="format of the table")
     add("-o", "--output", type=OutputPath, metavar="FILE", help="write the table into a file")
     add("--plot", type=plot_file, action="append", default=[], metavar="FILE", help="draw the points, as .svg, .html "
@@ -126,7 +133,6 @@ def parser() -> ArgumentParser:
         "the experiment runs, for editors")  # fmt: skip
     add("--unit", action="append", default=[], metavar="NAME=UNIT", help="the unit of a parameter, for plots; may be "
         "repeated")  # fmt: skip
-    return result
 
 
 def parsed(arguments: Sequence[str]) -> argparse.Namespace:

@@ -65,15 +65,8 @@ def register(context: Context) -> None:
         """The systems that have properties, and the trees without a system that have mocks or are open, with the
         properties and their known results, in the order of their paths."""
         moment = session.moment()
-        systems = []
-        for path in sorted(moment.files()):
-            snapshot = moment.snapshot(path)
-            analysis = snapshot.analysis
-            if analysis.kind(path) is FileKind.SYSTEM or _is_tree_to_verify(context, analysis, path):
-                current = CurrentResults(context, snapshot, path)
-                rows = [_property(current, property_) for property_ in verifiable(analysis, path)]
-                systems.append({"uri": session.convert.uri(path), "properties": rows})
-        return [system for system in systems if system["properties"]]
+        rows = ((path, _properties(context, moment.snapshot(path), path)) for path in sorted(moment.files()))
+        return [{"uri": session.convert.uri(path), "properties": of_file} for path, of_file in rows if of_file]
 
     @context.feature(COUNTEREXAMPLE)
     async def explain(params: Any) -> Json | None:
@@ -120,6 +113,15 @@ def register(context: Context) -> None:
             await background.in_thread(lambda _: run.jump(max(step, earlier)), context.requests.checkpoint)
         last = len(run.steps)
         return [_state_row(row) for row in overview(run, sources, min(step, last), min(earlier, last))]
+
+
+def _properties(context: Context, snapshot: Snapshot, path: str) -> list[Json]:
+    """The properties of a system, or of a tree to verify, with their known results; none for other files."""
+    analysis = snapshot.analysis
+    if analysis.kind(path) is not FileKind.SYSTEM and not _is_tree_to_verify(context, analysis, path):
+        return []
+    current = CurrentResults(context, snapshot, path)
+    return [_property(current, property_) for property_ in verifiable(analysis, path)]
 
 
 def _heading(sentence: str, summary: str) -> str:

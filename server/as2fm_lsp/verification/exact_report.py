@@ -9,7 +9,7 @@ from typing import Any
 from roaml.smc.goal import InitialFold, Question
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.statistics import Bounds
-from roaml.verification.number_text import exact_number
+from roaml.verification.number_text import exact_number, json_number
 from roaml.verification.results import EXACT_WIDTH, Computed, Exact, Proof, are_apart
 
 EXACT = "exact"
@@ -136,11 +136,11 @@ def _is_enclosed(exact: Exact) -> bool:
 def row(exact: Exact) -> dict[str, Any]:
     """The result as a value for JSON."""
     return {
-        "least": _finite(exact.least),
-        "greatest": _finite(exact.greatest),
-        "uniform": _finite(exact.average),
+        "least": json_number(exact.least),
+        "greatest": json_number(exact.greatest),
+        "uniform": json_number(exact.average),
         "bounds": {
-            name: None if bounds is None else [_finite(bounds.lower), _finite(bounds.upper)]
+            name: None if bounds is None else [json_number(bounds.lower), json_number(bounds.upper)]
             for name, bounds in (("least", exact.minimum), ("greatest", exact.maximum), ("uniform", exact.uniform))
         },
         "precise": exact.is_precise,
@@ -173,9 +173,9 @@ def estimate_row(computed: Computed) -> dict[str, Any]:
     """The members for JSON that replace the estimate of the traces (`ESTIMATE`)."""
     bounds, value = computed.asked_value()
     return {
-        "expected_value" if computed.question.is_reward else "probability": _finite(value),
-        "lower": _finite(bounds.lower),
-        "upper": _finite(bounds.upper),
+        "expected_value" if computed.question.is_reward else "probability": json_number(value),
+        "lower": json_number(bounds.lower),
+        "upper": json_number(bounds.upper),
         "complete": True,
         "interval": EXACT,
         "confidence": 1,
@@ -209,9 +209,3 @@ def _number(bounds: Bounds, digits: int = _DIGITS) -> str:
     if bounds.upper - bounds.lower > EXACT_WIDTH * max(1.0, abs(bounds.lower)):
         return f"[{bounds.lower:.7g}, {'∞' if math.isinf(bounds.upper) else f'{bounds.upper:.7g}'}]"
     return exact_number(bounds.lower, bounds.upper, digits)
-
-
-def _finite(value: float) -> float | str | None:
-    if math.isnan(value):
-        return None
-    return value if math.isfinite(value) else "infinity" if value > 0 else "-infinity"

@@ -19,7 +19,7 @@ from roaml.smc.lss import Side
 from roaml.smc.run import Answer, ratio_of
 from roaml.verification.expectations import NO_EXPECTATION
 from roaml.verification.headline import NO_TRACES, estimate_text, headline
-from roaml.verification.number_text import number
+from roaml.verification.number_text import json_number, number
 from roaml.verification.refusal import Refusal
 from roaml.verification.results import (
     Computed,
@@ -425,9 +425,9 @@ def row(result: Result) -> dict[str, Any]:
         values["quantiles"] = [
             {
                 "share": quantile.share,
-                "value": _finite(quantile.value),
-                "low": _finite(quantile.low),
-                "high": _finite(quantile.high),
+                "value": json_number(quantile.value),
+                "low": json_number(quantile.low),
+                "high": json_number(quantile.high),
                 "traces": quantile.traces,
             }
             for quantile in result.quantiles
@@ -501,9 +501,9 @@ def warning(result: Result) -> str:
 def _answer(answer: Answer) -> dict[str, Any]:
     tally, (lower, upper) = answer.tally, answer.bounds
     return {
-        "expected_value" if answer.question.is_reward else "probability": _finite(answer.value),
-        "lower": _finite(lower),
-        "upper": _finite(upper),
+        "expected_value" if answer.question.is_reward else "probability": json_number(answer.value),
+        "lower": json_number(lower),
+        "upper": json_number(upper),
         "traces": tally.traces,
         "passed": tally.successes,
         "failed": answer.failures,
@@ -519,11 +519,3 @@ def _answer(answer: Answer) -> dict[str, Any]:
         "seed": answer.options.seed,
         "max_steps": answer.options.max_steps,
     }
-
-
-def _finite(value: float) -> float | str | None:
-    """The number as a value for JSON, which has only finite numbers: `infinity` or `-infinity` as text, `None` for
-    NaN."""
-    if math.isnan(value):
-        return None
-    return value if math.isfinite(value) else "infinity" if value > 0 else "-infinity"

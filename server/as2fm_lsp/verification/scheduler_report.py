@@ -3,14 +3,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
 from roaml.smc.choices import Choices, Extreme, ExtremeMethod
 from roaml.smc.goal import InitialFold, Question
 from roaml.verification.headline import bound_text
-from roaml.verification.number_text import number
+from roaml.verification.number_text import json_number, number
 from roaml.verification.schedulers import extreme_of, is_minimised
 
 UNIFORM_CHOICES = "uniform choices: each step that is possible is equally probable"
@@ -166,9 +165,9 @@ def rows(choices: Choices | None) -> dict[str, Any]:
 
 def _row(extreme: Extreme) -> dict[str, Any]:
     row: dict[str, Any] = {
-        "value": _finite(extreme.value),
-        "lower": _finite(extreme.bounds.lower),
-        "upper": _finite(extreme.bounds.upper),
+        "value": json_number(extreme.value),
+        "lower": json_number(extreme.bounds.lower),
+        "upper": json_number(extreme.bounds.upper),
         "found": extreme.method.value,
     }
     if extreme.scheduler:
@@ -176,9 +175,3 @@ def _row(extreme: Extreme) -> dict[str, Any]:
     if extreme.traces:
         row["traces"] = extreme.traces
     return row
-
-
-def _finite(value: float) -> float | str | None:
-    if math.isnan(value):
-        return None
-    return value if math.isfinite(value) else "infinity" if value > 0 else "-infinity"

@@ -106,21 +106,11 @@ def draw(
     result = check([path], ros_paths, settings, texts)
     analysis, drawn = result.snapshot.analysis, os.path.abspath(path)
     if machine is not None:
-        machines = _machines(analysis, drawn)
-        if machine not in machines:
-            raise DrawingError(_unknown_machine(machine, machines, path))
-        kind, drawn = DiagramKind.MACHINE, machines[machine]
+        kind, drawn = DiagramKind.MACHINE, _file_of(analysis, machine, path)
     kind = _fitting(analysis, drawn) if kind is None else DiagramKind(kind)
-    if mocks and kind is not DiagramKind.TREE:
-        raise DrawingError("mocks are for the leaves of behavior trees; draw the tree of the system")
-    declared = named_mocks(mocks) if isinstance(mocks, Mapping) else mocks
-    picture = tree_picture(analysis, drawn, declared) if declared else picture_of(kind, analysis, drawn)
-    if picture is None or not picture.nodes:
-        raise DrawingError(f"{path}: {_NOTHING[kind]}")
+    picture = _picture(analysis, kind, drawn, mocks, path)
     if around is not None or matching is not None:
-        if kind is not DiagramKind.ROS:
-            raise DrawingError("only a part of a ROS graph can be drawn; draw the ROS graph of the system")
-        picture = _part(picture, around, matching, path)
+        picture = _part(kind, picture, around, matching, path)
     elif kind is DiagramKind.ROS and not interfaces:
         picture = with_provided_interfaces(picture)
     if outline:
@@ -133,7 +123,22 @@ def draw(
     return DrawnPicture(svg, picture.title, kind, size.width, size.height, result.files)
 
 
-def _part(picture: Picture, around: str | None, matching: str | None, path: str) -> Picture:
+def _picture(
+    analysis: Analysis, kind: DiagramKind, drawn: str, mocks: Mapping[str, str] | Sequence[Mock], path: str
+) -> Picture:
+    """The picture of the file `drawn`. `path` is the file that the user names."""
+    if mocks and kind is not DiagramKind.TREE:
+        raise DrawingError("mocks are for the leaves of behavior trees; draw the tree of the system")
+    declared = named_mocks(mocks) if isinstance(mocks, Mapping) else mocks
+    picture = tree_picture(analysis, drawn, declared) if declared else picture_of(kind, analysis, drawn)
+    if picture is None or not picture.nodes:
+        raise DrawingError(f"{path}: {_NOTHING[kind]}")
+    return picture
+
+
+def _part(kind: DiagramKind, picture: Picture, around: str | None, matching: str | None, path: str) -> Picture:
+    if kind is not DiagramKind.ROS:
+        raise DrawingError("only a part of a ROS graph can be drawn; draw the ROS graph of the system")
     if matching is not None:
         picture = _matching(picture, matching)
         if not picture.nodes:
@@ -175,10 +180,13 @@ def _machines(analysis: Analysis, path: str) -> dict[str, str]:
     return named | {a.name: a.path for a in (system.automata if system else ()) if a.path and a.instance is None}
 
 
-def _unknown_machine(name: str, machines: Mapping[str, str], path: str) -> str:
+def _file_of(analysis: Analysis, name: str, path: str) -> str:
+    """The file of a machine of the system or machine file `path`."""
+    machines = _machines(analysis, os.path.abspath(path))
     if not machines:
-        return f"{path}: there are no state machines"
-    meant = close_names(name, machines, 1)
-    return f"{path}: there is no state machine `{name}`" + (
-        did_you_mean(meant) if meant else f"; the machines are {listing(tuple(machines))}"
-    )
+        raise DrawingError(f"{path}: there are no state machines")
+    if name not in machines:
+        meant = close_names(name, machines, 1)
+        hint = did_you_mean(meant) if meant else f"; the machines are {listing(tuple(machines))}"
+        raise DrawingError(f"{path}: there is no state machine `{name}`{hint}")
+    return machines[name]

@@ -152,7 +152,7 @@ def removals(document: Document, elements: Iterable[Element]) -> Iterator[Edit]:
         if not children:
             continue
         if parent.complete and all(
-            _is_blank(node) or any(_contains(s, node.span) for s in spans) for node in parent.nodes
+            _is_blank(node) or any(s.encloses(node.span) for s in spans) for node in parent.nodes
         ):
             end_of_tag = parent.open_span.end - 1
             yield TextEdit(Span(end_of_tag, parent.span.end), " />")
@@ -178,10 +178,6 @@ def with_comments(parent: Element, child: Element) -> Span:
 
 def _is_blank(node: Node) -> bool:
     return isinstance(node, Text) and not node.value.strip()
-
-
-def _contains(span: Span, other: Span) -> bool:
-    return span.start <= other.start and other.end <= span.end
 
 
 def set_attribute(element: Element, name: str, value: str) -> TextEdit:

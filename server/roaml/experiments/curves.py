@@ -17,6 +17,7 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterable, Sequence
 
 from roaml.experiments.bands import BandKind
+from roaml.experiments.quantiles import value_of_rank
 from roaml.experiments.traces import TraceEnd, trajectories, variable_named
 from roaml.figures.plot import LinePlot, PlotAxis, PlotPoint, Series
 from roaml.record import Record
@@ -191,8 +192,8 @@ def median_curves(
             else:
                 known.append(path[bisect_right(path, (time, math.inf)) - 1][1])
         known.sort()
-        low = _ordered(known, lower_rank - unknown)
-        high = _ordered(known, count + 1 - lower_rank)
+        low = value_of_rank(known, lower_rank - unknown)
+        high = value_of_rank(known, count + 1 - lower_rank)
         medians.append(CurvePoint(time, _quantile(known, 0.5), low, high))
         fifth.append(_plain(time, _quantile(known, 0.05)))
         ninety_fifth.append(_plain(time, _quantile(known, 0.95)))
@@ -219,13 +220,6 @@ def _rank(count: int, confidence: float) -> int:
             return rank
         rank += 1
     return rank
-
-
-def _ordered(known: Sequence[float], rank: int) -> float:
-    """The value of a rank from 1; an infinity if it is not known."""
-    if rank < 1:
-        return -math.inf
-    return known[rank - 1] if rank <= len(known) else math.inf
 
 
 def _quantile(known: Sequence[float], share: float) -> float:

@@ -63,9 +63,9 @@ def quantiles_of(
     return tuple(
         RewardQuantile(
             share,
-            _ordered(known, math.ceil(share * count - 1e-9)),
-            _ordered(known, _greatest_rank(count, share, error) - cut),
-            _ordered(known, count + 1 - _greatest_rank(count, 1 - share, error)),
+            value_of_rank(known, math.ceil(share * count - 1e-9)),
+            value_of_rank(known, _greatest_rank(count, share, error) - cut),
+            value_of_rank(known, count + 1 - _greatest_rank(count, 1 - share, error)),
             count,
         )
         for share in shares
@@ -73,7 +73,7 @@ def quantiles_of(
     )
 
 
-def _ordered(known: Sequence[float], rank: int) -> float:
+def value_of_rank(known: Sequence[float], rank: int) -> float:
     """The value of a rank from 1; an infinity if it is not known."""
     if rank < 1:
         return -math.inf

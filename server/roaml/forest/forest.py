@@ -333,6 +333,11 @@ class Forest(Record, frozen=True, eq=False, dict=True):
         """The nodes of the file that is analysed."""
         return tuple((tree, node) for path, tree, node in self.all_nodes if path == self.path)
 
+    def is_condition(self, node: TreeNode) -> bool:
+        """Whether a node is written or declared as a condition."""
+        known = self.known_node(node)
+        return node.element.name == "Condition" or (known is not None and known.kind is NodeKind.CONDITION)
+
     def known_node(self, node: TreeNode) -> Node | None:
         """The declaration of the type of a node; `None` for subtrees and for types without a declaration."""
         if node not in self._known_nodes:

@@ -17,7 +17,16 @@ from roaml.diagnostics import Finding, Related, Severity
 from roaml.interfaces.names import CONSTANT_NAME, FIELD_NAME, keyword_of, lower_snake, upper_snake
 from roaml.interfaces.report import FileFindings, shorten
 from roaml.interfaces.type_syntax import find_type, parse_type
-from roaml.interfaces.types import KIND_NAMES, SECTION_NAMES, Constant, Definition, Field, FieldType, Kind, Section
+from roaml.interfaces.types import (
+    SECTION_NAMES,
+    Constant,
+    Definition,
+    Field,
+    FieldType,
+    Kind,
+    Section,
+    with_article,
+)
 from roaml.interfaces.values import parse_scalar, parse_value, skip_blanks, value_end
 from roaml.record import Record, field, replace
 from roaml.regex import regex
@@ -141,7 +150,8 @@ class _Parser:
                 message = "only services (.srv) and actions (.action) have sections; remove this `---`"
             else:
                 message = (
-                    f"{_a(self.kind)} has {len(names)} sections, {_and(names)}; this `---` begins an additional one"
+                    f"{with_article(self.kind)} has {len(names)} sections, {_and(names)}; this `---` begins an "
+                    "additional one"
                 )
             self.report.add(span, message)
         elif self.text[span.start : span.end] != "---":
@@ -156,7 +166,7 @@ class _Parser:
         new_line = "" if self.text.endswith(("\n", "\r")) or not self.text else "\n"
         self.report.add(
             self.content,
-            f"{_a(self.kind)} has the sections {_and(SECTION_NAMES[self.kind])}, separated by lines `---`; "
+            f"{with_article(self.kind)} has the sections {_and(SECTION_NAMES[self.kind])}, separated by lines `---`; "
             f"missing here: {_and(names)}",
             instead=new_line + "---\n" * len(names),
             at_end=end,
@@ -290,10 +300,6 @@ class _Parser:
 def _comment(written: str) -> str:
     """The text of a comment that begins with `#`; additional indentation is kept."""
     return written.lstrip("#").removeprefix(" ").rstrip()
-
-
-def _a(kind: Kind) -> str:
-    return f"{'an' if kind == 'action' else 'a'} {KIND_NAMES[kind]}"
 
 
 def _and(names: tuple[str, ...]) -> str:

@@ -15,7 +15,7 @@ from roaml.diagnostics import Finding
 from roaml.interfaces.names import PACKAGE_NAME, TYPE_NAME
 from roaml.interfaces.parse import parse
 from roaml.interfaces.search import SearchPath
-from roaml.interfaces.types import KIND_NAMES, KINDS, Definition, Kind
+from roaml.interfaces.types import KIND_NAMES, KINDS, Definition, Kind, with_article
 from roaml.record import Record, replace
 from roaml.regex import regex
 from roaml.suggest import are_similar, close_names, did_you_mean
@@ -80,7 +80,7 @@ class NotFound(Record, frozen=True):
             case Reason.UNKNOWN_PACKAGE:
                 return f"there is no package `{package}`{hint or '; searched ' + ', '.join(self.looked_in)}"
             case Reason.UNKNOWN_TYPE if self.other_kind:
-                return f"`{self.type_name}` is {_a(self.other_kind)}, not {_a(self.kind)}{hint}"
+                return f"`{self.type_name}` is {with_article(self.other_kind)}, not {with_article(self.kind)}{hint}"
             case Reason.UNKNOWN_TYPE:
                 return f"the package `{package}` has no {kind} `{name}`{hint}"
             case Reason.UNREADABLE:
@@ -223,7 +223,3 @@ def _is_type_name(package: str, name: str) -> bool:
 def _first(*groups: Iterable[str]) -> tuple[str, ...]:
     """The first `_MAX_CLOSE` names in the groups, without duplicates."""
     return tuple(dict.fromkeys(name for group in groups for name in group))[:_MAX_CLOSE]
-
-
-def _a(kind: Kind) -> str:
-    return f"{'an' if kind == 'action' else 'a'} {KIND_NAMES[kind]}"

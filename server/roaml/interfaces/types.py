@@ -186,3 +186,7 @@ class Definition(Record, frozen=True):
             return self.sections[SECTION_NAMES[self.kind].index(name)]
         except ValueError:
             raise KeyError(name) from None
+
+
+def with_article(kind: Kind) -> str:
+    return f"{'an' if kind == 'action' else 'a'} {KIND_NAMES[kind]}"

@@ -59,6 +59,11 @@ class TreeNode(Record, frozen=True, eq=False):
     children: tuple[TreeNode, ...]
     compact: bool
 
+    @property
+    def type_name(self) -> str:
+        """The name of the plugin or tree; of a node without one, that of its element."""
+        return self.plugin.value if self.plugin is not None else self.element.name
+
 
 class Tree(Record, frozen=True, eq=False):
     """A `<BehaviorTree>`; `roots` contains one node unless the file is invalid."""

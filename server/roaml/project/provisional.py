@@ -142,9 +142,9 @@ def _diagnostics(
         finding
         for surroundings in known.surroundings
         for finding in _local_findings(surroundings.around(blank, document), known.runner)
-        if _contains(changed, finding.span)
+        if changed.encloses(finding.span)
     )
-    kept = [d for d in moved if not (_is_local(d.code) and _contains(changed, d.span))]
+    kept = [d for d in moved if not (_is_local(d.code) and changed.encloses(d.span))]
     return sorted((*kept, *known.runner.provisional(source, document, findings)), key=order)
 
 
@@ -208,10 +208,6 @@ def _moved(diagnostic: Diagnostic, source: SourceFile, edit: _Edit) -> Diagnosti
         is_here = path == source.path
         related.append(RelatedPlace(Location(path, edit.moved(span)), place.message, source) if is_here else place)
     return replace(diagnostic, span=edit.moved(diagnostic.span), related=tuple(related), fixes=(), source=source)
-
-
-def _contains(outer: Span, inner: Span) -> bool:
-    return outer.start <= inner.start and inner.end <= outer.end
 
 
 def _without_content(text: str, elements: Iterable[Element]) -> str:

@@ -29,3 +29,11 @@ def exact_number(lower: float, upper: float, digits: int = 7) -> str:
     """A value that is known to be between two bounds that are close to each other. 0 and 1 are preferred to other
     numbers between the bounds."""
     return number(next((end for end in (0.0, 1.0) if lower <= end <= upper), (lower + upper) / 2), digits)
+
+
+def json_number(value: float) -> float | str | None:
+    """The number as a value for JSON, which has only finite numbers: `infinity` or `-infinity` as text, `None` for
+    NaN."""
+    if math.isnan(value):
+        return None
+    return value if math.isfinite(value) else "infinity" if value > 0 else "-infinity"

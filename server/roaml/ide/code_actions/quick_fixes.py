@@ -454,12 +454,8 @@ def _all_nodes(analysis: Analysis, path: str) -> Iterator[TreeNode]:
 
 def _node_at(analysis: Analysis, diagnostic: Diagnostic) -> TreeNode | None:
     """The innermost node of a tree that contains the span of a diagnostic; `None` if there is none."""
-    around = [n for n in _all_nodes(analysis, diagnostic.path) if _holds(n.element.span, diagnostic.span)]
+    around = [n for n in _all_nodes(analysis, diagnostic.path) if n.element.span.encloses(diagnostic.span)]
     return min(around, key=lambda n: n.element.span.end - n.element.span.start, default=None)
-
-
-def _holds(outer: Span, inner: Span) -> bool:
-    return outer.start <= inner.start and inner.end <= outer.end
 
 
 def _trees(analysis: Analysis, path: str) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from roaml.expr.tree import access_path
 from roaml.expr.types import UNKNOWN, EmptyArray, Type, join, leaves, unwrap
 from roaml.ide.describe.comment import remark
 from roaml.ide.describe.language import array_size, value_range
-from roaml.ide.describe.markdown import code, file, lines, name, names, paragraphs, prose
+from roaml.ide.describe.markdown import code, file, lines, name, names, paragraphs, prose, sentence
 from roaml.ide.describe.system import channel
 from roaml.ide.names.in_machine import interface_symbol
 from roaml.ide.names.occurrence import Access
@@ -94,10 +94,6 @@ def _remark(analysis: Analysis, path: str, element: Element) -> str:
     return prose(remark(document, element)) if document else ""
 
 
-def _sentence(text: str) -> str:
-    return text[:1].upper() + text[1:]
-
-
 # ------------------------------------------------------------------- variables
 
 
@@ -127,7 +123,7 @@ def _variable(analysis: Analysis, symbol: Symbol, data: Data | None, typed: Type
     around = _bounds(data) or value_range(type_)
     facts = (around, array_size(bounds), f"starts as {initial}" if initial else "")
     unknown = "not declared" if data is None else "type inferred from its values"
-    shown = _sentence(" · ".join(filter(None, (unknown if inferred else "", *facts))))
+    shown = sentence(" · ".join(filter(None, (unknown if inferred else "", *facts))))
     return paragraphs(
         code(f"{symbol.name} : {type_}"),
         _remark(analysis, symbol.path, data.element) if data else "",
@@ -201,7 +197,7 @@ def _counted(analysis: Analysis, symbol: Symbol) -> str:
             if not use.defines:
                 (writes if use.access is Access.WRITE else reads).add(use.span)
     counts = [f"{verb} {_times(len(places))}" for verb, places in (("read", reads), ("written", writes)) if places]
-    return _sentence(", ".join(counts)) or "Never used"
+    return sentence(", ".join(counts)) or "Never used"
 
 
 def _times(count: int) -> str:
@@ -344,7 +340,7 @@ def _connections(analysis: Analysis, symbol: Symbol, declared: Declaration) -> I
                     )
     yield from done
     if not done and isinstance(declared.interface, Name):
-        yield f"{_sentence(interface_symbol('', declared.kind, '').kind.value)} {name(declared.interface.value)}"
+        yield f"{sentence(interface_symbol('', declared.kind, '').kind.value)} {name(declared.interface.value)}"
 
 
 def _from_port(value: Name | PortRead | None, subject: str) -> str:

@@ -62,6 +62,11 @@ def file(path: str) -> str:
     return f"*{_without_tags(_NAME_MARKS.sub(_ESCAPE, shown))}*"
 
 
+def sentence(text: str) -> str:
+    """A text with a capital letter."""
+    return text[:1].upper() + text[1:]
+
+
 def prose(text: str) -> str:
     """Text that a user wrote, as paragraphs. Its code and emphasis are kept; its tags, images and links become plain
     text."""

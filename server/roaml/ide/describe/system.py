@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 from roaml.diagnostics import Symbol
 from roaml.expr.types import UNKNOWN, Struct, Type, unwrap
 from roaml.ide.describe.language import builtin_node, members, value_range
-from roaml.ide.describe.markdown import code, file, lines, name, names, paragraphs
+from roaml.ide.describe.markdown import code, file, lines, name, names, paragraphs, sentence
 from roaml.ide.names.lookup import symbol_group
 from roaml.ide.names.occurrence import Access
 from roaml.ide.names.occurrences import trees_of
@@ -42,10 +42,6 @@ def _system(analysis: Analysis, symbol: Symbol) -> System | None:
 def _who(automata: Iterable[SystemAutomaton]) -> str:
     """The names of automata. For a node of the tree, the name of its plugin is used."""
     return names(automaton.outline.name if automaton.instance else automaton.name for automaton in automata)
-
-
-def _sentence(text: str) -> str:
-    return text[:1].upper() + text[1:]
 
 
 def _in_properties(variables: Iterable[GlobalVariable]) -> str:
@@ -81,7 +77,7 @@ def _in_files(analysis: Analysis, symbol: Symbol) -> str:
         for verb, access in (("sent", Access.WRITE), ("received", Access.READ))
         if (count := sum(use.occurrence.access is access for use in uses))
     ]
-    return _sentence(", ".join(counts))
+    return sentence(", ".join(counts))
 
 
 def parameter(analysis: Analysis, symbol: Symbol) -> str:
@@ -98,7 +94,7 @@ def parameter(analysis: Analysis, symbol: Symbol) -> str:
     return paragraphs(
         code(f"{symbol.name} : {type_ or UNKNOWN}"),
         lines(
-            _sentence(
+            sentence(
                 " · ".join(filter(None, (f"parameter of event {name(symbol.scope)}", value_range(type_ or UNKNOWN))))
             ),
             f"**Sent by** {_who(senders) or 'nobody'} · **read by** {_who(readers) or 'nobody'}" if system else "",
@@ -131,7 +127,7 @@ def interface(analysis: Analysis, symbol: Symbol, written: str = "") -> str:
 def channel(analysis: Analysis, symbol: Symbol, written: str, system: System) -> str:
     """The description of a topic, service or action without its type, as a part of other descriptions."""
     connected = find_channel(system, symbol)
-    head = f"{_sentence(symbol.kind.value)} {name(written)}"
+    head = f"{sentence(symbol.kind.value)} {name(written)}"
     return head if connected is None else lines(head, _sides(analysis, symbol, connected, system))
 
 
@@ -143,7 +139,7 @@ def _sides(analysis: Analysis, symbol: Symbol, connected: Channel, system: Syste
     given, taken = _VERBS[symbol.kind]
     sources = "the clock of the system" if is_clock(system, symbol) else _ends(connected.sources)
     return lines(
-        f"**{_sentence(given)}** {sources} · **{taken}** {_ends(connected.users)}",
+        f"**{sentence(given)}** {sources} · **{taken}** {_ends(connected.users)}",
         _plain_events(symbol, connected),
         _in_properties(global_variables(analysis, symbol)),
     )
@@ -234,7 +230,7 @@ def tree(analysis: Analysis, symbol: Symbol) -> str:
                 size = "one node" if count == 1 else f"{count} nodes"
                 return paragraphs(
                     code(f"tree {symbol.name}"),
-                    lines(_sentence(f"{size} · {file(place.path)}"), _use(analysis, symbol)),
+                    lines(sentence(f"{size} · {file(place.path)}"), _use(analysis, symbol)),
                 )
     return paragraphs(code(f"tree {symbol.name}"), "No tree has this name")
 
@@ -314,7 +310,7 @@ def member(analysis: Analysis, symbol: Symbol) -> str:
     inner, _ = unwrap(type_)
     return paragraphs(
         code(f"{symbol.name} : {type_}"),
-        _sentence(" · ".join(filter(None, (f"member of struct {name(symbol.scope)}", value_range(type_))))),
+        sentence(" · ".join(filter(None, (f"member of struct {name(symbol.scope)}", value_range(type_))))),
         code(members(inner)) if isinstance(inner, Struct) else "",
     )
 

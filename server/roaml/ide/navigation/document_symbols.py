@@ -139,8 +139,8 @@ def _trees(file: TreeFile) -> Iterator[DocumentSymbol]:
 
 def _node(node: TreeNode) -> DocumentSymbol:
     """The symbol of a node: the name of the node, with its plugin as detail."""
-    plugin = node.plugin.value if node.plugin else node.element.name
-    name, detail = (node.name, plugin) if node.name else (Name(plugin, node.element.name_span), "")
+    type_ = Name(node.type_name, node.element.name_span)
+    name, detail = (node.name, type_.value) if node.name else (type_, "")
     kind = DocumentSymbolKind.CONTROL if node.children else DocumentSymbolKind.LEAF
     return _symbol(node.element, name, kind, detail, map(_node, node.children))
 

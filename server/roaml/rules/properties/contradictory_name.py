@@ -35,7 +35,7 @@ def _tree(context: TreeContext) -> Iterator[Finding]:
             if words[-1:] != [other.lower()] or kind.lower() in words or node in children_of_fallbacks:
                 continue
             type_ = node.element.name
-            message = f"the name `{node.name.value}` is that of a `{other}`, but this is a `{_type(node)}`"
+            message = f"the name `{node.name.value}` is that of a `{other}`, but this is a `{node.type_name}`"
             is_known = node.compact and type_.replace(kind, other) in _TYPES
             fixes = (rename_tag(node.element, type_.replace(kind, other)),) if is_known else ()
             yield RULE.at(node.element.name_span, message, *fixes, related=[Related(node.name.span, "the name")])
@@ -44,13 +44,9 @@ def _tree(context: TreeContext) -> Iterator[Finding]:
 _TYPES = frozenset(f"{prefix}{kind}" for prefix in ("", "Reactive", "Async") for kind in (_SEQUENCE, _FALLBACK))
 
 
-def _type(node: TreeNode) -> str:
-    return node.plugin.value if node.plugin is not None else node.element.name
-
-
 def _kind(node: TreeNode) -> str:
     """`Sequence` or `Fallback` for the nodes of BehaviorTree.CPP that are one; otherwise ""."""
-    name = _type(node)
+    name = node.type_name
     if name in _TYPES or name == "SequenceWithMemory":
         return _SEQUENCE if _SEQUENCE in name else _FALLBACK
     return ""

@@ -56,7 +56,7 @@ def _with_port(problem: ScriptProblem, entries: Entries, own: str, types: Mappin
     if not ports or any(types.get(key) is not Type.TEXT for key in keys):
         return problem
     port = ports[0]
-    node = port.node.plugin.value if port.node.plugin else port.node.element.name
+    node = port.node.type_name
     message = (
         f"`{problem.operator}` needs numbers, but the port `{port.port}` of `{node}` makes `{problem.number}` a "
         "string; compute the number in another entry"

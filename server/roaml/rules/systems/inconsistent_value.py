@@ -38,7 +38,7 @@ def _numbers(context: TreeContext) -> Iterator[Finding]:
         for node in ordered:
             alike = (branch for child in node.children if (branch := branches[child]) is not None)
             yield from _findings(odd_numbers(alike))
-        leaves = (Alike((_type(node),), tuple(_texts(node))) for node in ordered if not node.children)
+        leaves = (Alike((node.type_name,), tuple(_texts(node))) for node in ordered if not node.children)
         yield from _findings(odd_numbers(leaves))
 
 
@@ -48,7 +48,7 @@ _MAX_SHAPE = 60
 
 def _branch(node: TreeNode, children: Sequence[Alike | None]) -> Alike | None:
     """A node and those below it; `None` if they are too many."""
-    shape = [_type(node)]
+    shape = [node.type_name]
     texts = [*_texts(node)]
     for child in children:
         if child is None or len(shape) + len(child.shape) > _MAX_SHAPE:
@@ -79,7 +79,7 @@ def _names(context: TreeContext) -> Iterator[Finding]:
         for node in nodes(tree):
             for setting in node.ports if node.name is not None and not node.children else ():
                 if node.name is not None and node.name.value and setting.variable is None:
-                    by_type[_type(node)][setting.key.value].append(_Named(node.name, setting.value))
+                    by_type[node.type_name][setting.key.value].append(_Named(node.name, setting.value))
     for ports in by_type.values():
         yield from _unlike_form(ports)
         for key, constants in ports.items():
@@ -150,10 +150,6 @@ def _misnamed(values: Sequence[_Misnamed]) -> Finding:
     edits = tuple(TextEdit(value.known.value.span, value.fixed) for value in values)
     fix = Fix(f"Change to {listing([value.fixed for value in values])}", edits)
     return RULE.at(known.value.span, message, fix, related=[Related(known.name.span, "the name of the node")])
-
-
-def _type(node: TreeNode) -> str:
-    return node.plugin.value if node.plugin is not None else node.element.name
 
 
 def _texts(node: TreeNode) -> Iterator[KeyedText]:

@@ -9,7 +9,6 @@ from roaml.diagnostics import Finding, Related, Severity
 from roaml.forest.entries import BoundUse, Use
 from roaml.forest.forest import Forest
 from roaml.model.tree import TreeNode
-from roaml.roles import NodeKind
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.entries import entries_of
 from roaml.rules.support.forest import trees_of
@@ -40,7 +39,9 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 continue
             if all(_is_before(forest, bound, creator, order, above) for creator in creators):
                 reported.add((use.node, use.name))
-                message = f"`{use.name}` is read here before `{_name(first.node)}` writes it; move this node behind it"
+                message = (
+                    f"`{use.name}` is read here before `{first.node.type_name}` writes it; move this node behind it"
+                )
                 related = [Related(first.span, "written here")] if first.path == use.path else []
                 yield RULE.at(use.span, message, related=related)
 
@@ -75,7 +76,7 @@ def _is_before(
         return False
     while node in above:
         parent, index = above[node]
-        name = _name(parent)
+        name = parent.type_name
         if any(_is_guard(forest, earlier) for earlier in parent.children[:index]) or parent.scripts:
             return False
         if parent in around:
@@ -95,13 +96,7 @@ def _ancestors(node: TreeNode, above: Mapping[TreeNode, tuple[TreeNode, int]]) -
 
 def _is_guard(forest: Forest, node: TreeNode) -> bool:
     """Whether a node is, or contains, a condition, after which the reader may be ticked only once the entry is set."""
-    known = forest.known_node(node)
-    is_condition = node.element.name == "Condition" or (known is not None and known.kind is NodeKind.CONDITION)
-    return is_condition or bool(node.scripts) or any(_is_guard(forest, child) for child in node.children)
-
-
-def _name(node: TreeNode) -> str:
-    return node.plugin.value if node.plugin else node.element.name
+    return forest.is_condition(node) or bool(node.scripts) or any(_is_guard(forest, child) for child in node.children)
 
 
 RULE = Rule(

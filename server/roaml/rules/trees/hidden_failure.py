@@ -13,7 +13,7 @@ from roaml.forest.scripts import scripts_of
 from roaml.forest.statuses import PossibleStatuses
 from roaml.libraries import Node
 from roaml.model.tree import TreeNode
-from roaml.roles import NodeKind, ProtocolPart
+from roaml.roles import ProtocolPart
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.forest import trees_of
 from roaml.script.names import names_in
@@ -32,26 +32,27 @@ def check(context: TreeContext) -> Iterator[Finding]:
             for retrying, hiding in statuses.hidden_failures(root):
                 reported.add(hiding)
                 message = (
-                    f"`{_name(hiding)}` never fails although nodes below it can, so `{_name(retrying)}` above it never "
-                    f"ticks its child again; remove `{_name(hiding)}`, or move it above `{_name(retrying)}`"
+                    f"`{hiding.type_name}` never fails although nodes below it can, so `{retrying.type_name}` above it "
+                    f"never ticks its child again; remove `{hiding.type_name}`, or move it above `{retrying.type_name}`"
                 )
                 related = [Related(retrying.element.name_span, "waits for a failure")]
                 yield RULE.at(hiding.element.name_span, message, related=related)
     for _, node in forest.own_nodes:
-        if _name(node) in ("ForceSuccess", "ForceFailure") and node not in reported and len(node.children) == 1:
+        if node.type_name in ("ForceSuccess", "ForceFailure") and node not in reported and len(node.children) == 1:
             condition = _condition(forest, node.children[0])
             if condition is not None:
-                message = f"`{_name(node)}` hides what the condition `{_name(condition)}` returns, so it has no effect"
+                message = (
+                    f"`{node.type_name}` hides what the condition `{condition.type_name}` returns, so it has no effect"
+                )
                 yield RULE.at(node.element.name_span, f"{message}; remove one of them")
 
 
 def _condition(forest: Forest, node: TreeNode) -> TreeNode | None:
     """The condition whose result a node returns, unchanged or inverted, if this result is its only effect."""
-    while _name(node) == "Inverter" and len(node.children) == 1:
+    while node.type_name == "Inverter" and len(node.children) == 1:
         node = node.children[0]
     known = forest.known_node(node)
-    is_condition = node.element.name == "Condition" or (known is not None and known.kind is NodeKind.CONDITION)
-    if not is_condition or node.children or node.scripts or _may_write(forest, node, known):
+    if not forest.is_condition(node) or node.children or node.scripts or _may_write(forest, node, known):
         return None
     return None if _sends(forest, known) else node
 
@@ -78,10 +79,6 @@ def _may_write(forest: Forest, node: TreeNode, known: Node | None) -> bool:
         if entry_of(setting) is not None and (port is None or port.direction.writes):
             return True
     return False
-
-
-def _name(node: TreeNode) -> str:
-    return node.plugin.value if node.plugin else node.element.name
 
 
 RULE = Rule(

@@ -31,7 +31,7 @@ def _odd_branch(context: TreeContext, branches: Sequence[TreeNode]) -> Iterator[
     by_leaves: dict[tuple[str, ...], list[TreeNode]] = defaultdict(list)
     for branch in branches:
         inside = _inside(branch)
-        leaves = tuple(_type(node) for node in inside if not node.children) if len(inside) <= _MAX_NODES else ()
+        leaves = tuple(node.type_name for node in inside if not node.children) if len(inside) <= _MAX_NODES else ()
         if len(leaves) > 1:  # single conditions are often inverted or not, as each requires
             by_leaves[leaves].append(branch)
     for alike in by_leaves.values():
@@ -48,7 +48,7 @@ def _odd_branch(context: TreeContext, branches: Sequence[TreeNode]) -> Iterator[
 
 def _delays(branch: TreeNode) -> int:
     """How often a branch pauses. The first and the last one of a series often need no pause before or after them."""
-    return sum(_type(node) == "Delay" for node in _inside(branch))
+    return sum(node.type_name == "Delay" for node in _inside(branch))
 
 
 def _are_alike(branches: Sequence[TreeNode]) -> bool:
@@ -64,13 +64,13 @@ def _are_alike(branches: Sequence[TreeNode]) -> bool:
 
 def _compare(context: TreeContext, odd: TreeNode, usual: TreeNode) -> Iterator[Finding]:
     """Report the only node in which a branch differs from the usual ones."""
-    while _type(odd) == _type(usual) and len(odd.children) == len(usual.children):
+    while odd.type_name == usual.type_name and len(odd.children) == len(usual.children):
         pairs = zip(odd.children, usual.children, strict=True)
         different = [(a, b) for a, b in pairs if _shape(a) != _shape(b)]
         if len(different) != 1:
             return
         ((odd, usual),) = different
-    name, other = _type(odd), _type(usual)
+    name, other = odd.type_name, usual.type_name
     if len(usual.children) == 1 and _shape(usual.children[0]) == _shape(odd):
         message = f"`{name}` has no `{other}` here, as in all similar branches; add it"
         fixes = () if usual.element.attributes or not usual.compact else (_within(context, odd, other),)
@@ -105,11 +105,7 @@ def _inside(node: TreeNode) -> list[TreeNode]:
 def _shape(node: TreeNode) -> tuple[str, ...]:
     """The types of a node and those below it, with their nesting."""
     inside = tuple(part for child in node.children for part in _shape(child))
-    return (_type(node), "(", *inside, ")")
-
-
-def _type(node: TreeNode) -> str:
-    return node.plugin.value if node.plugin is not None else node.element.name
+    return (node.type_name, "(", *inside, ")")
 
 
 RULE = Rule(

@@ -12,7 +12,7 @@ from roaml.forest.statuses import statuses_of
 from roaml.libraries.programs.statuses import RUNNING
 from roaml.model.outline import MachineOutline
 from roaml.model.tree import TreeNode
-from roaml.roles import NodeKind, ProtocolPart
+from roaml.roles import ProtocolPart
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.forest import trees_of
 
@@ -32,8 +32,8 @@ def check(context: TreeContext) -> Iterator[Finding]:
             continue
         if all(_is_condition(forest, other) for other in others):
             message = (
-                f"`{node.plugin.value}` checks this condition only after `{_name(first)}` has ended, not while it is "
-                "RUNNING; put the condition before it"
+                f"`{node.plugin.value}` checks this condition only after `{first.type_name}` has ended, not while it "
+                "is RUNNING; put the condition before it"
             )
             related = [Related(first.element.name_span, "may be RUNNING")]
             yield RULE.at(others[0].element.name_span, message, related=related)
@@ -50,7 +50,7 @@ def _may_run(forest: Forest, node: TreeNode) -> bool:
 
 def _is_condition(forest: Forest, node: TreeNode) -> bool:
     """Whether a node is a condition, possibly inverted: it never returns RUNNING."""
-    while _name(node) == "Inverter" and len(node.children) == 1:
+    while node.type_name == "Inverter" and len(node.children) == 1:
         node = node.children[0]
     if node.children or forest.calls_tree(node):
         return False
@@ -60,7 +60,7 @@ def _is_condition(forest: Forest, node: TreeNode) -> bool:
         is_named_so = node.element.name == "Condition" or READS_AS_CONDITION.match(known.name) is not None
         is_silent = outline is not None and _only_answers(outline, is_named_so=is_named_so)
         return is_silent and RUNNING not in statuses_of(forest).statuses(node)[node].ever
-    return node.element.name == "Condition" or (known is not None and known.kind is NodeKind.CONDITION)
+    return forest.is_condition(node)
 
 
 def _only_answers(outline: MachineOutline, *, is_named_so: bool) -> bool:
@@ -74,10 +74,6 @@ def _inside(node: TreeNode) -> Iterator[TreeNode]:
     yield node
     for child in node.children:
         yield from _inside(child)
-
-
-def _name(node: TreeNode) -> str:
-    return node.plugin.value if node.plugin else node.element.name
 
 
 RULE = Rule(

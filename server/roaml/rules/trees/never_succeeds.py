@@ -109,7 +109,7 @@ def _of_parallel(node: TreeNode, failing: list[TreeNode], needed: int) -> Findin
     span = setting.value.span if setting is not None else node.element.name_span
     able = len(node.children) - len(failing)
     message = (
-        f"`{_name(node)}` never returns SUCCESS: it needs {needed} successes, and only {able} of its children can "
+        f"`{node.type_name}` never returns SUCCESS: it needs {needed} successes, and only {able} of its children can "
         "succeed; lower the threshold, or change a child"
     )
     return RULE.at(span, message, related=[Related(child.element.name_span, "never succeeds") for child in failing])
@@ -122,21 +122,17 @@ def _of_tree(forest: Forest, root: TreeNode) -> Iterator[Finding]:
     if SUCCESS in statuses[root].ever or FAILURE not in statuses[root].ever or any(possible.unreached(root)):
         return
     failing = [node for node in statuses if any(_is_library_node(forest, node, name) for name in _FAILING)]
-    if any(_name(node) == _ENDLESS for node in statuses) or not failing or root in failing:
+    if any(node.type_name == _ENDLESS for node in statuses) or not failing or root in failing:
         return
     able = [child for child in root.children if SUCCESS in statuses[child].ever]
     if able:
-        message = f"the tree never returns SUCCESS, because this `{_name(failing[0])}` always fails"
-        related = [Related(root.element.name_span, f"needs a success below this `{_name(root)}`")]
+        message = f"the tree never returns SUCCESS, because this `{failing[0].type_name}` always fails"
+        related = [Related(root.element.name_span, f"needs a success below this `{root.type_name}`")]
         yield RULE.at(failing[0].element.name_span, message, related=related)
 
 
 def _is_library_node(forest: Forest, node: TreeNode, name: str) -> bool:
-    return _name(node) == name and forest.known_node(node) is CPP.nodes[name]
-
-
-def _name(node: TreeNode) -> str:
-    return node.plugin.value if node.plugin else node.element.name
+    return node.type_name == name and forest.known_node(node) is CPP.nodes[name]
 
 
 RULE = Rule(

@@ -8,17 +8,15 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
 from roaml.diagnostics import Finding, Severity
-from roaml.exact_number import exact_number
 from roaml.forest.cpp_types import mismatch
 from roaml.forest.forest import CPP
 from roaml.libraries import Node, Port, PortLimits, node_in_libraries
-from roaml.model.expand import PortConstant
 from roaml.model.port_checks import PortChoice
-from roaml.model.system import SystemAutomaton
 from roaml.model.tree import TreeNode
 from roaml.rules.rule import Rule, TreeContext, listing
 from roaml.rules.support.forest import forest_of
 from roaml.rules.support.instances import instances
+from roaml.rules.support.message_constants import port_constant
 from roaml.rules.support.settings import constant_settings, integer_of, place_of
 
 
@@ -42,7 +40,7 @@ def _of_plugins(context: TreeContext) -> Iterator[Finding]:
     for node, automaton in instances(context):
         plugin, name = automaton.outline.plugin, automaton.outline.name
         for refusal in plugin.port_refusals:
-            number = _constant(automaton, refusal.port)
+            number = port_constant(automaton, refusal.port)
             if number is not None and refusal.holds(number) and (node, refusal.port) not in reported:
                 reported.add((node, refusal.port))
                 message = (
@@ -51,7 +49,7 @@ def _of_plugins(context: TreeContext) -> Iterator[Finding]:
                 )
                 yield RULE.at(place_of(node, refusal.port), message)
         for choice in plugin.port_choices:
-            number = _constant(automaton, choice.port)
+            number = port_constant(automaton, choice.port)
             if number is not None:
                 used.setdefault((choice, name), {}).setdefault(number, node)
     for (choice, name), nodes in used.items():
@@ -61,11 +59,6 @@ def _of_plugins(context: TreeContext) -> Iterator[Finding]:
             known = listing([f"{n}" for n in sorted(choice.numbers)])
             message = f"`{name}` compares `{choice.port}` only with {known}, and no node has the value {min(unused)}"
             yield RULE.at(place_of(nodes[number], choice.port), message)
-
-
-def _constant(automaton: SystemAutomaton, port: str) -> Fraction | None:
-    value = automaton.port(port)
-    return exact_number(value.text) if isinstance(value, PortConstant) else None
 
 
 def _library_node(context: TreeContext, node: TreeNode) -> Node | None:

@@ -22,8 +22,8 @@ def check(context: TreeContext) -> Iterator[Finding]:
         yield from _refused(forest, node)
         for child, first in statuses_of(forest).restarted(node):
             message = (
-                f"this `{_name(child)}` never ends: at the next tick, `{_name(node)}` ticks the earlier "
-                f"`{_name(first)}`, which is RUNNING again, and halts this node"
+                f"this `{child.type_name}` never ends: at the next tick, `{node.type_name}` ticks the earlier "
+                f"`{first.type_name}`, which is RUNNING again, and halts this node"
             )
             related = [Related(first.element.name_span, "starts again at every tick")]
             yield RULE.at(child.element.name_span, message, related=related)
@@ -33,14 +33,10 @@ def _refused(forest: Forest, node: TreeNode) -> Iterator[Finding]:
     """Report the second `AsyncSequence`, which the library refuses (docs/spec/lone-trees.md#versions)."""
     is_refused = forest.settings.version >= ASYNC_SEQUENCES_REFUSED_SINCE
     asynchronous = [child for child in node.children if child.plugin and child.plugin.value == "AsyncSequence"]
-    if _name(node) == "ReactiveSequence" and is_refused and forest.known_node(node):
+    if node.type_name == "ReactiveSequence" and is_refused and forest.known_node(node):
         for child in asynchronous[1:]:
             message = "BehaviorTree.CPP refuses a second `AsyncSequence` in a `ReactiveSequence`; use only one"
             yield RULE.at(child.element.name_span, message, severity=Severity.ERROR)
-
-
-def _name(node: TreeNode) -> str:
-    return node.plugin.value if node.plugin else node.element.name
 
 
 RULE = Rule("restarted-node", Severity.WARNING, "A reactive node has two asynchronous children.", tree=check)

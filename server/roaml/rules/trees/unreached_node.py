@@ -25,7 +25,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     for tree in context.file.trees:
         for root in tree.roots:
             for node, before, needed in possible.unreached(root):
-                message = f"this node is never ticked: `{_name(before)}` before it never returns {needed}"
+                message = f"this node is never ticked: `{before.type_name}` before it never returns {needed}"
                 related = [Related(before.element.name_span, f"never returns {needed}")]
                 yield RULE.at(node.element.name_span, message, related=related, tags=(Tag.UNNECESSARY,))
 
@@ -54,10 +54,6 @@ def _case(text: str) -> float | str:
         return float(text)
     except ValueError:
         return text
-
-
-def _name(node: TreeNode) -> str:
-    return node.plugin.value if node.plugin else node.element.name
 
 
 RULE = Rule("unreached-node", Severity.WARNING, "A node of a tree is never ticked.", tree=check)

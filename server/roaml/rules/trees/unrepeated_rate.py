@@ -28,16 +28,16 @@ def check(context: TreeContext) -> Iterator[Finding]:
     for _, node in forest.own_nodes:
         known = forest.known_node(node)
         parent = above.get(node)
-        if known is None or parent is None or known.name not in CONTROLLERS or _name(parent) not in _ONCE:
+        if known is None or parent is None or known.name not in CONTROLLERS or parent.type_name not in _ONCE:
             continue
         is_library = known.behaviour and node_in_libraries(known.name) is not None
         later = parent.children[parent.children.index(node) + 1 :]
         running = next((o for o in later if RUNNING in statuses_of(forest).statuses(o)[o].ever), None)
-        if not is_library or running is None or any(_name(outer) in _LOOPS for outer in _around(parent, above)):
+        if not is_library or running is None or any(outer.type_name in _LOOPS for outer in _around(parent, above)):
             continue
         message = (
-            f"`{known.name}` has no effect in a `{_name(parent)}`, which does not tick it again while "
-            f"`{_name(running)}` is RUNNING; use a `PipelineSequence`"
+            f"`{known.name}` has no effect in a `{parent.type_name}`, which does not tick it again while "
+            f"`{running.type_name}` is RUNNING; use a `PipelineSequence`"
         )
         related = [Related(parent.element.name_span, "ticks each child until it succeeds")]
         yield RULE.at(node.element.name_span, message, related=related)
@@ -47,10 +47,6 @@ def _around(node: TreeNode, above: dict[TreeNode, TreeNode]) -> Iterator[TreeNod
     while node in above:
         node = above[node]
         yield node
-
-
-def _name(node: TreeNode) -> str:
-    return node.plugin.value if node.plugin else node.element.name
 
 
 RULE = Rule(

@@ -36,7 +36,8 @@ def check(context: TreeContext) -> Iterator[Finding]:
             writer = writers[0].use
             names = listing([f"`{name}`" for name in expected])
             message = (
-                f"`{_name(use.node)}` knows the error codes of {names}, but `{_name(writer.node)}` writes this entry"
+                f"`{use.node.type_name}` knows the error codes of {names}, but `{writer.node.type_name}` writes this "
+                "entry"
             )
             intended = _intended(forest, by_entry.values(), expected, use.tree)
             related = [Related(writer.span, "written here")] if writer.path == use.path else []
@@ -69,10 +70,6 @@ def _library_node(forest: Forest, node: TreeNode) -> Node | None:
     """The declaration of a node of a library; `None` for other nodes."""
     known = forest.known_node(node)
     return node_in_libraries(known.name) if known is not None and known.behaviour else None
-
-
-def _name(node: TreeNode) -> str:
-    return node.plugin.value if node.plugin else node.element.name
 
 
 RULE = Rule(
