@@ -32,8 +32,26 @@ def check(context: MachineContext) -> Iterator[Finding]:
             if len(reached) > 1 and _is_trap(state):
                 lost = next(_lost(context, number, state, reached), None)
                 if lost is not None:
-                    intended = _is_named(state, _ENDS) or _is_named(lost[0], _STARTS)
+                    intended = _is_named(state, _ENDS) or _is_named(lost[0], _STARTS) or _waits_for(lost[0])
                     yield _finding(state, *lost, Severity.INFORMATION if intended else None)
+                else:
+                    yield from _idle(state)
+
+
+def _idle(state: State) -> Iterator[Finding]:
+    """Report a state that does nothing, although a condition of one of its handlers selects what it reacts to."""
+    handlers = [handler for handler in state.handlers if handler.effective]
+    selecting = [handler for handler in handlers if handler.cond is not None and handler.trigger in _IGNORED]
+    has_effect = any(target.body for handler in handlers for target in handler.targets)
+    if state.id is None or not selecting or has_effect or (state.exit and state.exit.statements):
+        return
+    target = selecting[0].targets[0].state
+    if target is not None:
+        message = (
+            f"no transition leaves `{state.id.value}`, and its handlers contain nothing, so the condition of this one "
+            "has no effect; change the target"
+        )
+        yield RULE.at(target.span, message)
 
 
 _ENDS = frozenset(
@@ -60,14 +78,19 @@ _ENDS = frozenset(
         "terminated",
     ]
 )
-_STARTS = frozenset(
-    ["boot", "booting", "init", "initial", "initializing", "start", "starting", "startup", "unknown", "wait", "waiting"]
-)
+_STARTS = frozenset(["boot", "booting", "init", "initial", "initializing", "start", "starting", "startup", "unknown"])
 """Words in the names of states that are probably never left, or never entered again, intentionally."""
 
 
 def _is_named(state: State, words: frozenset[str]) -> bool:
     return state.id is not None and not words.isdisjoint(words_of(state.id.value))
+
+
+def _waits_for(state: State) -> bool:
+    """Whether the name of a state says what it waits for, such as `waiting_for_map`: it is probably entered once. A
+    machine that is only `waiting` does so again and again."""
+    words = words_of(state.id.value) if state.id is not None else []
+    return len(words) > 1 and words[0] in ("wait", "waiting")
 
 
 def _finding(state: State, other: State, handler: Handler, severity: Severity | None) -> Finding:

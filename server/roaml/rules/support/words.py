@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import functools
+
 from roaml.regex import regex
 
 _WORD = regex(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
@@ -44,7 +46,12 @@ DUMMY = frozenset(("dummy", "fake", "mock", "stub", "test"))
 
 def words_of(name: str) -> list[str]:
     """The words of a name such as `battery_level` or `BatteryLevel`, in lower case."""
-    return [match.group().lower() for match in _WORD.finditer(name)]
+    return list(_words(name))
+
+
+@functools.lru_cache(maxsize=4096)  # the names of a machine are compared with each other
+def _words(name: str) -> tuple[str, ...]:
+    return tuple(match.group().lower() for match in _WORD.finditer(name))
 
 
 def difference(name: str, other: str) -> tuple[str, str] | None:

@@ -6,7 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from roaml.diagnostics import Finding, Related, Severity
-from roaml.expr.tree import Index, Member, Name, access_path, walk
+from roaml.expr.operators import OperatorKind
+from roaml.expr.tree import Binary, Index, Member, Name, access_path, walk
 from roaml.expr.types import Scalar, leaves
 from roaml.model.machine import Assign, Chart, Data, Declaration, ReturnStatus, bodies
 from roaml.model.ros import InterfaceType
@@ -27,6 +28,8 @@ _RECEIVED = (ProtocolPart.MESSAGE, ProtocolPart.REQUEST, ProtocolPart.GOAL)
 
 _PREVIOUS = ("previous", "prev", "last", "old")
 """The first word of a variable that should keep the last value of another one."""
+
+_SENT = (ValueUse.FIELD, ValueUse.PARAMETER)
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -75,6 +78,26 @@ def _constant(
         if unread is not None:
             message = f"`{name}` is always {shown}, because nothing assigns it, and nothing reads `{unread}`"
             yield RULE.at(data.id.span, f"{message}; assign received data to it, or remove it")
+        elif _is_counted(context, chart, name):
+            message = f"`{name}` is always {shown}, because nothing assigns it, although a condition limits it"
+            yield RULE.at(data.id.span, f"{message} and it is sent; assign the values that it should get")
+
+
+def _is_counted(context: MachineContext, chart: Chart, name: str) -> bool:
+    """Whether a variable is compared with a limit, and is also sent as it is, as a number that changes. A constant is
+    one or the other."""
+    own = [v for v in context.typed.values if v.place.chart is chart and isinstance(v.value, Expression)]
+    is_sent = any(v.use in _SENT and isinstance(v.value.tree, Name) and v.value.tree.name == name for v in own)
+    return is_sent and any(
+        isinstance(node, Binary) and node.operator.kind is OperatorKind.ORDER and _is_side(node, name)
+        for value in own
+        if value.use in CONDITIONS
+        for node in walk(value.value.tree)
+    )
+
+
+def _is_side(node: Binary, name: str) -> bool:
+    return any(isinstance(side, Name) and side.name == name for side in (node.left, node.right))
 
 
 _MIN_ASSIGNED = 2
