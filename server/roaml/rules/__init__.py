@@ -223,6 +223,7 @@ from roaml.rules.variables import (
     constant_variable,
     copied_value,
     duplicate_data,
+    equal_constants,
     inconsistent_constant,
     invalid_bounds,
     invalid_name,
