@@ -221,6 +221,13 @@ class ParameterUses:
                 message, meant = f"`{name}` is a time, as its name says, but this is a rate in Hz", f"1 / {name}"
             case Binary(operator=Operator.DIVIDE, left=Number(value=1), right=NameExpr(name=name)) if _is_rate(name):
                 message, meant = f"`{name}` is a rate, as its name says, so this is a time, not a rate in Hz", name
+            case Binary(operator=Operator.DIVIDE, left=Number(value=number), right=NameExpr(name=name)) if (
+                number in _PER_SECOND.values() and number != (needed := _per_second(name)) and needed is not None
+            ):
+                message = (
+                    f"`{name}` is a time in {_last_word(name)}, as its name says, of which a second has {needed:,}"
+                )
+                meant = f"{needed} / {name}"
             case _:
                 return
         if name in self.scope:
@@ -252,13 +259,25 @@ _RATE_WORDS = frozenset(("fps", "freq", "frequency", "hz", "per", "rate"))
 _TIME_WORDS = frozenset(("delay", "duration", "interval", "period", "sec", "secs", "seconds", "time", "timeout"))
 
 
+_PER_SECOND = {"s": 1, "sec": 1, "secs": 1, "seconds": 1, "ms": 1000, "millis": 1000, "us": 10**6, "ns": 10**9}
+"""The last word in the name of a parameter -> how many of this unit are a second."""
+
+
+def _last_word(name: str) -> str:
+    return name.lower().split("_")[-1]
+
+
+def _per_second(name: str) -> int | None:
+    return _PER_SECOND.get(_last_word(name)) if not _is_rate(name) else None
+
+
 def _is_rate(name: str) -> bool:
     return not _RATE_WORDS.isdisjoint(name.lower().split("_"))
 
 
 def _is_time(name: str) -> bool:
     """Whether a parameter is a time in s, as its name says. The inverse of one in ms would be no rate in Hz, either."""
-    return name.lower().split("_")[-1] in _TIME_WORDS and not _is_rate(name)
+    return _last_word(name) in _TIME_WORDS and not _is_rate(name)
 
 
 _UNIT = regex(r"\s+(?:s|ms|us|ns)\s*\Z")

@@ -39,7 +39,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         return
     for chart in context.machine.charts:
         assigned = _assigned(chart)
-        candidates = _read(context, chart)
+        candidates = _read(context, chart) | _repeatedly_assigned(context, chart, assigned)
         alike = _by_words(assigned)
         for data in chart.data:
             if data.id is not None and data.id.value in candidates and not data.id.value.isupper():
@@ -196,6 +196,13 @@ def _assigned(chart: Chart) -> dict[str, list[Assign]]:
         if isinstance(statement, Assign) and statement.location is not None:
             result.setdefault((access_path(statement.location.tree) or ("",))[0], []).append(statement)
     return result
+
+
+def _repeatedly_assigned(context: MachineContext, chart: Chart, assigned: Mapping[str, Sequence[Assign]]) -> set[str]:
+    """The variables to which several places assign a value, and which nothing reads."""
+    used = {name for v in context.typed.values if v.place.chart is chart and v.use is not ValueUse.LOCATION
+            and isinstance(v.value, Expression) for name in _variables(v.value)}  # fmt: skip
+    return {name for name, statements in assigned.items() if len(statements) >= _MIN_ASSIGNED and name not in used}
 
 
 def _read(context: MachineContext, chart: Chart) -> set[str]:

@@ -11,7 +11,20 @@ from roaml.expr.operators import COMPARING
 from roaml.expr.tree import Binary, Call, Expr, Name, access_path, walk
 from roaml.expr.types import Type
 from roaml.model.behavior.knowledge import variables_in
-from roaml.model.machine import Assign, CallChild, Chart, Data, Param, ReturnStatus, RosSend, Send, Statement
+from roaml.model.machine import (
+    Assign,
+    CallChild,
+    Chart,
+    Data,
+    If,
+    Param,
+    ReturnStatus,
+    RosSend,
+    Send,
+    Statement,
+    bodies,
+    statements,
+)
 from roaml.model.syntax import Expression, Value
 from roaml.model.syntax import Name as SyntaxName
 from roaml.model.value_types import ValueUse
@@ -126,6 +139,7 @@ def _meant(
     beside = (*_receivers(chart, name), *(_limits(chart, values) if computed else ()))
     named = (read for other, read in beside if _is_named(name, other, read.name))
     yield from (read for read in named if types.get(read.name) == types.get(name))
+    yield from (read for read in _repeated_tests(chart, name) if types.get(read.name) == types.get(name))
     for statement in chart.statements:
         if isinstance(statement, RosSend | Send):
             yield from _fields(statement.fields if isinstance(statement, RosSend) else statement.params, name, sources)
@@ -135,6 +149,27 @@ def _meant(
                     case Binary(left=Name(name=left), right=Name(name=right) as operand) if left == right:
                         if len(words_of(name)) > 1 and difference(name, right) is not None:
                             yield operand
+
+
+def _repeated_tests(chart: Chart, name: str) -> Iterator[Name]:
+    """Where one of two `<if>` in the same content tests the same flag as the other one, although what it guards has the
+    word in which the unread variable differs from this flag."""
+    for _, _, body in bodies(chart):
+        tests = [(s.branches[0].cond.tree, s) for s in body if isinstance(s, If) and s.branches and s.branches[0].cond]
+        flags = [(tree, statement) for tree, statement in tests if isinstance(tree, Name)]
+        for flag, statement in flags:
+            pair = difference(name, flag.name)
+            if pair is not None and [tree.name for tree, _ in flags].count(flag.name) > 1:
+                inside = {word for used in _assigned_in(statement) for word in words_of(used)}
+                if pair[0] in inside and pair[1] not in inside:
+                    yield flag
+
+
+def _assigned_in(statement: If) -> Iterator[str]:
+    """The variables that the first branch of an `<if>` assigns."""
+    for inner in statements(statement.branches[0].body):
+        if isinstance(inner, Assign) and inner.location is not None:
+            yield from access_path(inner.location.tree) or ()
 
 
 def _receivers(chart: Chart, unread: str) -> Iterator[tuple[str, Name]]:
