@@ -86,13 +86,17 @@ def _constant(
 def _is_counted(context: MachineContext, chart: Chart, name: str) -> bool:
     """Whether a variable is compared with a limit, and is also sent as it is, as a number that changes. A constant is
     one or the other."""
-    own = [v for v in context.typed.values if v.place.chart is chart and isinstance(v.value, Expression)]
-    is_sent = any(v.use in _SENT and isinstance(v.value.tree, Name) and v.value.tree.name == name for v in own)
+    own = [
+        (v.use, v.value.tree)
+        for v in context.typed.values
+        if v.place.chart is chart and isinstance(v.value, Expression)
+    ]
+    is_sent = any(use in _SENT and isinstance(tree, Name) and tree.name == name for use, tree in own)
     return is_sent and any(
         isinstance(node, Binary) and node.operator.kind is OperatorKind.ORDER and _is_side(node, name)
-        for value in own
-        if value.use in CONDITIONS
-        for node in walk(value.value.tree)
+        for use, tree in own
+        if use in CONDITIONS
+        for node in walk(tree)
     )
 
 
