@@ -81,11 +81,11 @@ def _is_open(outcome: Outcome) -> bool:
 
 
 def _values(checker: ModelChecker, property_: CompiledProperty, budget: Budget) -> Exact | None:
-    setup = setup_cost(checker)
-    limits = budget.share(len(checker.compiled_properties), setup)
+    limits = budget.share(len(checker.compiled_properties), setup_cost(checker))
     if limits is None:
         return None
     alone_checker, subject = alone(checker, property_)
+    setup = setup_cost(checker, alone_checker)
     is_reduced = can_be_reduced(alone_checker.program, subject.goal)
     transitions = limits.transitions or 0
     try:

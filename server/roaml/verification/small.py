@@ -38,6 +38,8 @@ _COST_OF_ALL, _COST_OF_REDUCED, _COST_OF_BOTH = 3, 10, 8
 """The duration of a transition in both kinds of search. If both reach their limits, their cost is the limit."""
 SETUP_COST = 10
 """The transitions that take as long as the preparation of one instruction of the model for a search."""
+_REDUCED_PER_TRANSITION = 8
+"""The numbers of a program from which a part is taken in the time of a transition."""
 _STEPS_PER_TRANSITION = 50
 """The number of steps of traces that take five times as long as one transition of a search."""
 _LEAST_BESIDE = 5_000
@@ -90,8 +92,9 @@ def attempt(
     """
     if property_.question.is_conditional:
         return _conditional(checker, property_, limits, watch, only_uniform=only_uniform)
-    cost, reason, is_cut, explored = setup_cost(checker), "", False, 0
-    checker, property_ = alone(checker, property_)
+    whole = checker
+    checker, property_ = alone(whole, property_)
+    cost, reason, is_cut, explored = setup_cost(whole, checker), "", False, 0
     tables = search_tables(checker, property_, limits)
     reduces = leaves_out and can_be_reduced(checker.program, property_.goal)
     for most, is_reduced in _searches(limits, reduces=reduces, is_repeated=is_repeated):
@@ -162,9 +165,16 @@ def _conditional(
     return Attempt(exact, cost)
 
 
-def setup_cost(checker: ModelChecker) -> int:
-    """The duration of the preparation of a search, in transitions."""
-    return SETUP_COST * len(checker.program.code)
+def setup_cost(checker: ModelChecker, reduced: ModelChecker | None = None) -> int:
+    """The duration of the preparation of a search, in transitions.
+
+    Args:
+        reduced: the model checker for the parts on which the property depends (`alone`); if it is not known yet, the
+            duration is that for all parts.
+    """
+    if reduced is None or reduced is checker:
+        return SETUP_COST * len(checker.program.code)
+    return SETUP_COST * len(reduced.program.code) + len(checker.program.code) // _REDUCED_PER_TRANSITION
 
 
 def limits_beside(steps: int, setup: int, states: int) -> StateLimits | None:
