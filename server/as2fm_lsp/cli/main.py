@@ -18,7 +18,6 @@ from as2fm_lsp.cli.exit_status import CLEAN, FAILURE, USAGE
 from as2fm_lsp.cli.output import STANDARD_OUTPUT, complain, flush, print_text
 from as2fm_lsp.cli.tree_semantics import OPTION as TREE_SEMANTICS
 from roaml import __version__
-from roaml.recursion import deep_recursion
 
 COMMANDS = {
     "check": "report what is wrong in systems, other files and folders",
@@ -73,6 +72,8 @@ def run(arguments: Sequence[str]) -> int:
     sys.stdout = sys.stdout or open(os.devnull, "w")  # noqa: SIM115 - None if it was closed, as by `>&-`
     sys.stderr = sys.stderr or open(os.devnull, "w")  # noqa: SIM115
     try:
+        from roaml.json_syntax.brackets import deep_recursion  # noqa: PLC0415 - an interrupt prints no traceback
+
         with deep_recursion():
             status = _status(arguments)
         flush()

@@ -10,7 +10,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+import functools
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from typing import Protocol, TypeAlias
 
@@ -21,11 +22,11 @@ from roaml.experiments.sweeps import Setting, Sweep, settings_of
 from roaml.explicit.space import StateLimits
 from roaml.explicit.values import NoValueError, values_of
 from roaml.record import Record, replace
-from roaml.smc.batch import end_with_main_process
+from roaml.smc.batch import interruptible, stop_on_interrupts
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
-from roaml.smc.pool import Pool, process_context
+from roaml.smc.pool import Pool, process_context, starting_workers
 from roaml.smc.run import Options
 from roaml.verification.exhaustive import UndecidedError, exact_values
 from roaml.verification.results import Exact, Refused
@@ -276,21 +277,27 @@ def _computed(tasks: Sequence[_Task], jobs: int, executor: Executor | None) -> I
             yield from _measure(task)
         return
     if executor is not None:
-        yield from _distributed(tasks, 2 * max(1, jobs), executor)
+        yield from _distributed(tasks, 2 * max(1, jobs), executor, _measure)
         return
     from concurrent.futures import ProcessPoolExecutor  # noqa: PLC0415 - most experiments need no processes
 
-    with ProcessPoolExecutor(min(jobs, len(tasks)), process_context(), end_with_main_process) as own:
-        yield from _distributed(tasks, 2 * jobs, own)
+    with ProcessPoolExecutor(min(jobs, len(tasks)), process_context(), stop_on_interrupts) as own:
+        yield from _distributed(tasks, 2 * jobs, own, functools.partial(interruptible, _measure))
 
 
-def _distributed(tasks: Sequence[_Task], count: int, executor: Executor) -> Iterator[ExperimentPoint]:
+def _distributed(
+    tasks: Sequence[_Task],
+    count: int,
+    executor: Executor,
+    measure: Callable[[_Task], list[ExperimentPoint]],
+) -> Iterator[ExperimentPoint]:
     waiting = iter(tasks)
     running: set[Future[list[ExperimentPoint]]] = set()
     try:
         while True:
             for task in waiting:
-                running.add(executor.submit(_measure, task))
+                with starting_workers():
+                    running.add(executor.submit(measure, task))
                 if len(running) == count:
                     break
             if not running:

@@ -20,6 +20,7 @@ from roaml.diagnostics import Diagnostic, Finding, RelatedPlace, Severity, Symbo
 from roaml.exhaustive import assert_never
 from roaml.expansion import ExpandedText
 from roaml.expansion.problems import ExpansionProblem
+from roaml.json_syntax.brackets import deep_recursion
 from roaml.model.kinds import FileKind
 from roaml.model.machine import Dialect
 from roaml.model.property_links import LinkedFile
@@ -31,7 +32,6 @@ from roaml.project.memo import Memo
 from roaml.project.settings import Settings
 from roaml.project.suppress import Suppression, covering, suppressions
 from roaml.record import replace
-from roaml.recursion import deep_recursion
 from roaml.rules import BY_CODE, RULES
 from roaml.rules.elements import invalid_value
 from roaml.rules.files import file_too_large, unused_suppression

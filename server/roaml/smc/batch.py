@@ -10,7 +10,7 @@ import time
 from array import array
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from roaml.record import Record
 from roaml.smc.counts import count
@@ -25,6 +25,10 @@ from roaml.smc.tally import REJECTED, Tally
 
 if TYPE_CHECKING:
     from ctypes import c_bool
+    from types import FrameType
+
+T = TypeVar("T")
+R = TypeVar("R")
 
 STEPS_BETWEEN_PULSES = 200_000
 """The number of steps of a trace after which its progress is reported: these steps take some hundredths of a second."""
@@ -309,11 +313,51 @@ def start_worker(stopping: c_bool) -> None:
 def follow_main_process() -> None:
     """Let this worker process ignore interrupts from the keyboard, which only the main process handles, and end when
     the main process has ended, even if it was killed."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    end_with_main_process()
+    _handle_interrupts(signal.SIG_IGN)
+    _end_with_main_process()
 
 
-def end_with_main_process() -> None:
+def stop_on_interrupts() -> None:
+    """Let this worker process stop its work when it is interrupted from the keyboard, as the main process is, and end
+    when the main process has ended, even if it was killed. The work is done with `interruptible`."""
+
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        global _is_interrupted  # noqa: PLW0603
+        _is_interrupted = True
+        if _is_working:  # The executor passes the exception on. Elsewhere, it would print a traceback.
+            raise KeyboardInterrupt
+
+    _handle_interrupts(interrupt)
+    _end_with_main_process()
+
+
+_is_interrupted = _is_working = False
+
+
+def interruptible(work: Callable[[T], R], argument: T) -> R:
+    """The result of some work in a worker process.
+
+    Raises:
+        KeyboardInterrupt: the process is interrupted, or was before.
+    """
+    global _is_working  # noqa: PLW0603
+    _is_working = True
+    try:
+        if _is_interrupted:
+            raise KeyboardInterrupt
+        return work(argument)
+    finally:
+        _is_working = False
+
+
+def _handle_interrupts(handler: Callable[[int, FrameType | None], object] | signal.Handlers) -> None:
+    """Handle SIGINT from now on, also if it came while this process was started (`pool.starting_workers`)."""
+    signal.signal(signal.SIGINT, handler)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGINT,))
+
+
+def _end_with_main_process() -> None:
     """Let this worker process end when the main process has ended, even if it was killed."""
     import multiprocessing  # noqa: PLC0415 - most questions are answered without workers
 

@@ -10,8 +10,8 @@ from roaml.jani.expressions import Call, Name
 from roaml.jani.model import Model, ModelType
 from roaml.jani.passive import without_passive
 from roaml.jani.properties import Formula, Property, identifiers, walk
+from roaml.json_syntax.brackets import deep_recursion
 from roaml.record import replace
-from roaml.recursion import deep_recursion
 from roaml.smc.batch import Payload, TraceProblem
 from roaml.smc.choices import Choices, check_choices
 from roaml.smc.compile import Compilation, Legend

@@ -144,7 +144,7 @@ class Pool:
         from concurrent.futures import BrokenExecutor  # noqa: PLC0415 - most questions are answered without workers
 
         # A worker that is being started is not known to the executor yet, so it would not be ended.
-        with _uninterrupted(redelivers=True):
+        with _uninterrupted(redelivers=True), starting_workers():
             try:
                 return self._executor().submit(run_in_worker if self.is_own else run_all, tasks)
             except BrokenExecutor:
@@ -207,6 +207,23 @@ def _uninterrupted(*, redelivers: bool) -> Iterator[None]:
             signal.signal(number, handler)
         if received and redelivers:
             signal.raise_signal(received[0])
+
+
+@contextmanager
+def starting_workers() -> Iterator[None]:
+    """Worker processes that are started in it do not receive SIGINT before they have chosen how to handle it
+    (`batch.follow_main_process`, `batch.stop_on_interrupts`). Python would print a traceback for each."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    from multiprocessing import resource_tracker  # noqa: PLC0415 - most questions are answered without workers
+
+    resource_tracker.ensure_running()  # When it is started, some versions of Python unblock the signals.
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT,))
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def process_context() -> BaseContext:

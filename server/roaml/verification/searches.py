@@ -19,7 +19,7 @@ from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.memory import available
 from roaml.smc.model import ModelChecker
-from roaml.smc.pool import WORKER_START_DELAY_S, process_context
+from roaml.smc.pool import WORKER_START_DELAY_S, process_context, starting_workers
 from roaml.verification.exhaustive import UndecidedError, alone, exact_values
 from roaml.verification.results import Exact, ShortestTrace
 
@@ -54,7 +54,8 @@ class _OwnProcess:
         payload = pickle.dumps((*self._own, limits))
         # It is daemonic so that it ends with this process.
         self._process: BaseProcess = context.Process(target=_explore, args=(sending, payload), daemon=True)  # type: ignore[attr-defined]
-        self._process.start()
+        with starting_workers():
+            self._process.start()
         sending.close()
 
     @property
