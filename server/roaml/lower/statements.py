@@ -3,13 +3,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from heapq import heappop, heappush
 from typing import TypeAlias
 
 from roaml.exhaustive import assert_never
 from roaml.expr.infer import infer
 from roaml.expr.transform import map_children
-from roaml.expr.tree import Expr, is_draw, walk
+from roaml.expr.tree import Expr, Index, Member, is_draw, walk
+from roaml.expr.tree import Name as VariableName
 from roaml.expr.types import BASE_TYPES, UNKNOWN, Scalar, ScalarKind, Struct, Type, leaves, unwrap
 from roaml.expr.zero import zero
 from roaml.lower.blackboard_events import blackboard_write
@@ -100,11 +103,40 @@ class StatementLowering(Record, eq=False):
         assert target is not None
         struct = unwrap(target.type)[0]
         if target.length and isinstance(struct, Struct):
-            for path, _ in leaves(struct):
-                yield Assign(target.leaf(path), self.value(statement.value, scope), origin)
-            return
-        for path, value in self.values(statement.value, scope, target.type):
-            yield from self.store(target.leaf(path), value, origin)
+            values = [(path, self.value(statement.value, scope)) for path, _ in leaves(struct)]
+        else:
+            values = self.values(statement.value, scope, target.type)
+        types = dict(leaves(target.type))
+        writes = [_Write(target.leaf(path), value, types.get(path, UNKNOWN)) for path, value in values]
+        ordered, rest = _in_order(writes)
+        for write in ordered:
+            yield from self.store(write.location, write.value, origin)
+        yield from self.stored_at_once(rest, INT if target.length else None, origin)
+
+    def stored_at_once(self, writes: Iterable[_Write], type_: Type | None, origin: Location) -> Iterator[Statement]:
+        """The statements for assignments of which each changes what another one reads: the indices and values are
+        stored in variables first, which are reset afterwards.
+
+        Args:
+            type_: the type of the values, if it is not that of the leaves.
+        """
+        kept: list[Data] = []
+
+        def keep(value: Expr, type_: Type) -> Iterator[Statement]:
+            kept.append(self.fresh(type_, origin))
+            yield from self.store(name(kept[-1].id), value, origin)
+
+        last: list[Statement] = []
+        for write in writes:
+            location = write.location
+            indices: list[Expr] = []
+            for index in _indices(location):
+                yield from keep(index, INT)
+                indices.append(name(kept[-1].id))
+            yield from keep(write.value, type_ or write.type)
+            last.append(Assign(_with_indices(location, indices), name(kept[-1].id), origin))
+        yield from last
+        yield from (Assign(name(data.id), data.value, origin) for data in kept)
 
     def store(self, location: Expr, value: Expr, origin: Location) -> Iterator[Statement]:
         """The statements for an assignment. If it contains too many random numbers, they are drawn one after the other
@@ -187,7 +219,7 @@ class StatementLowering(Record, eq=False):
         yield Send(event, tuple(ready), origin)
 
     def fresh(self, type_: Type, origin: Location) -> Data:
-        """Add a variable for a value with random numbers to the automaton, and return it."""
+        """Add a variable for an intermediate value to the automaton, and return it."""
         taken = {*self.context.variables, *(data.id for data in self.drawn)}
         count = len(self.drawn)
         while (unused := f"random_{count}") in taken:
@@ -320,3 +352,64 @@ class StatementLowering(Record, eq=False):
 def literal_index(child: Name) -> int | None:
     """The index of a child if it is a number; `None` if it is a variable."""
     return int(child.value) if child.value.isascii() and child.value.isdigit() else None
+
+
+class _Write(Record, frozen=True):
+    """An assignment to a leaf of a struct, with the type of the leaf."""
+
+    location: Expr
+    value: Expr
+    type: Type
+
+    @property
+    def variable(self) -> str:
+        location = self.location
+        while isinstance(location, Member | Index):
+            location = location.object
+        assert isinstance(location, VariableName)
+        return location.name
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """The variables on which the value and the indices of the location depend."""
+        parts = (self.value, *_indices(self.location))
+        return frozenset(node.name for part in parts for node in walk(part) if isinstance(node, VariableName))
+
+
+def _in_order(writes: Sequence[_Write]) -> tuple[list[_Write], list[_Write]]:
+    """Assignments in an order in which none of them changes what a later one reads, such as the length of the array in
+    `v[v.length]`, which is that of the first leaf; and those for which there is no such order."""
+    own = {write.variable: number for number, write in enumerate(writes)}
+    read = [{own[name] for name in write.reads if name in own} - {number} for number, write in enumerate(writes)]
+    readers = Counter(number for numbers in read for number in numbers)
+    free = [number for number in range(len(writes)) if not readers[number]]
+    ordered: list[int] = []
+    while free:
+        ordered.append(heappop(free))
+        for number in read[ordered[-1]]:
+            readers[number] -= 1
+            if not readers[number]:
+                heappush(free, number)
+    taken = set(ordered)
+    return [writes[number] for number in ordered], [w for number, w in enumerate(writes) if number not in taken]
+
+
+def _indices(location: Expr) -> list[Expr]:
+    """The indices of a location, the outermost first."""
+    indices: list[Expr] = []
+    while isinstance(location, Member | Index):
+        if isinstance(location, Index):
+            indices.append(location.index)
+        location = location.object
+    return indices[::-1]
+
+
+def _with_indices(location: Expr, indices: Sequence[Expr]) -> Expr:
+    """A location with other indices, the outermost first."""
+    match location:
+        case Index():
+            return replace(location, object=_with_indices(location.object, indices[:-1]), index=indices[-1])
+        case Member():
+            return replace(location, object=_with_indices(location.object, indices))
+        case _:
+            return location
