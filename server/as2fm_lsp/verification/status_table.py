@@ -31,7 +31,7 @@ def status_table(
     for node in nodes:
         counts = returned.get(node.number, Counter())
         if not counts:
-            idle.append(node.name)
+            idle.append(f"{node.name} ({place_of(node.origin)})")
             continue
         numbers = (str(sum(counts.values())), *(str(counts[name]) for name in COLUMNS))
         rows.append((f"{node.name} ({place_of(node.origin)})", *numbers))
