@@ -42,7 +42,8 @@ def test_a_stuck_system_is_reported_prominently(command: Command, ward: Path) ->
     assert done.status == 0
     lines = done.out.splitlines()
     assert re.fullmatch(
-        r"  warning: [\d,]+ of [\d,]+ traces got stuck and say nothing about the property, so its value is doubtful; "
+        r"  warning: [\d,]+ of [\d,]+ traces got stuck, because machines wait for each other for ever; they say "
+        r"nothing about the property, so its value is doubtful; "
         r"for example trace \d+ after 46 steps at 2 s:",
         lines[2],
     )
@@ -54,7 +55,7 @@ def test_a_stuck_system_is_reported_prominently(command: Command, ward: Path) ->
     assert re.search(
         r"\nprobability of getting stuck: 0\.\d+ in \[0\.\d+, 0\.\d+\] from 100 traces to their end\n"
         r"warning: the system gets stuck and time does not advance; "
-        r"the waiting automata are shown above, below `delivered`\n",
+        r"who waits for whom is shown above, below `delivered`\n",
         done.out,
     )
 
@@ -77,11 +78,11 @@ def test_waiting_automata_are_shown_once_for_two_properties(command: Command, wa
     (ward / "properties.jani").write_text(json.dumps(written), encoding="utf-8")
     out = command("verify", "main.xml").out
     assert out.count("the clock waits") == 1
-    assert "doubtful; the waiting automata are shown above, below `delivered`\n" in out
+    assert "doubtful; who waits for whom is shown above, below `delivered`\n" in out
     explained = command("verify", "main.xml", "--explain").out
     assert explained.count("waits at 2 s for the tree") == 1
-    assert explained.count("doubtful; the waiting automata are shown in the trace below\n") == 2
-    assert "\n  the waiting automata are shown above, at the end of the trace of `delivered`\n" in explained
+    assert explained.count("doubtful; who waits for whom is shown in the trace below\n") == 2
+    assert "\n  who waits for whom is shown above, at the end of the trace of `delivered`\n" in explained
 
 
 def test_waiting_automata_are_shown_as_in_the_manual(command: Command, ward: Path) -> None:
@@ -134,7 +135,10 @@ def test_json(command: Command, ward: Path) -> None:
     assert known["example"]["time"] == 2.0
     assert "return RUNNING" in known["example"]["advice"]
     assert known["example"]["rule"] == "answer-needs-time"
-    assert re.match(r"[\d,]+ of [\d,]+ traces got stuck and say nothing about the property, ", result["warning"])
+    assert re.match(
+        r"[\d,]+ of [\d,]+ traces got stuck, because machines wait for each other for ever; they say ",
+        result["warning"],
+    )
     assert "minimum" in result["warning"]
 
 
@@ -233,7 +237,7 @@ def test_counts_are_saved(command: Command, ward: Path) -> None:
 
 def test_sampled_schedulers_that_get_stuck_are_reported(command: Command, ward: Path) -> None:
     done = command("verify", "main.xml", "--scheduler", "lss", "--epsilon", 0.1)
-    assert re.search(r"\n  by sampled scheduler .*\n  warning: .* traces got stuck and say nothing", done.out)
+    assert re.search(r"\n  by sampled scheduler .*\n  warning: .* traces got stuck, because machines wait", done.out)
     assert "warning: the system gets stuck" in done.out
 
 

@@ -619,7 +619,8 @@ def test_limits_of_an_exhaustive_verification(command: Command, tmp_path: Path) 
     name = write(tmp_path, coin())
     done = command("verify", name, "--exhaustive", "--max-states", 2, "--expect", "heads >= 0")
     assert done.status == 1
-    reason = "stopped at 2 states (max-states); estimate the value from traces with uniform choices instead"
+    remedy = "raise this limit, or estimate the value from traces with uniform choices instead"
+    reason = f"stopped at 2 states (max-states); {remedy}"
     assert done.out.startswith(f"heads: undecided: {reason}, ")
     assert "  expected ≥ 0: undecided\n" in done.out
     row = rows(command("verify", name, "--exhaustive", "--max-states", 2, "--format", "json").out)["heads"]

@@ -123,16 +123,19 @@ def test_a_property_that_checks_for_a_message_gets_no_advice(command: Command, t
     assert "  warning: the initial state decides the property, before any step\n" in command("verify", "main.xml").out
 
 
-@pytest.mark.parametrize("options", [[], ["--method", "adaptive"]])
+@pytest.mark.parametrize("options", [[], ["--exhaustive"], ["--method", "adaptive"]])
 def test_time_stops_while_machines_exchange_events(command: Command, tmp_path: Path, options: list[str]) -> None:
     write(tmp_path, ENDLESS, {"op": "=", "left": "topic_ping_msg__ros_fields__data", "right": 7})
     done = command("verify", "main.xml", *options)
     assert re.search(
         r"^  warning: time stops in 200 of 200 traces, in trace 0 at \d\.\d{3} s: `Pong` and `Ping` take steps for "
-        "ever, so no timer ticks any more; let a timer or an event of another machine end them$",
+        "ever that need no time, so no timer ticks after that, and what has not happened by then never happens; let "
+        "one of these steps wait for a timer, or for an event of another machine$",
         done.out,
         re.MULTILINE,
     )
+    (row,) = json.loads(command("verify", "main.xml", *options, "--format", "json").out)["results"]
+    assert row["warning"].startswith("time stops in 200 of 200 traces")
 
 
 def test_a_simulation_ends_where_time_stops(command: Command, tmp_path: Path) -> None:

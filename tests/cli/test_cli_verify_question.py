@@ -16,13 +16,15 @@ import pytest
 from command import Command
 from smc_models import Json, automaton, document, edge, model, op, probability, variable, way
 
-from as2fm_lsp.verification.scheduler_report import note
+from as2fm_lsp.verification.report import one_as_text
+from as2fm_lsp.verification.scheduler_report import OTHERS, note
 from roaml.explicit.space import StateLimits
 from roaml.jani.operators import BinaryOperator
 from roaml.rules import document as rule_document
 from roaml.smc.choices import Choices
 from roaml.smc.goal import Question, Threshold
 from roaml.verification.expectations import Expectation, Verdict
+from roaml.verification.results import Result, Sampled
 from roaml.verification.small import SHARED_LIMITS, UNIFORM_LIMITS
 from roaml.verification.target import VerificationTarget, target_of
 from roaml.verification.verifier import verifier_of
@@ -100,9 +102,9 @@ def test_a_small_model_is_answered_exactly(command: Command, tmp_path: Path) -> 
     assert others == [
         "  `done` holds at some time.",
         "  it fails, for example, if `worker` is delayed for ever while `busy` repeats 50 steps",
-        "  expected ≤ 0.1: met",
+        "  expected ≤ 0.1: met by the minimum over all schedulers, which is 0, but not by the maximum, which is 1",
         "uniform choices: each step that is possible is equally probable; a scheduler: a rule that chooses which of "
-        "the possible steps is next",
+        "the possible steps is next, such as which of two messages arrives first",
     ]
     lines = command("verify", name, "--expect", "p <= 0.1", "--verbose").out.splitlines()
     assert re.fullmatch(r"p: minimum 0, maximum 1, 1 under uniform choices, exact, 100 states, \d\.\d s", lines[0])
@@ -111,7 +113,7 @@ def test_a_small_model_is_answered_exactly(command: Command, tmp_path: Path) -> 
         "  shortest traces: it holds after 1 step",
         others[1],
         "  ends of 200 random traces: goal decided 200",
-        "  expected ≤ 0.1: met",
+        "  expected ≤ 0.1: met by the minimum over all schedulers, which is 0, but not by the maximum, which is 1",
     ]
     assert lines[6].startswith("exact values, computed from all reachable states: minimum and maximum over all ")
     assert lines[7:] == others[3:]
@@ -206,9 +208,15 @@ def test_all_schedulers_agree(command: Command, tmp_path: Path) -> None:
     few = command("verify", "model.jani", "--method", "adaptive", "--max-states", "2").out
     assert "were explored" not in few
     assert few.startswith("heads: minimum not known")
-    assert (
-        "is not known (too many states: gave up after 2; " in command("verify", "model.jani", "--max-states", "2").out
-    )
+    note = command("verify", "model.jani", "--max-states", "2").out
+    assert "is not known (too many states: gave up after 2; " in note
+    assert "\n  help: use a higher --max-states to search for longer, --exhaustive to compute" in note
+
+
+def test_an_interrupted_search_for_schedulers_has_a_name() -> None:
+    lines = one_as_text(Result("p", Sampled((), 512, is_interrupted=True), seconds=2.0), str).splitlines()
+    assert lines[0] == "p: interrupted; there is no result so far"
+    assert lines[1].startswith("  512 schedulers were tried, 2.0 s; ")
 
 
 def hidden() -> Json:
@@ -310,7 +318,7 @@ def test_an_infinite_exact_reward_states_its_reason(command: Command, tmp_path: 
     written["properties"] = [{"name": "cost", "expression": reward}, {"name": "free", "expression": finite}]
     lines = command("verify", write(tmp_path, written)).out.splitlines()
     assert lines[0].startswith("cost (expected value): = ∞ for all schedulers, exact, ")
-    assert lines[2] == "  infinite: some traces never reach the condition up to which the reward is accumulated"
+    assert lines[2] == "  infinite: some traces never reach the condition; `|| F …` with this condition leaves them out"
     assert lines[3].startswith("free (expected value): = 0 for all schedulers, exact, ")
 
 
@@ -395,7 +403,7 @@ def test_schedulers_that_were_looked_for_have_all_that_results_have(command: Com
     first, sentence = r"p: (minimum|maximum) probability found .* failed\n", r"  `done` holds at some time\.\n"
     rest = r"  by sampled scheduler \d+, which .*\n  ends: .*\n"
     assert re.match(
-        rf"{first}{sentence}{rest}{first}{rest}  [\d,]+ schedulers were tried, \d+\.\d s; others may be more extreme\n",
+        rf"{first}{sentence}{rest}{first}{rest}  [\d,]+ schedulers were tried, \d+\.\d s; {OTHERS}\n",
         out,
     )
     assert "seed 7" in out
@@ -482,7 +490,9 @@ def test_expectations_of_sampled_schedulers(command: Command, tmp_path: Path) ->
     )
     table = command("verify", name, *options, "--format", "csv").out
     assert re.search(
-        r"^p,sampled schedulers,,,,0\.0,1\.0,.*schedulers were tried; others may be more extreme$", table, re.M
+        rf"^p,sampled schedulers,,,,0\.0,1\.0,.*schedulers were tried; {OTHERS}$",
+        table,
+        re.M,
     )
     assert 'name="expected ≥ 0" value="met by the ' in command("verify", name, *options, "--format", "junit").out
     (row,) = json.loads(command("verify", name, *options, "--format", "json").out)["results"]
@@ -657,7 +667,7 @@ def test_the_interval_of_a_sequential_test_holds_whenever_it_stops(command: Comm
     done = command("verify", write(tmp_path, coin()), "--method", "sprt", "--expect", "heads >= 0.28")
     assert "decided by Wald's sequential test: wrong with a probability of at most 0.05" in done.out
     assert "unless the value is between 0.27 and 0.29" in done.out
-    assert "it is one of a confidence sequence" in done.out
+    assert "valid whenever the traces are stopped (a confidence sequence)" in done.out
     row = rows(command("verify", "model.jani", "--method", "sprt", "--expect", "heads >= 0.5", "--format", "json").out)
     assert row["heads"]["interval"] == "confidence sequence"
     assert (

@@ -137,6 +137,6 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeyp
     page = Path("curves.html").read_text(encoding="utf-8")
     assert "Probability over time" in page
     assert "median of x" in page
-    assert "each value by itself is inside with 0.95 confidence" in page
+    assert "the shaded band contains each value by itself with 0.95" in page
     assert call(["verify", "walk.jani", "--plot", "curves.svg", "--over-time", "y"]) == 2
     assert "there is no variable `y`" in capsys.readouterr().err

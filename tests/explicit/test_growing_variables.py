@@ -184,8 +184,11 @@ def test_an_interrupted_exploration_on_the_command_line(
     monkeypatch.setattr(ProgressBar, "states", states)
     assert run(["verify", str(file), "--exhaustive", "--no-reductions"]) == 130
     lines = capsys.readouterr().out.splitlines()
-    assert re.fullmatch(r"p: interrupted after [\d,]+ states, \d+\.\d s; there is no result so far", lines[0])
-    assert re.match(r"  more and more values so far: `n` \(0 to [\d,]+\); give variables a maximum", lines[1])
+    assert re.fullmatch(
+        r"p: interrupted after [\d,]+ states, \d+\.\d s; there is no result before all states are known", lines[0]
+    )
+    least = r"  most different values so far: `n` \(0 to [\d,]+\); for fewer states, give variables a maximum"
+    assert re.match(least, lines[1])
     assert run(["verify", str(file), "--exhaustive", "--no-reductions", "--format", "json"]) == 130
     (row,) = json.loads(capsys.readouterr().out)["results"]
     assert row["interrupted"]

@@ -401,10 +401,10 @@ async def test_a_stuck_system_is_reported_with_its_waiting_automata(tmp_path: Pa
         assert "Fetch waits in `asked` for the response of the service `/ward/prepare`" in known["text"]
         assert known["text"].startswith("probability of getting stuck: ")
         assert known["text"].endswith(" [answer-needs-time]")
-        assert "traces got stuck and say nothing about the property, so its value is doubtful" in result["warning"]
+        assert "traces got stuck, because machines wait for each other for ever; they say" in result["warning"]
         (own,) = (message.message for message in client.messages if message.message.startswith("delivered: "))
         assert own.splitlines()[1].endswith(
-            "so its value is doubtful; the waiting automata are shown in a separate message"
+            "so its value is doubtful; who waits for whom is shown in a separate message"
         )
         # The lens of the property and the lens of the system.
         assert f"{result['ends']['stuck']:,} traces got stuck" in " ".join(await lenses(client, properties))

@@ -125,8 +125,10 @@ def test_rewards_are_not_sampled() -> None:
 
 def test_described() -> None:
     names = ["`one`", "`two`"]
-    assert described(7, names) == "sampled scheduler 7, which decides by the state alone"
-    assert described(MEMORY | 3, names) == "sampled scheduler 3, which decides by the state and the last step"
+    assert described(7, names) == "sampled scheduler 7, which always makes the same choice in the same state"
+    assert described(MEMORY | 3, names) == (
+        "sampled scheduler 3, which always makes the same choice after the same step in the same state"
+    )
     assert described(STARVE | (1 << 32) | 2, names) == (
         "sampled scheduler 2, which lets `two` proceed only where nothing else can proceed"
     )

@@ -16,9 +16,13 @@ from as2fm_lsp.verification.report import one_as_text, row, warning
 from roaml import api
 from roaml.explicit.space import StateLimits
 from roaml.jani.model import Model
+from roaml.jani.operators import BinaryOperator
 from roaml.jani.writer import write
+from roaml.record import replace
 from roaml.scxml.names import TIME_OVER_ACTION
+from roaml.smc.goal import Threshold
 from roaml.smc.run import EstimationMethod, Options
+from roaml.verification.expectations import Expectation, Verdict
 
 COIN = """<ascxml name="Coin" version="1.0" initial="toss">
     <datamodel><data id="count" type="int32" expr="0" /></datamodel>
@@ -355,18 +359,25 @@ def test_vacuous_traces_and_those_that_fail_at_the_end_of_time_are_counted() -> 
     # Nothing but the end of time violates an untimed response of this system.
     assert rows["answered"]["failed_at_end_of_time"] == rows["answered"]["failed"] > 0
     assert rows["dead"]["vacuous"] == {"scope_not_judged": 0, "not_triggered": 300}
-    untested = "the property is vacuous, that is, met only because nothing has tested it:"
-    assert (
-        warning(results["dead"]) == f"{untested} the event that makes it require something did not occur in any trace"
-    )
+    untested = "nothing has tested the property, so this value does not show that the system is right (vacuous): "
+    remedy = "check whether it can happen at all, or allow more time (max_time)"
+    trigger = "what must happen before the property requires anything did not happen"
+    assert warning(results["dead"]) == f"{untested}{trigger} in any trace; {remedy}"
+    verdict = Verdict(Expectation("dead", Threshold(BinaryOperator.GREATER_EQUAL, 0.9)), True, True)
+    text = one_as_text(replace(results["dead"], verdicts=(verdict,)), str)
+    assert "  expected ≥ 0.9: met, but nothing has tested the property" in text
     assert rows["unopened"]["vacuous"] == {"scope_not_judged": 300, "not_triggered": 0}
-    assert warning(results["unopened"]) == f"{untested} the event of its scope did not occur in any trace"
+    assert warning(results["unopened"]) == (
+        f"{untested}the event that begins the scope of the property did not happen in any trace; {remedy}"
+    )
     assert rows["opened"]["vacuous"]["scope_not_judged"] / 300 == pytest.approx(0.7**6, abs=0.1)
     assert rows["opened"]["vacuous"]["not_triggered"] == 0
     assert rows["opened"]["failed"] > 0
     text = one_as_text(results["scoped"], str)
-    assert re.search(r"\n  the event of its scope did not occur in [0-9]+ of 300 traces \(", text)
-    assert re.search(r"\n  the event that makes it require something did not occur in [0-9]+ of 300 traces \(", text)
+    assert re.search(
+        r"\n  the event that begins the scope of the property did not happen in [0-9]+ of 300 traces \(", text
+    )
+    assert re.search(rf"\n  {trigger} in [0-9]+ of 300 traces \(", text)
     assert "failed traces fail when the time ends (max_time)" in text
 
 

@@ -11,9 +11,10 @@ from roaml.smc.run import Answer
 from roaml.smc.tally import Tally
 
 _UNTESTED = "these are among the passed traces, but do not test it"
-_NEVER_TESTED = "the property is vacuous, that is, met only because nothing has tested it:"
-_NOT_TRIGGERED = "the event that makes it require something did not occur"
-_NOT_OPENED = "the event of its scope did not occur"
+_NEVER_TESTED = "nothing has tested the property, so this value does not show that the system is right (vacuous):"
+_NOT_TRIGGERED = "what must happen before the property requires anything did not happen"
+_NOT_OPENED = "the event that begins the scope of the property did not happen"
+_REMEDY = "check whether it can happen at all, or allow more time (max_time)"
 NONE_ACCEPTED = "no trace satisfies the assumptions of the property, so there is no value"
 
 
@@ -28,10 +29,10 @@ def remarks(answer: Answer, *, are_examples: bool = False) -> list[str]:
     if answer.question.is_conditional and tally.traces:
         share = _share(tally.traces, tally.simulated)
         if answer.question.is_reward:
-            lines.append(f"given that its condition is reached, as in {share}")
+            lines.append(f"the value is that of the traces that reach the condition: {share}")
         else:
-            lines.append(f"given its assumptions, which {share} satisfy")
-    if tally.traces and tally.closed + tally.idle == tally.traces:
+            lines.append(f"the value is that of the traces that satisfy the assumption: {share}")
+    if is_untested(answer):
         lines.append(f"warning: {warning(answer)}")
     else:
         if tally.closed:
@@ -54,6 +55,11 @@ def remarks(answer: Answer, *, are_examples: bool = False) -> list[str]:
     return lines
 
 
+def is_untested(answer: Answer) -> bool:
+    """Whether the property holds vacuously in all traces."""
+    return 0 < answer.tally.traces == answer.tally.closed + answer.tally.idle
+
+
 def open_at_end(tally: Tally) -> int:
     """The number of traces that are undecided because the time ended before a deadline of the property."""
     return tally.undecided - tally.ended(End.CUT)
@@ -65,9 +71,9 @@ def warning(answer: Answer) -> str:
     tally = answer.tally
     if answer.question.is_conditional and tally.traces == 0 and tally.rejected:
         return f"{NONE_ACCEPTED}: {tally.rejected:,} traces violate them"
-    if tally.traces == 0 or tally.closed + tally.idle < tally.traces:
+    if not is_untested(answer):
         return ""
-    return f"{_NEVER_TESTED} {_NOT_TRIGGERED if tally.idle else _NOT_OPENED} in any trace"
+    return f"{_NEVER_TESTED} {_NOT_TRIGGERED if tally.idle else _NOT_OPENED} in any trace; {_REMEDY}"
 
 
 def row(answer: Answer) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from as2fm_lsp.verification.report import conditional_texts, warning
+from as2fm_lsp.verification.scheduler_report import OTHERS
 from roaml.experiments.results import csv_text
 from roaml.smc.lss import Side
 from roaml.verification.headline import headline
@@ -54,7 +55,7 @@ def _row(result: Result) -> dict[str, Any]:
                 row["minimum" if extreme.side is Side.LEAST else "maximum"] = extreme.answer.value
             row |= {
                 "kind": "sampled schedulers",
-                "note": f"{tried:,} schedulers were tried; others may be more extreme",
+                "note": f"{tried:,} schedulers were tried; {OTHERS}",
             }
         case _:
             is_given = isinstance(result.outcome, Estimated) and result.outcome.answer.question.is_conditional

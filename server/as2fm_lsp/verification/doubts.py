@@ -7,8 +7,7 @@ from __future__ import annotations
 from roaml.scxml.names import FIELD_PREFIX, flag_of
 from roaml.smc.end import End
 from roaml.smc.goal import Question
-from roaml.smc.tally import Tally
-from roaml.verification.results import Computed, Result, Traces
+from roaml.verification.results import Computed, Result, StoppedTime
 
 CAN_GET_STUCK = (
     "the system can get stuck before the property is decided, and then F is false and G is true; `verify` without "
@@ -22,29 +21,33 @@ def doubts(result: Result) -> list[str]:
     question = _question_decided_at_once(result)
     if question is not None:
         reasons.append(f"the initial state decides the property, before any step{_default_values(question)}")
-    if result.answer is not None and result.traces is not None:
-        reasons += _stopped_time(result.answer.tally, result.traces)
+    stopped = _stopped(result)
+    if stopped is not None:
+        reasons.append(_stopped_time(stopped))
     return reasons
 
 
-def _stopped_time(tally: Tally, traces: Traces) -> list[str]:
-    """That time stops in some traces, with the machines that take steps for ever in the shortest one."""
-    if End.ROUND not in tally.ends or traces.target.clock is None:
-        return []
-    from roaml.durations import moment  # noqa: PLC0415 - time seldom stops
-    from roaml.verification.repetition import repetition  # noqa: PLC0415
+def _stopped(result: Result) -> StoppedTime | None:
+    """The traces of a result in which time stops; `None` if there are none."""
+    if result.answer is not None and result.traces is not None and End.ROUND in result.answer.tally.ends:
+        from roaml.verification.repetition import stopped_time  # noqa: PLC0415 - time seldom stops
 
-    rounds, shortest = tally.ends[End.ROUND].count, tally.ends[End.ROUND].shortest
-    repeated = repetition(traces, shortest.trace, shortest.steps)
-    if repeated.is_after_end:
-        return []
-    who = " and ".join(repeated.names) if repeated.names else "machines"
-    verb = "takes" if len(repeated.names) == 1 else "take"
-    where = "" if repeated.time is None else f", in trace {shortest.trace} at {moment(repeated.time)}"
-    return [
-        f"time stops in {rounds:,} of {tally.traces:,} traces{where}: {who} {verb} steps for ever, so no timer "
-        "ticks any more; let a timer or an event of another machine end them"
-    ]
+        return stopped_time(result.answer.tally, result.traces)
+    return result.outcome.stopped if isinstance(result.outcome, Computed) else None
+
+
+def _stopped_time(stopped: StoppedTime) -> str:
+    """A phrase for users, with the machines that take steps for ever in the shortest trace."""
+    from roaml.durations import moment  # noqa: PLC0415 - time seldom stops
+
+    who = " and ".join(stopped.names) if stopped.names else "machines"
+    verb = "takes" if len(stopped.names) == 1 else "take"
+    where = "" if stopped.time is None else f", in trace {stopped.trace} at {moment(stopped.time)}"
+    return (
+        f"time stops in {stopped.count:,} of {stopped.traces:,} traces{where}: {who} {verb} steps for ever that "
+        "need no time, so no timer ticks after that, and what has not happened by then never happens; let one of these "
+        "steps wait for a timer, or for an event of another machine"
+    )
 
 
 def can_get_stuck(result: Result) -> bool:

@@ -12,7 +12,6 @@ from as2fm_lsp.verification.doubts import CAN_GET_STUCK, can_get_stuck, doubts
 from as2fm_lsp.verification.stuck_report import PROBABILITY
 from roaml.comparison import UniformPolicy
 from roaml.exhaustive import assert_never
-from roaml.smc.choices import Choices
 from roaml.smc.end import End
 from roaml.smc.goal import Question
 from roaml.smc.lss import Side
@@ -34,7 +33,7 @@ from roaml.verification.results import (
     Undecided,
     UnderAssumption,
 )
-from roaml.verification.schedulers import may_differ
+from roaml.verification.schedulers import is_extreme_known, may_differ
 from roaml.verification.stuck import Stuck, StuckLevel
 
 if TYPE_CHECKING:
@@ -66,16 +65,17 @@ def as_text(
         blocks.append(_block(result, place_of, level, where, is_alone=False, is_whole=is_whole))
         if result.stuck is not None and not result.includes_stuck:
             shown_at.setdefault(result.stuck.chain, f"above, below `{result.name}`")
-    open_ = [
-        (estimated.answer.question, estimated.choices or Choices())
+    unknown = [
+        (estimated.answer.question, estimated.choices)
         for estimated in (result.outcome for result in results)
         if isinstance(estimated, Estimated)
+        and estimated.choices is not None
         and (estimated.answer.tally.traces or not estimated.is_interrupted)
-        and may_differ(estimated.choices)
+        and not is_extreme_known(estimated.answer.question, estimated.choices)
         and not estimated.answer.question.asks_for_extreme_state
     ]
     unexpected = _without_expectation(results) if is_whole or any(result.verdicts for result in results) else []
-    note = scheduler_report.note(open_, knows_reactions=any(result.conditional for result in results))
+    note = scheduler_report.note(unknown, knows_reactions=any(result.conditional for result in results))
     return "".join(f"{line}\n" for line in (*blocks, *unexpected, *met_only_uniformly(results), *note))
 
 
@@ -126,7 +126,10 @@ def _block(
             lines = [f"{result.name}: undecided: {reason}, {result.seconds:.1f} s", *_growing_lines(growing)]
         case CutShort(states=states, growing=growing):
             after = f" after {states:,} states, {result.seconds:.1f} s" if states else ""
-            lines = [f"{result.name}: interrupted{after}; {_NOTHING_SO_FAR}", *_growing_lines(growing)]
+            lines = [
+                f"{result.name}: interrupted{after}; {_NEEDS_ALL if states else _NOTHING_SO_FAR}",
+                *_growing_lines(growing),
+            ]
         case Computed() as computed:
             lines = _computed_lines(result, computed, is_whole=is_whole)
         case Estimated() as estimated:
@@ -144,6 +147,8 @@ def _block(
             continue
         doubt = verdict.doubt(result.epsilon)
         text = f"  expected {verdict.expectation.text}: {verdict.text}"
+        if verdict.is_met and result.answer is not None and activity_report.is_untested(result.answer):
+            text += ", but nothing has tested the property"
         lines.append(f"{text}; {doubt}" if doubt else text)
     if is_alone and result.has_no_expectation:
         lines.append(f"  {NO_EXPECTATION}")
@@ -153,11 +158,17 @@ def _block(
 
 
 def _quantile_text(quantile: RewardQuantile) -> str:
-    interval = f"[{number(quantile.low)}, {number(quantile.high)}]"
-    return (
-        f"{100 * quantile.share:g} % of the traces: at most {number(quantile.value)} in {interval}, from "
-        f"{quantile.traces:,} traces with uniform choices"
-    )
+    low, high = (number(end) for end in (quantile.low, quantile.high))
+    limit = number(quantile.value)
+    if math.isinf(quantile.value):
+        text = f"no limit is known, at least {low}, because too few reach the condition"
+    elif low == limit == high:
+        text = f"at most {limit}"
+    elif math.isinf(quantile.high):
+        text = f"at most {limit} (this limit is {low} or more)"
+    else:
+        text = f"at most {limit} (this limit is between {low} and {high})"
+    return f"{100 * quantile.share:g} % of the traces: {text}; from {quantile.traces:,} traces with uniform choices"
 
 
 def _conditional_lines(result: Result) -> list[str]:
@@ -191,7 +202,8 @@ def _heading(name: str, question: Question) -> str:
 
 
 _SO_FAR, _NOTHING_SO_FAR = "this is the result so far", "there is no result so far"
-_INFINITE = "infinite: some traces never reach the condition up to which the reward is accumulated"
+_NEEDS_ALL = "there is no result before all states are known"
+_INFINITE = "infinite: some traces never reach the condition; `|| F …` with this condition leaves them out"
 
 
 def _computed_lines(result: Result, computed: Computed, *, is_whole: bool) -> list[str]:
@@ -260,11 +272,10 @@ def _sampled_lines(
         if extreme.stuck is not None and not extreme.answer.question.is_stuck:
             lines += _stuck_lines(extreme.stuck, place_of, level, shown)
         lines += _remarks(extreme.answer, is_whole=is_whole)
-    if sampled.tried:
-        lines.append(f"  {sampled.tried:,} schedulers were tried, {result.seconds:.1f} s; others may be more extreme")
     if sampled.is_interrupted:
-        clause = _SO_FAR if sampled.extremes else _NOTHING_SO_FAR
-        lines.append(f"  interrupted; {clause}" if lines else f"{result.name}: interrupted; {clause}")
+        lines.append(f"  interrupted; {_SO_FAR}" if lines else f"{result.name}: interrupted; {_NOTHING_SO_FAR}")
+    if sampled.tried:
+        lines.append(f"  {sampled.tried:,} schedulers were tried, {result.seconds:.1f} s; {scheduler_report.OTHERS}")
     return lines
 
 
@@ -295,7 +306,7 @@ def _growing_lines(growing: Sequence[GrowingVariable]) -> list[str]:
     from roaml.verification.growth import advice  # noqa: PLC0415 - most searches end before their limits
 
     text = ", ".join(variable.text for variable in growing)
-    return [f"  more and more values so far: {text}; {advice(growing)}"]
+    return [f"  most different values so far: {text}; for fewer states, {advice(growing)}"]
 
 
 def _doubt_lines(result: Result, level: StuckLevel) -> list[str]:
@@ -312,7 +323,7 @@ def _remarks(answer: Answer, *, is_whole: bool) -> list[str]:
     lines = [f"  ends: {ends.as_line(answer.tally)}"] if are_shown else []
     if answer.question.is_reward and answer.failures:
         lines.append(f"  {_INFINITE}")
-    if answer.question.is_reward and answer.tally.successes:
+    if answer.question.is_reward and answer.tally.successes and not answer.failures:
         lines.append(_reward_remark(answer))
     ratio = ratio_of(answer.question, answer.options)
     if answer.tally.accepted is not None and ratio is not None:
@@ -322,7 +333,7 @@ def _remarks(answer: Answer, *, is_whole: bool) -> list[str]:
             f"value is between {low:.6g} and {high:.6g}"
         )
     if answer.is_anytime and answer.tally.traces:
-        lines.append("  the interval is valid at any stopping time: it is one of a confidence sequence")
+        lines.append("  the interval is valid whenever the traces are stopped (a confidence sequence)")
     lines += [f"  {remark}" for remark in activity_report.remarks(answer)]
     return lines
 
@@ -333,11 +344,11 @@ def _reward_remark(answer: Answer) -> str:
     if mean.is_constant:
         rare = -math.expm1(math.log(error) / mean.number)
         return (
-            f"  no interval: all {mean.number:,} rewards were {number(mean.mean)}, but another value may have a "
+            f"  no interval: all {mean.number:,} values were {number(mean.mean)}, but another value may have a "
             f"probability of up to {rare:.2g}"
         )
     return (
-        f"  no guarantee: the interval is valid if all possible rewards are from {number(mean.least)} to "
+        f"  no guarantee: the interval is valid if all possible values are from {number(mean.least)} to "
         f"{number(mean.greatest)}, as they were in these traces"
     )
 

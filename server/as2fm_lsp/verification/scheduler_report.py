@@ -13,8 +13,12 @@ from roaml.verification.number_text import json_number, number
 from roaml.verification.schedulers import extreme_of, is_minimised
 
 UNIFORM_CHOICES = "uniform choices: each step that is possible is equally probable"
-A_SCHEDULER = "a scheduler: a rule that chooses which of the possible steps is next"
+A_SCHEDULER = (
+    "a scheduler: a rule that chooses which of the possible steps is next, such as which of two messages arrives first"
+)
 """What the words of results mean for readers who do not know model checking."""
+OTHERS = "another one may have a lower minimum or a higher maximum"
+"""What the values of sampled schedulers do not show."""
 MAX_NAMED = 4
 """The maximum number of properties that a note names."""
 
@@ -99,11 +103,12 @@ def warning(question: Question, choices: Choices | None) -> str:
 
 
 def note(entries: Sequence[tuple[Question, Choices]], *, knows_reactions: bool = False) -> list[str]:
-    """A note about properties whose minimum or maximum may differ from their values, and what to do, in one line for
-    each reason.
+    """A note about properties whose minimum or maximum may differ from their values, in one line for each reason, and
+    what to do. Properties whose schedulers are known to have different values have a warning instead of a line.
 
     Args:
-        entries: these properties, with what is known about other schedulers; without entries, there are no lines.
+        entries: the properties whose minimum or maximum is not known, with what is known about other schedulers;
+            without entries, there are no lines.
         knows_reactions: whether values for another reaction time are shown.
     """
     if not entries:
@@ -112,6 +117,8 @@ def note(entries: Sequence[tuple[Question, Choices]], *, knows_reactions: bool =
     tried: dict[tuple[str, str], int] = {}
     explored: dict[tuple[str, str], int] = {}
     for question, choices in entries:
+        if choices.differ:
+            continue
         key = (question.operator, "" if choices.tried else _looked(question, choices))
         names.setdefault(key, []).append(question.name)
         tried[key] = max(tried.get(key, 0), choices.tried)
@@ -124,9 +131,12 @@ def note(entries: Sequence[tuple[Question, Choices]], *, knows_reactions: bool =
             looked = f"too many states: gave up after {states:,}; {looked}"
         lines.append(f"note: the {extreme} of {_listed(of)} over all schedulers is not known ({looked})")
     ways = ["--exhaustive to compute it from all states", "--scheduler uniform if uniform choices are meant"]
+    if limits := [limit for limit in dict.fromkeys(choices.limit for _, choices in entries) if limit]:
+        ways.insert(0, f"a higher {' and '.join(f'--{limit}' for limit in limits)} to search for longer")
     if knows_reactions:
         ways.insert(0, 'a reaction time if machines always react within it (--reaction-time instant, or "20 ms")')
-    return [*lines, f"  help: use {', '.join(ways[:-1])}, or {ways[-1]}"]
+    advice = f"use {', '.join(ways[:-1])}, or {ways[-1]}"
+    return [*lines, f"  help: {advice}"] if lines else [f"help: for what is not known, {advice}"]
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -23,7 +23,7 @@ def as_text(result: StuckResult, place_of: PlaceOf, shown: str = "", *, is_whole
     """The result as text for users.
 
     Args:
-        shown: where in the output the waiting automata are shown, such as `in the trace below`; "" to show them here.
+        shown: where in the output who waits for whom is shown, such as `in the trace below`; "" to show them here.
         is_whole: whether the probability is also shown if no trace got stuck.
     """
     answer, stuck = result.answer, result.stuck
@@ -43,7 +43,7 @@ def as_text(result: StuckResult, place_of: PlaceOf, shown: str = "", *, is_whole
     if stuck is not None:
         still = "" if stuck.time is None else " and time does not advance"
         if shown:
-            lines.append(f"{result.level}: the system gets stuck{still}; the waiting automata are shown {shown}")
+            lines.append(f"{result.level}: the system gets stuck{still}; who waits for whom is shown {shown}")
         else:
             lines.append(f"{result.level}: the system gets stuck{still}: {_where(stuck)}")
             lines += (f"  {line}" for line in waiting_lines(stuck, place_of))
@@ -54,7 +54,7 @@ def stuck_lines(stuck: Stuck, place_of: PlaceOf, level: StuckLevel = StuckLevel.
     """A warning or error for users that traces get stuck, below the value that this makes doubtful; `shown` as in
     `as_text`."""
     if shown:
-        return [f"{level}: {stuck.warning}; the waiting automata are shown {shown}"]
+        return [f"{level}: {stuck.warning}; who waits for whom is shown {shown}"]
     lines = [f"{level}: {stuck.warning}; for example {_where(stuck)}:"]
     return [*lines, *(f"  {line}" for line in waiting_lines(stuck, place_of))]
 

@@ -182,7 +182,7 @@ def _interval(measured: Measured) -> str:
     if bounds.lower == bounds.upper:
         return f"{value:.4g}"
     upper = "∞" if math.isinf(bounds.upper) else f"{bounds.upper:.4g}"
-    return f"{value:.4g} in [{bounds.lower:.4g}, {upper}]"
+    return f"{value:.4g} ({bounds.lower:.4g} to {upper})"
 
 
 def story_as_text(

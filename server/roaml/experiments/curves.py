@@ -67,12 +67,10 @@ class Curve(Record, frozen=True):
     @property
     def band_words(self) -> str:
         """What the bands of such curves mean, as a sentence without a full stop."""
-        if self.band is BandKind.SIMULTANEOUS:
-            meaning = f"simultaneous: the whole curve is inside with {self.confidence:g} confidence"
-        else:
-            meaning = f"pointwise: each value by itself is inside with {self.confidence:g} confidence"
+        what = "the whole curve" if self.band is BandKind.SIMULTANEOUS else "each value by itself"
+        confidence = f"{self.confidence:g} confidence ({self.band.value})"
         cut = f"; {self.undecided:,} traces were cut, which widens the band" if self.undecided else ""
-        return f"{self.traces:,} traces with uniform choices; the bands are {meaning}{cut}"
+        return f"{self.traces:,} traces with uniform choices; the shaded band contains {what} with {confidence}{cut}"
 
 
 def traces_for(options: Options, default: float = DEFAULT_EPSILON) -> int:

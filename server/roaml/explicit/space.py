@@ -29,6 +29,8 @@ class ExplorationProgress(Record, frozen=True):
     bytes: int
 
 
+MAX_STATES_LIMIT, MAX_TRANSITIONS_LIMIT, MAX_MEMORY_LIMIT = "max-states", "max-transitions", "max-memory"
+"""The names of the limits that users can raise."""
 ExplorationWatch: TypeAlias = Callable[[ExplorationProgress], None]
 """Called during a search."""
 
@@ -72,14 +74,14 @@ class LimitError(Exception):
     Attributes:
         states: the number of states that were reached.
         search: the search; `None` if it has not begun.
-        is_of_transitions: whether the limit was that of transitions.
+        limit: the name of the limit for users; "" if it cannot be raised.
     """
 
-    def __init__(self, message: str, states: int, search: Any = None, *, is_of_transitions: bool = False) -> None:
+    def __init__(self, message: str, states: int, search: Any = None, *, limit: str = "") -> None:
         super().__init__(message)
         self.states = states
         self.search = search
-        self.is_of_transitions = is_of_transitions
+        self.limit = limit
 
 
 class SearchInterruptedError(KeyboardInterrupt):
@@ -147,8 +149,8 @@ def explore(
         SearchInterruptedError: Ctrl-C was pressed.
     """
     if checker.initial_states > limits.states:
-        many = f"there are {checker.initial_states:,} initial states, more than {limits.states:,} (max-states)"
-        raise LimitError(many, checker.initial_states)
+        many = f"there are {checker.initial_states:,} initial states, more than {limits.states:,} ({MAX_STATES_LIMIT})"
+        raise LimitError(many, checker.initial_states, limit=MAX_STATES_LIMIT)
     tables = tables or search_tables(checker, property_, limits)
     search = _search(
         checker, property_, limits, tables, modules or _modules(), leaves_out=is_reduced, avoids_cycles=False
@@ -229,7 +231,7 @@ def _searched(
         match status:
             case codes.PART if limits.transitions is not None and transitions > limits.transitions:
                 why = f", with more than {limits.transitions:,} transitions"
-                raise _stopped(search, why, is_of_transitions=True)
+                raise _stopped(search, why, MAX_TRANSITIONS_LIMIT)
             case codes.PART:
                 continue
             case codes.COMPLETE:
@@ -238,10 +240,11 @@ def _searched(
                 problem = TraceProblem(0, *search.fault())
                 return Space(checker, property_, search, search.problem, problem, is_reduced)
             case codes.STATES:
-                raise _stopped(search, " (max-states)")
+                raise _stopped(search, f" ({MAX_STATES_LIMIT})", MAX_STATES_LIMIT)
             case codes.MEMORY:
                 size = _size(search.memory_used())
-                raise _stopped(search, f", which occupy {size} (max-memory; half of the free memory by default)")
+                why = f", which occupy {size} ({MAX_MEMORY_LIMIT}; half of the free memory by default)"
+                raise _stopped(search, why, MAX_MEMORY_LIMIT)
             case _:
                 raise _stopped(search, f": one of them has more than {limits.combinations:,} combinations of edges")
 
@@ -251,9 +254,9 @@ def _size(many: int) -> str:
     return f"{many / (1 << 30):.1f} GiB" if many >= 1 << 30 else f"{-(-many // (1 << 20)):,} MiB"
 
 
-def _stopped(search: Any, why: str, *, is_of_transitions: bool = False) -> LimitError:
+def _stopped(search: Any, why: str, limit: str = "") -> LimitError:
     many = f"{search.count:,} {'state' if search.count == 1 else 'states'}"
-    return LimitError(f"stopped at {many}{why}", search.count, search, is_of_transitions=is_of_transitions)
+    return LimitError(f"stopped at {many}{why}", search.count, search, limit=limit)
 
 
 def search_tables(checker: ModelChecker, property_: CompiledProperty, limits: StateLimits) -> Tables:

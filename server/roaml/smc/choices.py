@@ -75,6 +75,7 @@ class Choices(Record, frozen=True):
         minimum, maximum: the extreme values of schedulers; `None` if unknown.
         tried: the number of schedulers that were sampled.
         explored: the number of states at which a search through all of them stopped; 0 if there was none.
+        limit: the name of the limit at which it stopped, such as `max-states`; "" if it cannot be raised.
     """
 
     agreement: str = ""
@@ -82,6 +83,7 @@ class Choices(Record, frozen=True):
     maximum: Extreme | None = None
     tried: int = 0
     explored: int = 0
+    limit: str = ""
 
     @property
     def differ(self) -> bool:

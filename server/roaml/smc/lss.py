@@ -77,9 +77,9 @@ def described(scheduler: int, actors: Sequence[str]) -> str:
     does = {
         STARVE: f"lets {actor} proceed only where nothing else can proceed",
         FAVOUR: f"lets {actor} proceed wherever possible",
-        MEMORY: "decides by the state and the last step",
+        MEMORY: "always makes the same choice after the same step in the same state",
     }
-    return f"sampled scheduler {number}, which {does.get(kind, 'decides by the state alone')}"
+    return f"sampled scheduler {number}, which {does.get(kind, 'always makes the same choice in the same state')}"
 
 
 def candidates(

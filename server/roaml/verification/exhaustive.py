@@ -92,10 +92,15 @@ def exact_values(
         return values_from(explore(checker, property_, limits, watch), limits)
     except LimitError as error:
         variables = () if error.search is None else _growing(checker, error.search)
-        raise UndecidedError(f"{error}; {_ESTIMATE}", variables) from None
+        raise UndecidedError(_at_limit(error), variables) from None
     except SearchInterruptedError as interrupt:
         variables = _growing(checker, interrupt.search)
         raise ExplorationInterruptedError(interrupt.search.count, variables) from None
+
+
+def _at_limit(error: LimitError) -> str:
+    """Why the exploration has ended, and what to do."""
+    return f"{error}; {'raise this limit, or ' if error.limit else ''}{_ESTIMATE}"
 
 
 def _growing(checker: ModelChecker, search: StateSearch) -> tuple[GrowingVariable, ...]:
@@ -122,7 +127,7 @@ def _conditional(
         try:
             space = explore(own, plain, limits, watch)
         except LimitError as error:
-            raise UndecidedError(f"{error}; {_ESTIMATE}") from None
+            raise UndecidedError(_at_limit(error)) from None
         exact = of_condition(values_from(space, limits), property_.question, space)
     else:
         raise UndecidedError(f"a probability given assumptions cannot be computed from all states; {_ESTIMATE}")
@@ -235,8 +240,11 @@ def check_exactly(
     threshold = expectation.threshold
     bounds, value = exact.asked_value(question, only_uniform=only_uniform)
     side = _side_of_example(expectation, exact, question, only_uniform=only_uniform)
+    by = ""
     if holds_exactly(threshold, bounds, value, side=side):
         met, under = True, ""
+        if not (exact.agrees or only_uniform or over_intervals):
+            by = _deciding_bound(expectation, exact, question)
     elif side:
         relation = "less than 1" if side < 0 else "greater than 0"
         met, under = False, f"by an example trace; the value is {relation}"
@@ -247,7 +255,18 @@ def check_exactly(
         text = f"by the {which}, which is {distinct(value, threshold.number)}"
         met, under = False, "" if only_uniform else text
     ends = {holds_exactly(threshold, Bounds(end, end), end) for end in bounds}
-    return Verdict(expectation, met, exact.is_precise or side != 0 or len(ends) == 1, under=under)
+    return Verdict(expectation, met, exact.is_precise or side != 0 or len(ends) == 1, under=under, by=by)
+
+
+def _deciding_bound(expectation: Expectation, exact: Exact, question: Question) -> str:
+    """The extreme that meets an expectation, as a phrase for users; also the other one if it does not."""
+    threshold, asked = expectation.threshold, extreme_of(question)
+    value, other = (exact.least, exact.greatest) if is_minimised(question) else (exact.greatest, exact.least)
+    by = f"by the {asked} over all schedulers, which is {distinct(value, threshold.number)}"
+    if threshold.met(other):
+        return by
+    opposite = "maximum" if asked == "minimum" else "minimum"
+    return f"{by}, but not by the {opposite}, which is {distinct(other, threshold.number)}"
 
 
 def _side_of_example(expectation: Expectation, exact: Exact, question: Question, *, only_uniform: bool) -> int:

@@ -59,6 +59,8 @@ class Verdict(Record, frozen=True):
             `policy` then decides `is_met`.
         uniform_only: what is known about the minimum or maximum if `is_uniform`, as a phrase for users; "" for nothing.
         under: a phrase that follows `NOT MET`, such as `under uniform choices` or `so far`; "" if there is none.
+        by: a phrase that follows `met` and names the bound that decided, if the minimum and the maximum differ; "" if
+            there is none.
         policy: what an expectation is worth that is met under uniform choices only.
         sampled: the number of sampled schedulers that meet the expectation, if it is about all schedulers and no more
             is known; 0 otherwise.
@@ -70,6 +72,7 @@ class Verdict(Record, frozen=True):
     is_certain: bool
     is_uniform: bool = False
     under: str = ""
+    by: str = ""
     unanimous: tuple[int, float] | None = None
     uniform_only: str = ""
     sampled: int = 0
@@ -85,7 +88,7 @@ class Verdict(Record, frozen=True):
             which = "only sampled scheduler" if self.sampled == 1 else f"{self.sampled:,} sampled schedulers"
             return f"met by the {which}; another one may miss it"
         if self.is_met:
-            return "met"
+            return f"met {self.by}".rstrip()
         return f"NOT MET {self.under}".rstrip()
 
     @property

@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a trace repeats that never ends: the machines that take its last steps, and the time at which they do."""
+"""Traces in which time stops: what they repeat for ever, the machines that take these steps, and the time at which they
+do."""
 
 from __future__ import annotations
 
 from itertools import islice, tee
 
 from roaml.record import Record
+from roaml.smc.end import End
 from roaml.smc.record import TraceStep
 from roaml.smc.rounds import FIRST_CHECK
 from roaml.smc.story import clock_times
-from roaml.verification.results import Traces
+from roaml.smc.tally import Tally
+from roaml.verification.results import StoppedTime, Traces
 
 MAX_REPLAYED_STEPS = 200_000
 """Longer traces are not simulated again."""
@@ -27,6 +30,17 @@ class EndlessSteps(Record, frozen=True):
     names: tuple[str, ...] = ()
     time: float | None = None
     is_after_end: bool = False
+
+
+def stopped_time(tally: Tally, traces: Traces) -> StoppedTime | None:
+    """The traces of a tally in which time stops; `None` if there are none."""
+    if End.ROUND not in tally.ends or traces.target.clock is None:
+        return None
+    rounds, shortest = tally.ends[End.ROUND].count, tally.ends[End.ROUND].shortest
+    repeated = repetition(traces, shortest.trace, shortest.steps)
+    if repeated.is_after_end:
+        return None
+    return StoppedTime(rounds, tally.traces, shortest.trace, repeated.names, repeated.time)
 
 
 def repetition(traces: Traces, trace: int, steps: int) -> EndlessSteps:

@@ -247,6 +247,23 @@ class Traces(Record, frozen=True):
         return build_story(self.recorder(), trace, self.target.clock, has_options=has_options)
 
 
+class StoppedTime(Record, frozen=True):
+    """Traces in which time stops, because machines take steps for ever that take no time.
+
+    Attributes:
+        count: the number of these traces, among `traces`.
+        trace: the number of the shortest one.
+        names: the machines and trees that take the steps, in backquotes; empty if they are not known.
+        time: the time at which they do, in s; `None` if it is not known.
+    """
+
+    count: int
+    traces: int
+    trace: int
+    names: tuple[str, ...] = ()
+    time: float | None = None
+
+
 class Refused(PartlyCompared, frozen=True):
     """The property cannot be answered.
 
@@ -316,12 +333,14 @@ class Computed(Record, frozen=True):
             its estimate. `None` if no traces were generated.
         reason: why the values differ although no trace shows that after finitely many steps, as a clause for users; ""
             if that is unknown.
+        stopped: random traces in which time stops, if there is no `sample` that shows them; `None` if there are none.
     """
 
     question: Question
     exact: Exact
     sample: Estimated | None = None
     reason: str = ""
+    stopped: StoppedTime | None = None
 
     @property
     def is_uniform(self) -> bool:

@@ -111,6 +111,12 @@ def may_differ(choices: Choices | None) -> bool:
     return choices is not None and not choices.agreement and not choices.differ
 
 
+def is_extreme_known(question: Question, choices: Choices) -> bool:
+    """Whether the minimum or maximum that a property asks for is known exactly, or is the value of all schedulers."""
+    extreme = choices.minimum if is_minimised(question) else choices.maximum
+    return choices.agreement != "" or (extreme is not None and extreme.is_exact)
+
+
 def extreme_of(question: Question) -> str:
     """The extreme that a property asks for: `minimum` or `maximum`."""
     return "minimum" if is_minimised(question) else "maximum"

@@ -11,7 +11,15 @@ from collections.abc import Iterator
 from typing import Any
 
 from roaml.explicit.independence import can_be_reduced
-from roaml.explicit.space import ExplorationWatch, LimitError, Space, StateLimits, explore, search_tables
+from roaml.explicit.space import (
+    MAX_TRANSITIONS_LIMIT,
+    ExplorationWatch,
+    LimitError,
+    Space,
+    StateLimits,
+    explore,
+    search_tables,
+)
 from roaml.record import Record, replace
 from roaml.smc.choices import Choices, Extreme, ExtremeMethod
 from roaml.smc.fault import FaultError
@@ -61,6 +69,7 @@ class Attempt(Record, frozen=True):
         space: the states from which the values were computed.
         is_cut: whether there are no values because there are too many transitions.
         explored: the greatest number of states at which a search stopped; 0 if none stopped.
+        limit: the name of the limit at which this search stopped (`LimitError.limit`).
     """
 
     exact: Exact | None
@@ -69,6 +78,7 @@ class Attempt(Record, frozen=True):
     space: Space | None = None
     is_cut: bool = False
     explored: int = 0
+    limit: str = ""
 
 
 def attempt(
@@ -94,7 +104,7 @@ def attempt(
         return _conditional(checker, property_, limits, watch, only_uniform=only_uniform)
     whole = checker
     checker, property_ = alone(whole, property_)
-    cost, reason, is_cut, explored = setup_cost(whole, checker), "", False, 0
+    cost, reason, is_cut, explored, limit = setup_cost(whole, checker), "", False, 0, ""
     tables = search_tables(checker, property_, limits)
     reduces = leaves_out and can_be_reduced(checker.program, property_.goal)
     for most, is_reduced in _searches(limits, reduces=reduces, is_repeated=is_repeated):
@@ -106,7 +116,9 @@ def attempt(
             exact, reason = values_from(space, most), ""
         except LimitError as error:
             search, reason = error.search, str(error)
-            is_cut, explored = error.is_of_transitions, max(explored, error.states)
+            is_cut = error.limit == MAX_TRANSITIONS_LIMIT
+            if error.states > explored:
+                explored, limit = error.states, error.limit
         except UndecidedError as error:
             reason, is_cut = str(error), False
         except FaultError:
@@ -116,7 +128,7 @@ def attempt(
             cost += weight * (search.transitions + search.passed) // _COST_OF_BOTH
         if exact is not None:
             return Attempt(exact if exact.is_precise else None, cost, space=space)
-    return Attempt(None, cost, reason, is_cut=is_cut, explored=explored)
+    return Attempt(None, cost, reason, is_cut=is_cut, explored=explored, limit=limit)
 
 
 def _searches(limits: StateLimits, *, reduces: bool, is_repeated: bool) -> Iterator[tuple[StateLimits, bool]]:

@@ -77,7 +77,10 @@ class Stuck(Record, frozen=True):
     def warning(self) -> str:
         """A sentence on the consequence of these traces for the value of the property."""
         of = f"all {self.traces:,} traces" if self.count == self.traces else f"{self.count:,} of {self.traces:,} traces"
-        return f"{of} got stuck and say nothing about the property, so its value is doubtful"
+        return (
+            f"{of} got stuck, because machines wait for each other for ever; they say nothing about the property, so "
+            "its value is doubtful"
+        )
 
     @property
     def chain(self) -> Chain:

@@ -14,11 +14,12 @@ from roaml.jani.properties import Property
 from roaml.jani.selection import PropertyError, select
 from roaml.record import Record, field, replace
 from roaml.smc.choices import NO_NONDETERMINISM, Choices
+from roaml.smc.end import End
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import STUCK_PROPERTY, CompiledProperty, with_threshold
 from roaml.smc.lss import Search, Side, described, sampling_options
 from roaml.smc.model import ModelChecker
-from roaml.smc.pool import Pool, Pulse
+from roaml.smc.pool import Alone, Pool, Pulse
 from roaml.smc.run import Answer, EstimationMethod, Options, Watch, summary
 from roaml.smc.tally import Tally
 from roaml.suggest import alternatives, close_names
@@ -38,6 +39,7 @@ from roaml.verification.results import (
     Result,
     Sampled,
     SampledResult,
+    StoppedTime,
     Traces,
     Undecided,
 )
@@ -48,6 +50,7 @@ from roaml.verification.schedulers import (
     under_sampled_schedulers,
 )
 from roaml.verification.small import (
+    EXAMPLE_TRACES,
     MAX_EXAMPLE_STEPS,
     SHARED_LIMITS,
     UNIFORM_LIMITS,
@@ -244,7 +247,7 @@ class Verifier(Record, frozen=True):
         explorations: the exact values that several properties share.
         budget: the limits of all searches for exact values that are not requested.
         reaction_budget: those of all searches under the assumption that machines react at once.
-        explored: what a search was about -> the number of states at which it stopped.
+        explored: what a search was about -> the number of states at which it stopped, and the limit.
     """
 
     target: VerificationTarget
@@ -258,7 +261,7 @@ class Verifier(Record, frozen=True):
     explorations: Explorations = field(default_factory=Explorations)
     budget: Budget = field(default_factory=Budget)
     reaction_budget: Budget = field(default_factory=lambda: Budget(REACTION_LIMITS))
-    explored: dict[object, int] = field(default_factory=dict)
+    explored: dict[object, tuple[int, str]] = field(default_factory=dict)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -477,7 +480,7 @@ class Verifier(Record, frozen=True):
         attempted = attempt(self.checker, property_, limits, watch, is_repeated=is_repeated)
         self.budget.spend(attempted.transitions)
         if attempted.explored:
-            self.explored[self._subject(property_)] = attempted.explored
+            self.explored[self._subject(property_)] = attempted.explored, attempted.limit
         return attempted
 
     def _shown(self, small: Exact | None) -> Exact | None:
@@ -514,7 +517,8 @@ class Verifier(Record, frozen=True):
             compared = small if self.exact_if_small else self._beside(property_, answer)
             if compared is None:
                 choices = self.checker.choices(property_, answer, pool, pulse)
-                choices = replace(choices, explored=self.explored.get(self._subject(property_), 0))
+                explored, limit = self.explored.get(self._subject(property_), (0, ""))
+                choices = replace(choices, explored=explored, limit=limit)
             else:
                 choices = choices_of(compared, NO_NONDETERMINISM if self.checker.is_deterministic else "")
         result = self._with_verdicts(property_, answer, choices, time.monotonic() - began, self._shown(small))
@@ -651,9 +655,31 @@ class Verifier(Record, frozen=True):
             )
             for expectation in expectations
         )
-        outcome = Computed(property_.question, exact, reason=self._reason(property_, exact))
+        reason, stopped = self._reason(property_, exact), self._stopped_time(property_)
+        outcome = Computed(property_.question, exact, reason=reason, stopped=stopped)
         result = Result(property_.question.name, outcome, verdicts, seconds(), _comment(property_))
         return self._with_reactions(property_, result, time.monotonic() - seconds())
+
+    def _stopped_time(self, property_: CompiledProperty) -> StoppedTime | None:
+        """The random traces in which time stops, of as many as are generated beside exact values without a request;
+        `None` if there are none."""
+        if self.target.clock is None:
+            return None
+        options = replace(
+            self.options,
+            method=EstimationMethod.FIXED,
+            max_traces=EXAMPLE_TRACES,
+            max_steps=min(self.options.max_steps, MAX_EXAMPLE_STEPS),
+        )
+        try:
+            answer = self.checker.answer(property_, options, Alone(self.checker.compiled(property_)))
+        except FaultError:  # in a state that the search did not need
+            return None
+        if End.ROUND not in answer.tally.ends:
+            return None
+        from roaml.verification.repetition import stopped_time  # noqa: PLC0415 - time seldom stops
+
+        return stopped_time(answer.tally, Traces(self.target, self.checker, property_, options))
 
     def _with_reactions(self, property_: CompiledProperty, result: Result, began: float) -> Result:
         """The result, with the values if machines react at once if schedulers disagree."""

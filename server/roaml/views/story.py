@@ -132,7 +132,7 @@ def as_text(story: Story, place_of: PlaceOf, shown: str = "", near: tuple[Partin
         text += "  " + "  ".join((*cells, row.what.ljust(widths[3]), row.place)).rstrip() + "\n"
         margin = " " * (widths[0] + widths[1] + widths[2] + 8)
         text += "".join(f"{margin}{detail}\n" for detail in row.details)
-    last = f"the waiting automata are shown {shown}" if waiting and shown else help_line(waiting)
+    last = f"who waits for whom is shown {shown}" if waiting and shown else help_line(waiting)
     return f"{text}  {last}\n" if last else text
 
 
