@@ -19,7 +19,7 @@ from roaml.libraries.programs.statuses import FAILURE, RUNNING, SUCCESS
 from roaml.libraries.scripts import AFTERWARDS, CONDITIONS
 from roaml.model.system import ANY_TYPE, builtin_plugins
 from roaml.model.tree import build_tree_file
-from roaml.roles import ValueRole
+from roaml.roles import Direction, ValueRole
 from roaml.rules.support.node_calls import WITHOUT_RESETS
 from roaml.rules.trees import tree_semantics
 from roaml.xml_syntax import parse
@@ -131,6 +131,7 @@ def test_the_checks_of_entries_compare_values_of_the_type_in_their_names() -> No
         compared = [port for port in node.ports if port.type == type_.lower()]
         assert [port.name for port in compared] == ["value_A", "value_B"]
         assert [port for port in node.ports if port not in compared] == [integers.port("return_on_mismatch")]
+        assert {port.direction for port in node.ports} == {Direction.IN}
 
 
 def test_switches_compare_values_of_any_type() -> None:
