@@ -47,12 +47,19 @@ class Systems:
         own = [file.path for file in self.listed(path)]
         places = [path, *(p for p in own if self._sources.kind(p) in _PROPERTIES and is_below(p, folder))]
         beside = {p for place in places for end in (".jani", ".xml") for p in self._sources.files.beside(place, end)}
-        unlisted = {p for p in beside.difference(own) if self._sources.kind(p) in _PROPERTIES and not self._varies(p)}
+        unlisted = {p for p in beside.difference(own) if self._has_properties(p) and not self._varies(p)}
         if unlisted:
             for other in self._sources.files.beside(path, ".xml"):
                 if self._sources.kind(other) is FileKind.SYSTEM:
                     unlisted -= {file.path for file in self.listed(other)}
         return tuple(sorted(os.path.relpath(p, folder).replace(os.sep, "/") for p in unlisted))
+
+    def _has_properties(self, path: str) -> bool:
+        """Whether a file is a property file with at least one property."""
+        if self._sources.kind(path) is FileKind.PROPERTIES:
+            return bool(self._sources.properties(path)[0])
+        file = self._sources.property_file(path) if self._sources.kind(path) is FileKind.XML_PROPERTIES else None
+        return file is not None and bool(file.properties)
 
     def _varies(self, path: str) -> bool:
         """Whether a file has parameters, or uses those of the system."""
