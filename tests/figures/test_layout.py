@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import random
 from itertools import combinations, pairwise
 
 from hypothesis import given, settings
@@ -354,3 +355,61 @@ def test_large_graphs_are_wrapped(graph: tuple[dict[str, Extent], list[Link]], d
     assert flaws(nodes, links, layout) == []
     width, height = layout.size
     assert max(width / height, height / width) <= 3
+
+
+def test_lines_pass_labels_straight() -> None:
+    """In a tree, all lines from labels to nodes are straight, too."""
+    nodes = {str(number): Extent(100 + 7 * (number % 5), 32) for number in range(13)}
+    links = [Link(str((n - 1) // 3), str(n), Extent(50 + 40 * (n % 3), 25)) for n in range(1, 13)]
+    for direction in LayoutDirection:
+        for route in layered(nodes, links, direction, 1.3).routes:
+            (*_, near), below = route.parts
+            ends = [point.turned if direction is LayoutDirection.RIGHT else point for point in (near, *below)]
+            assert len(below) == 2
+            assert max(point.x for point in ends) - min(point.x for point in ends) < NEAR
+
+
+def test_the_first_node_is_above_further_columns() -> None:
+    for seed in range(10):
+        chance = random.Random(seed)
+        names = ["dot", *(f"n{number}" for number in range(40))]
+        links = [Link(names[chance.randrange(max(1, n - 3), n)], names[n], Extent(60, 24)) for n in range(2, 41)]
+        links += [Link(names[n], names[chance.randrange(1, n)]) for n in range(2, 41) if chance.random() < 0.3]
+        sizes = {name: Extent(100, 32) for name in names} | {"dot": Extent(10, 10)}
+        layout = layered(sizes, [Link("dot", "n0"), *links], LayoutDirection.DOWN, 0.8)
+        first = layout.nodes["n0"]
+        assert layout.size.height / layout.size.width < 2.5
+        assert all(box.y >= first.bottom for name, box in layout.nodes.items() if name not in ("dot", "n0"))
+
+
+def test_lines_end_at_the_wanted_places_of_nodes() -> None:
+    """In the order of these places, and beside each other if several lines have the same one."""
+    clients = [str(number) for number in range(5)]
+    nodes = {name: Extent(80, 30) for name in clients} | {"server": Extent(120, 100)}
+    wanted = [30.0, -20.0, 0.0, -20.0, None]
+    links = [Link(name, "server", None, None, place) for name, place in zip(clients, wanted, strict=True)]
+    frames = Boxes({"server": "frame"}, {"frame": Extent(60, 20)})
+    for layout in (
+        layered(nodes, links, LayoutDirection.RIGHT, 1.8),
+        nested(nodes, links, frames, LayoutDirection.RIGHT, 1.8),
+    ):
+        if "frame" not in layout.nodes:
+            assert flaws(nodes, links, layout) == []
+        ends = [route.parts[-1][-1].y - middle_of(layout.nodes["server"]) for route in layout.routes]
+        assert abs(ends[0] - 30) < NEAR
+        assert abs(ends[2]) < NEAR
+        assert all(abs(end + 20) < 10 for end in (ends[1], ends[3]))
+        assert abs(ends[1] - ends[3]) > 5
+        assert ends[4] < min(ends[:4])
+
+
+def middle_of(box: Box) -> float:
+    return box.y + box.height / 2
+
+
+def test_rows_of_long_lines_fit_a_window() -> None:
+    nodes = {str(number): Extent(110, 40) for number in range(100)}
+    links = [Link(str(n), str(n + 1), Extent(60, 25)) for n in range(99)]
+    width, height = layered(nodes, links, LayoutDirection.RIGHT, 1.8).size
+    assert 900 < width <= 1250
+    assert height / width < 3

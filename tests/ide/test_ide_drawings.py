@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import os
+import random
 from functools import cache
 from pathlib import Path
 
@@ -15,7 +16,7 @@ from drawing_check import problems
 from ide_models import load
 
 from roaml import api
-from roaml.figures.drawing import Drawing, Group, Polyline, TextItem
+from roaml.figures.drawing import Drawing, Group, Outline, Polyline, Shape, TextItem
 from roaml.figures.geometry import Point
 from roaml.figures.layout import LayoutDirection
 from roaml.figures.svg import svg_file
@@ -173,6 +174,26 @@ def test_a_choice_is_a_junction_with_probabilities(tmp_path: Path) -> None:
     ]
 
 
+def test_long_lines_of_a_large_machine_end_at_labels_that_name_their_targets(tmp_path: Path) -> None:
+    chance = random.Random(1)
+    states = []
+    for number in range(60):
+        following = [n for n in range(number + 1, min(60, number + 4)) if chance.random() < 0.7 or n == number + 1]
+        targets = [*following, chance.randrange(60)]
+        rows = [f'<transition event="e{n}" target="s{target}"/>' for n, target in enumerate(targets)]
+        states.append(f'<state id="s{number}">{"".join(rows)}</state>')
+    picture, drawing = machine(tmp_path, f'<ascxml name="Robot" version="1.0" initial="s0">{"".join(states)}</ascxml>')
+    assert problems(picture, drawing) == []
+    cards = {picture.nodes[group.node].label: texts(group) for group in drawing.groups if group.node is not None}
+    named = [group for group in drawing.groups if group.role == "label" and texts(group)[-1].startswith("→ ")]
+    assert len(named) > 10
+    for group in named:
+        (edge,) = {index for item in group.items if isinstance(item, Group) for index in item.edges}
+        source, target = (end.removeprefix("/") for end in (picture.edges[edge].source, picture.edges[edge].target))
+        assert texts(group) == [*picture.edges[edge].labels, f"→ {target}"]
+        assert source in " ".join(cards[target][1:]).removeprefix("from ").split(", ")
+
+
 def test_typing_keeps_the_arrangement(tmp_path: Path) -> None:
     """A longer condition moves states by less than its additional length, and does not rearrange them."""
     before = machine(tmp_path)[1].nodes
@@ -221,3 +242,28 @@ def test_a_card_of_a_large_tree_shows_few_constants(tmp_path: Path) -> None:
         assert [item.text for _, item in items][2:] == expected
         hints = {group.hint for groups, _ in items for group in groups}
         assert ("b = 2\nc = 3" in hints) == (count == 60)
+
+
+def test_constants_that_few_nodes_have_are_shown_first(tmp_path: Path) -> None:
+    leaves = "".join(f'<Action ID="Go" a="same" b="also the same" goal="goal {n}"/>' for n in range(60))
+    text = f'<root BTCPP_format="4"><BehaviorTree ID="T"><Sequence>{leaves}</Sequence></BehaviorTree></root>'
+    (tmp_path / "tree.xml").write_text(text)
+    analysis = api.check([str(tmp_path)], settings=Settings()).snapshot.analysis
+    picture = picture_of(DiagramKind.TREE, analysis, str(tmp_path / "tree.xml"))
+    assert picture is not None
+    for drawing in (draw(DiagramKind.TREE, picture, LayoutDirection.DOWN), draw_outline(picture)):
+        assert problems(picture, drawing) == []
+        shown = next(texts(group) for group in drawing.groups if group.node == 5)
+        assert next(text for text in shown if " = " in text) == "goal = goal 4"
+
+
+def test_states_that_no_transition_leaves_have_a_double_border(tmp_path: Path) -> None:
+    text = '<ascxml name="Robot" version="1.0" initial="a"><state id="a"><transition event="e" target="b"/></state>'
+    picture, drawing = machine(tmp_path, f'{text}<state id="b"/></ascxml>')
+    outlines = {
+        picture.nodes[group.node].label: item.outline
+        for group in drawing.groups
+        for item in group.items
+        if group.node is not None and isinstance(item, Shape) and item.role == "card"
+    }
+    assert outlines == {"a": Outline.ROUNDED, "b": Outline.DOUBLE}

@@ -12,8 +12,8 @@ import pytest
 
 from as2fm_lsp.cli.main import run
 from roaml import api
-from roaml.figures.drawing import Area, Drawing, Group, Outline, Shape, TextItem, Tone
-from roaml.figures.geometry import Box, Extent
+from roaml.figures.drawing import Area, Drawing, Group, Outline, Polyline, Shape, TextItem, Tone
+from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.svg import svg_scene
 from roaml.figures.text import text_width
 from roaml.record import replace
@@ -127,6 +127,24 @@ def test_drawings_stay_within_their_width(axis: Axis) -> None:
             assert all(left.right <= right.x for left, right in itertools.pairwise(boxes))
 
 
+def test_messages_at_one_time_are_beside_each_other_with_a_dot_at_each_sender() -> None:
+    session = api.session(api.load(str(DELIVERY)), seed=3)
+    session.until_decided(2_000)
+    timeline = timeline_of(session)
+    drawing = draw_timeline(timeline, View(Axis.TIME, 0.0, extent(timeline, Axis.TIME), 900.0))
+    places = []
+    for group in drawing.groups:
+        lines = [item for item in group.items if isinstance(item, Polyline) and item.role == "message"]
+        dots = [item.box for item in group.items if isinstance(item, Shape) and item.role == "dot"]
+        assert len(dots) == min(1, len(lines))
+        for dot in dots:
+            middle = Point(dot.x + dot.width / 2, dot.y + dot.height / 2)
+            assert {line.points[0] for line in lines} == {middle}
+            places.append(middle.x)
+    assert len(places) > 4
+    assert len(set(places)) == len(places)
+
+
 @pytest.mark.parametrize("axis", list(Axis))
 @pytest.mark.parametrize("path", [ROBOT, DELIVERY, CASE_STUDY], ids=lambda path: path.parent.name)
 def test_names_of_messages_overlap_no_name_and_no_mark(path: Path, axis: Axis) -> None:
@@ -138,7 +156,8 @@ def test_names_of_messages_overlap_no_name_and_no_mark(path: Path, axis: Axis) -
     for start, stop, width in ((0.0, end, 700.0), (0.0, end / 3, 900.0), (end / 2, end * 1.2, 500.0)):
         drawing = draw_timeline(timeline, View(axis, start, stop, width))
         events = [group for group in drawing.groups if group.role == "event"]
-        marks = [item.box for group in events for item in group.items if isinstance(item, Shape)]
+        shapes = [item for group in events for item in group.items if isinstance(item, Shape)]
+        marks = [shape.box for shape in shapes if shape.role == "pulse"]
         texts = [item for group in events for item in group.items if isinstance(item, TextItem)]
         named += len(texts)
         boxes = sorted((text.x, text.x + text_width(text.text, text.size)) for text in texts)

@@ -116,7 +116,8 @@ const ROS: Picture = {
 };
 
 /** Words that are equal to their keys. */
-const WORDS = { byChance: "random", kinds: new Proxy({}, { get: (_, kind) => kind }) } as Words;
+const LEGEND_WORDS = { byChance: "random", mock: "mock", initial: "initial", final: "final" };
+const WORDS = { ...LEGEND_WORDS, kinds: new Proxy({}, { get: (_, kind) => kind }) } as Words;
 
 test("the caret is in the narrowest part", () => {
     const at = (line: number, character: number, uri = URI) => partAt(MACHINE, uri, { line, character });
@@ -262,7 +263,14 @@ test("a picture is legible at first, and drawn in the direction that suits the w
     );
     assert.equal(bestDrawing([{ width: 1150, height: 900 }, wide, outline], 1000, 1600), 2);
     assert.ok(Math.abs(fitLegibly({ width: 500, height: 940 }, 1000, 800).scale - 0.8) < 1e-9);
-    assert.equal(fitLegibly({ width: 500, height: 1010 }, 1000, 800).scale, 11 / 12);
+    assert.equal(fitLegibly({ width: 500, height: 1200 }, 1000, 800).scale, 11 / 12);
+    // A whole width is worth a little zoom, too. The map is beside the drawing if there is space for it.
+    const rows = fitLegibly({ width: 1100, height: 3000 }, 1000, 800);
+    assert.ok(rows.scale > 0.75 && rows.scale < 11 / 12);
+    assert.ok((1100 - rows.x) * rows.scale < 1000 - 60);
+    const wider = fitLegibly({ width: 1220, height: 3000 }, 1000, 800);
+    assert.ok(Math.abs((1220 - wider.x) * wider.scale - (1000 - 24)) < 1e-6);
+    assert.equal(fitLegibly({ width: 1300, height: 3000 }, 1000, 800).scale, 11 / 12);
     const view = fitLegibly({ width: 3000, height: 400 }, 1000, 800);
     assert.equal(view.scale, 11 / 12);
     assert.ok(view.x < 0 && view.x > -50 && view.y < -200);
@@ -291,8 +299,12 @@ test("parts have names for readers of the screen", () => {
 
 test("the legend has one entry for each color", () => {
     const entries = (picture: Picture) => legendOf(picture, WORDS).map(({ tone, text }) => `${tone}: ${text}`);
-    assert.deepEqual(entries(MACHINE), ["event: event", "plain: eventless"]);
+    assert.deepEqual(entries(MACHINE), ["event: event", "plain: eventless", "plain: initial", "plain: final"]);
     assert.deepEqual(entries(TREE), ["control: control", "action: action", "blackboard: variable"]);
+    const [root, ...others] = TREE.nodes;
+    assert.ok(root);
+    const mocked: Picture = { ...TREE, nodes: [{ ...root, details: ["mock: 0.9 in 2 s"] }, ...others] };
+    assert.deepEqual(entries(mocked).at(-1), "chance: mock");
     assert.deepEqual(entries(ROS), ["topic: topic", "service: service", "event: event"]);
     // A line is dashed as those of its kind are.
     const [plain] = MACHINE.edges;
@@ -300,7 +312,7 @@ test("the legend has one entry for each color", () => {
     const random: Picture = { ...MACHINE, edges: [...MACHINE.edges, { ...plain, probabilistic: true }] };
     assert.deepEqual(
         legendOf(random, WORDS).map(({ tone, kind }) => `${tone}: ${kind}`),
-        ["event: event", "plain: eventless", "chance: chance"],
+        ["event: event", "plain: eventless", "chance: chance", "plain: ", "plain: "],
     );
     // Interfaces may be in the cards of nodes.
     const [first, second] = [node("a", { kind: "node" }), node("b", { kind: "node", hides: ["service /go"] })];
@@ -332,6 +344,9 @@ test("a graph is shown where the most nodes are whole, first of all at its start
     const crowd = [at(1500, 800), at(1700, 800), at(1500, 900), at(1700, 1000)];
     assert.deepEqual(fullest(sight, area, [...alone, ...crowd], 600, 400), { x: 1476, y: 776, scale: 1 });
     assert.deepEqual(fullest(sight, area, alone, 600, 400), sight);
+    // At the start if nearly as many are whole there.
+    const start = [at(0, 0), at(200, 0), at(0, 100)];
+    assert.deepEqual(fullest(sight, area, [...start, ...crowd], 600, 400), sight);
     // Not beyond the end of the drawing.
     assert.deepEqual(fullest(sight, area, crowd.slice(0, 2), 1700, 1950), { x: 1324, y: -24, scale: 1 });
 });
@@ -379,7 +394,19 @@ test("of two drawings that do not fit, the one of which a window shows more is c
         { width: 1300, height: 2300 },
     ];
     assert.equal(bestDrawing([wide, high], 1200, 750), 1);
-    assert.equal(bestDrawing([{ width: 2000, height: 900 }, high], 1200, 750), 0);
+    assert.equal(
+        bestDrawing(
+            [
+                { width: 2000, height: 900 },
+                { width: 1800, height: 2300 },
+            ],
+            1200,
+            750,
+        ),
+        0,
+    );
+    // Its whole width is better than a larger part.
+    assert.equal(bestDrawing([{ width: 2000, height: 900 }, high], 1200, 750), 1);
     // The wide outline is lower than the narrow one.
     const outlines = [
         { width: 380, height: 2400 },

@@ -29,8 +29,9 @@ def csv_lines(session: Session, first: int = 0) -> Iterator[str]:
         yield csv_line(row.values())
 
 
-TIMELINE_WIDTH, NAMES_WIDTH = 1400.0, 200.0
-"""The widths of a timeline and of the names of its rows, in pixels."""
+TIMELINE_WIDTH, NAMES_WIDTH = 960.0, 200.0
+"""The widths of a timeline and of the names of its rows, in pixels: together, they fit into a window without a smaller
+scale."""
 
 
 def timeline_svg(session: Session, title: str, theme: str) -> str:

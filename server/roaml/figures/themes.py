@@ -29,6 +29,7 @@ THEMES: Mapping[str, Mapping[str, str]] = {
         "orange": "#bc4c00",
         "red": "#cf222e",
         "yellow": "#8a6100",
+        "cyan": "#0b7285",
     },
     "dark": {
         "background": "#1f1f1f",
@@ -43,6 +44,7 @@ THEMES: Mapping[str, Mapping[str, str]] = {
         "orange": "#f0a45d",
         "red": "#ff8b85",
         "yellow": "#e5c454",
+        "cyan": "#5fd3e0",
     },
     "high-contrast": {
         "background": "#000000",
@@ -57,6 +59,7 @@ THEMES: Mapping[str, Mapping[str, str]] = {
         "orange": "#ffb266",
         "red": "#ff9b94",
         "yellow": "#ffe066",
+        "cyan": "#5ff0e0",
     },
     "high-contrast-light": {
         "background": "#ffffff",
@@ -71,6 +74,7 @@ THEMES: Mapping[str, Mapping[str, str]] = {
         "orange": "#8a3500",
         "red": "#a1121d",
         "yellow": "#5f4300",
+        "cyan": "#00525e",
     },
 }
 """The colors of each theme, by the names of the CSS variables `--figure-NAME` without the prefix."""

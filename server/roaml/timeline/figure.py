@@ -23,7 +23,15 @@ LANE, PLOT, AXIS, MESSAGES = 26.0, 54.0, 24.0, 22.0
 """The heights of a lane, a plot, the axis, and the row with the names of messages, in pixels."""
 CURVES, CURVE_NAME = 120.0, 16.0
 """The minimum height of a row with several curves, and the height of the name of each, in pixels."""
+MESSAGES_NAME = "messages: ● sent, ▾ received"
+"""The name of the row of messages, with the marks at the ends of their lines."""
 _SPAN, _MARGIN = 20.0, 8.0
+_TEXT_MARGIN = 9.0
+"""The distance of the name of a state from its beginning, where arrows of messages are, in pixels."""
+_DOT = 7.0
+"""The size of the mark at the sender of a message, in pixels."""
+_SIDEWAYS = 6.0
+"""The distance of the arrows of messages at one place, in pixels."""
 _LEAST = 5.0
 """The minimum width of a state, in pixels. Adjacent states that are narrower are drawn as one, and so are messages
 without arrows whose distance is smaller."""
@@ -113,7 +121,7 @@ def height_of(timeline: Timeline, curves: Collection[str] = ()) -> float:
 
 def draw_names(timeline: Timeline, width: float, curves: Collection[str] = ()) -> Drawing:
     """The column with the names of the rows."""
-    groups = [Group("name", Tone.PLAIN, (_text("messages", 4.0, AXIS + MESSAGES / 2, width - 8.0, "muted"),))]
+    groups = [Group("name", Tone.PLAIN, (_text(MESSAGES_NAME, 4.0, AXIS + MESSAGES / 2, width - 8.0, "muted"),))]
     for index, lane in enumerate(timeline.lanes):
         bold = lane.kind is LaneKind.MACHINE
         text = _text(lane.name, 4.0, _middle(index), width - 8.0, "text", bold=bold)
@@ -279,9 +287,9 @@ class _Painter:
         state = lane.states[number]
         box = Box(x, y, end - x, _SPAN)
         items: list[Item] = [Shape(box, Outline.RECTANGLE, "span")]
-        text = _fitting(state, end - x - 8.0)
+        text = _fitting(state, end - x - _TEXT_MARGIN - 3.0)
         if text:
-            items.append(TextItem(text, x + 4.0, y + _SPAN / 2 + SMALL * 0.35, SMALL, "text"))
+            items.append(TextItem(text, x + _TEXT_MARGIN, y + _SPAN / 2 + SMALL * 0.35, SMALL, "text"))
         hint = f"{lane.name}: {state}, {self._when(lane.starts[number])}"
         return Group("state", _tone(lane, state), tuple(items), hint=hint, step=lane.starts[number])
 
@@ -308,6 +316,7 @@ class _Painter:
         last = bisect_right(messages, self._first_step(self._view.width + 1.0), key=_received)
         has_arrows = last - first <= self._view.width / _ARROW_DISTANCE
         free_from = -math.inf
+        beside_arrows, sideways = -math.inf, 0.0
         number = first
         while number < last:
             following = number + 1 if has_arrows else self._behind_mark(number, last)
@@ -326,7 +335,9 @@ class _Painter:
                 items.append(TextItem(text, left, AXIS + MESSAGES / 2 + SMALL * 0.35, SMALL, "text"))
             free_from = max(free_from, left + text_width(text, SMALL) + 6.0 if text else 0.0, end + 6.0)
             if has_arrows:
-                items += self._arrows(marked[0])
+                sideways = sideways + _SIDEWAYS if x - beside_arrows < _DOT else 0.0
+                beside_arrows = x
+                items += self._arrows(marked[0], -sideways if x + sideways > self._view.width - _DOT else sideways)
             # There, the message is in the ROS graph, and the next step is at the line that receives it.
             step = marked[0].received - 1 if len(marked) == 1 else None
             yield Group("event", Tone.PLAIN, tuple(items), hint=self._message_hint(name, marked), step=step)
@@ -345,12 +356,19 @@ class _Painter:
             x = self._x(messages[following - 1].received)
         return following
 
-    def _arrows(self, message: SentMessage) -> Iterator[Polyline]:
-        start = Point(self._x(message.sent), _middle(message.sender))
-        for receiver in message.receivers:
-            if receiver != message.sender:
-                end = Point(self._x(message.received), _middle(receiver))
-                yield Polyline((start, end), True, "message", is_round=False)
+    def _arrows(self, message: SentMessage, sideways: float) -> Iterator[Item]:
+        """The lines from the sender to the receivers, with a dot at the sender.
+
+        Args:
+            sideways: the distance from the place of the message, if others are at the same place.
+        """
+        start = Point(self._x(message.sent) + sideways, _middle(message.sender))
+        others = [receiver for receiver in message.receivers if receiver != message.sender]
+        for receiver in others:
+            end = Point(self._x(message.received) + sideways, _middle(receiver))
+            yield Polyline((start, end), True, "message", is_round=False)
+        if others:
+            yield Shape(Box(start.x - _DOT / 2, start.y - _DOT / 2, _DOT, _DOT), Outline.PILL, "dot")
 
     def _message_hint(self, name: str, marked: Sequence[SentMessage]) -> str:
         first = marked[0]

@@ -434,6 +434,9 @@ function words(): Words {
             "Arrow keys move between nodes, T selects the edges that leave a node, Enter opens the source, Shift+F10 the menu, Space collapses a node of a tree, a group of states or a namespace, or shows only the neighbors of a node of a ROS graph, B sets a breakpoint, M goes to the mocks of a tree, + and - zoom, 0 fits the diagram, / searches.",
         ),
         byChance: vscode.l10n.t("random"),
+        mock: vscode.l10n.t("mock: probability of success, duration"),
+        initial: vscode.l10n.t("initial state"),
+        final: vscode.l10n.t("state without a way out"),
         looks: {
             active: vscode.l10n.t("active"),
             next: vscode.l10n.t("takes the next step"),

@@ -206,6 +206,10 @@ export interface Words {
     readonly match: string;
     readonly help: string;
     readonly kinds: Readonly<Record<NodeKind | EdgeKind, string>>;
+    /** The words of the legend for a mock, an initial state, and a state which no transition leaves. */
+    readonly mock: string;
+    readonly initial: string;
+    readonly final: string;
     readonly byChance: string;
     /** What the looks of active nodes mean, for screen readers. */
     readonly looks: Readonly<Record<string, string>>;

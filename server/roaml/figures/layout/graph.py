@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 
 from roaml.figures.geometry import Box, Extent, Point
-from roaml.record import Record
+from roaml.record import Record, replace
 
 
 class LayoutDirection(enum.Enum):
@@ -18,11 +19,26 @@ class LayoutDirection(enum.Enum):
 
 
 class Link(Record, frozen=True):
-    """A line from one node to another, and the size of its label if it has one."""
+    """A line from one node to another, and the size of its label if it has one.
+
+    Attributes:
+        source_port, target_port: where the line should leave its source and enter its target, in pixels from the middle
+            of the side of the node; `None` if it may be anywhere.
+    """
 
     source: str
     target: str
     label: Extent | None = None
+    source_port: float | None = None
+    target_port: float | None = None
+
+    def port(self, node: str) -> float | None:
+        """Where the line should end at one of its nodes."""
+        return self.source_port if node == self.source else self.target_port
+
+    @property
+    def turned(self) -> Link:
+        return replace(self, label=self.label.turned if self.label else None)
 
 
 class Route(Record, frozen=True):
@@ -39,6 +55,11 @@ class Route(Record, frozen=True):
     def moved(self, dx: float, dy: float) -> Route:
         parts = tuple(tuple(Point(x + dx, y + dy) for x, y in part) for part in self.parts)
         return Route(parts, self.label.moved(dx, dy) if self.label else None)
+
+    @property
+    def length(self) -> float:
+        """The length of the line, in pixels."""
+        return sum(abs(a.x - b.x) + abs(a.y - b.y) for part in self.parts for a, b in pairwise(part))
 
     @property
     def turned(self) -> Route:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 
@@ -16,7 +17,8 @@ from roaml.figures.layout.lines import find_line, in_columns
 from roaml.figures.layout.order import order_layers
 from roaml.figures.layout.packing import components, pack
 from roaml.figures.layout.ports import PORT_DISTANCE, PORT_MARGIN, Ports
-from roaml.figures.layout.positions import place_vertices
+from roaml.figures.layout.positions import distances, place_vertices
+from roaml.figures.layout.straight import Straightening
 from roaml.figures.layout.tracks import assign_tracks
 from roaml.figures.layout.vertices import Vertex, VertexKind
 from roaml.record import Record, field
@@ -36,6 +38,10 @@ easier to follow if they are not wrapped, and suit a page in one of the two dire
 MAX_ATTEMPTS = 6
 DIVISION = 1.2
 """The maximum number of attempts to wrap a part, and the minimum factor by which layers become narrower in each."""
+BELOW_START = 2
+"""The number of layers above further columns."""
+STRAIGHTENINGS = 2
+"""How often vertices, then ports, are moved so that lines become straight."""
 MAX_COMPARED = 100
 """The maximum number of nodes of a part whose layers are divided in all these ways, to find the smallest drawing."""
 
@@ -51,8 +57,7 @@ def layered(nodes: Mapping[str, Extent], links: Sequence[Link], direction: Layou
     """
     if direction is LayoutDirection.RIGHT:
         turned = {name: size.turned for name, size in nodes.items()}
-        turned_links = [Link(link.source, link.target, link.label.turned if link.label else None) for link in links]
-        return layered(turned, turned_links, LayoutDirection.DOWN, 1 / aspect).turned
+        return layered(turned, [link.turned for link in links], LayoutDirection.DOWN, 1 / aspect).turned
     parts = [(_part(nodes, names, indexes, links, aspect), indexes) for names, indexes in components(nodes, links)]
     return pack(parts, len(links), aspect)
 
@@ -161,6 +166,7 @@ class _Component:
         boundary: Boundary = _NO_BOUNDARY,
     ) -> None:
         self.limit = limit
+        self.is_wrapped = columns > 1
         self.boundary = boundary
         self.names = names
         self.indexes = indexes
@@ -194,8 +200,14 @@ class _Component:
         down = [(b, a) if position in turned else (a, b) for position, (a, b) in enumerate(ends)]
         layers = assign_layers([Vertex(VertexKind.NODE, size) for size in sizes], down)
         starts = column_starts(layers, down, columns)
-        place = [(bisect_right(starts, layer) - 1, layer) for layer in layers]
-        row = [layer - starts[column] for column, layer in place]
+        column_of = [bisect_right(starts, layer) - 1 for layer in layers]
+        uses = Counter(end for pair in down for end in pair)
+        for a, b in down:
+            if uses[b] == 1:  # what leads nowhere remains below the node that leads to it
+                column_of[b] = column_of[a]
+        place = list(zip(column_of, layers, strict=True))
+        # All further columns begin below the dot of an initial state and the state.
+        row = [layer - starts[column] + (BELOW_START if column else 0) for column, layer in place]
         upwards = {position for position, (a, b) in enumerate(down) if place[a][0] != place[b][0] and row[a] >= row[b]}
         now = [(b, a) if position in upwards else (a, b) for position, (a, b) in enumerate(down)]
         return turned ^ upwards ^ closing_links(len(sizes), now)
@@ -214,7 +226,7 @@ class _Component:
     def _split_long_edges(self) -> None:
         """Add a vertex to each layer that a link passes."""
         pairs = [(edge.upper, edge.lower) for edge in self.edges]
-        self.layers = self._outermost(assign_layers(self.vertices, pairs, self.limit))
+        self.layers = self._outermost(assign_layers(self.vertices, pairs + self._below_first(pairs), self.limit))
         short: list[_Edge] = []
         for edge in self.edges:
             upper = edge.upper
@@ -225,6 +237,15 @@ class _Component:
                 upper = len(self.vertices) - 1
             short.append(_Edge(edge.link, upper, edge.lower))
         self.edges = short
+
+    def _below_first(self, pairs: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
+        """Pairs that make the first node the highest one, although further columns begin with other nodes."""
+        if not self.is_wrapped:
+            return []
+        following = [lower for upper, lower in pairs if upper == 0]
+        first = following[0] if len(following) == 1 else 0
+        entered = {lower for _, lower in pairs}
+        return [(first, node) for node in range(1, len(self.names)) if node not in entered]
 
     def _outermost(self, layers: list[int]) -> list[int]:
         """The layers with the ports in the first and the last one."""
@@ -251,6 +272,18 @@ class _Component:
                     places[index] = anchors[name, edge.link]
         return leaving, entering
 
+    @cached_property
+    def _wanted(self) -> tuple[Mapping[int, float], Mapping[int, float]]:
+        """Where edges should leave their upper and enter their lower node, relative to the middles of the nodes."""
+        leaving: dict[int, float] = {}
+        entering: dict[int, float] = {}
+        for index, edge in enumerate(self.edges):
+            for places, vertex in ((leaving, edge.upper), (entering, edge.lower)):
+                port = self.links[edge.link].port(self.names[vertex]) if vertex < len(self.names) else None
+                if port is not None:
+                    places[index] = port
+        return leaving, entering
+
     def _grow(self) -> None:
         """Make nodes wide enough for their links. Boxes are as wide as their contents."""
         boxes = {name for name, _ in self.boundary.anchors}
@@ -268,7 +301,12 @@ class _Component:
         pairs = [(edge.upper, edge.lower) for edge in self.edges]
         rows = order_layers(self.layers, pairs)
         middles = place_vertices(self.vertices, rows, pairs, *self._anchors)
-        ports = Ports(self.vertices, rows, pairs, middles, *self._anchors)
+        ports = Ports(self.vertices, rows, pairs, middles, self._anchors, self._wanted)
+        for _ in range(STRAIGHTENINGS):
+            straightening = Straightening(rows, distances(self.vertices, rows), pairs, middles, ports.shifts)
+            straightening.run()
+            middles = straightening.places
+            ports.move(middles)
         gaps: list[list[int]] = [[] for _ in rows]
         for index, edge in enumerate(self.edges):
             gaps[self.layers[edge.upper]].append(index)

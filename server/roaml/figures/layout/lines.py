@@ -17,9 +17,11 @@ from roaml.record import Record
 
 LENGTH = 24.0
 TURN = 16.0
-APART = 12.0
+APART = 20.0
 """Distances in pixels: of two neighbours in a column; of a turn or a channel from nodes and labels; of the link back
 from other links."""
+WINDOW, MAX_RATIO = 1250.0, 2.8
+"""The desired maximum length of a column, in pixels, and the maximum ratio of width to height that it may cause."""
 MAX_DOT = 12.0
 """The maximum size of a first node that is drawn above the first column, in pixels: the dot before an initial state."""
 
@@ -61,14 +63,20 @@ def find_line(names: Sequence[str], indexes: Sequence[int], links: Sequence[Link
 
 
 def in_columns(line: Succession, sizes: Mapping[str, Extent], links: Sequence[Link], aspect: float) -> Layout:
-    """The layout of a line, in the number of columns that suits a ratio of width to height best. Its routes are in the
-    order of the indexes of the links."""
+    """The layout of a line, in the number of columns that suits a ratio of width to height best. If possible, columns
+    are not longer than a window. The routes are in the order of the indexes of the links."""
     start = links[line.links[0]]
     has_dot = line.back != 0 and max(sizes[line.names[0]]) <= MAX_DOT and start.label is None
     count = len(line.names) - has_dot
     lengths = {math.ceil(count / columns) for columns in range(1, count + 1)}
     layouts = (_Columns(line, sizes, links, length, has_dot=has_dot).layout() for length in sorted(lengths))
-    return min(layouts, key=lambda layout: abs(math.log(layout.size.width / layout.size.height / aspect)))
+
+    def fitness(layout: Layout) -> tuple[float, float]:
+        width, height = layout.size
+        excess = max(0.0, height - WINDOW) if width <= MAX_RATIO * height else math.inf
+        return excess, abs(math.log(width / height / aspect))
+
+    return min(layouts, key=fitness)
 
 
 class _Columns:

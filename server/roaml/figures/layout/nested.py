@@ -54,7 +54,7 @@ def nested(
     if direction is LayoutDirection.DOWN:
         return _Nested(nodes, links, boxes, aspect, is_turned=False).layout()
     sizes = {name: size.turned for name, size in nodes.items()}
-    turned = [Link(link.source, link.target, link.label.turned if link.label else None) for link in links]
+    turned = [link.turned for link in links]
     return _Nested(sizes, turned, boxes, 1 / aspect, is_turned=True).layout().turned
 
 
@@ -138,7 +138,7 @@ class _Nested:
         """The layout of the children of a box and its ports. The routes are in the order of `down`."""
         sizes = {name: contents[name].size if name in contents else self.sizes[name] for name in children}
         sizes |= {_port(index): Extent(0, 0) for index in leaving}
-        links = [Link(*ends, self.links[index].label if index in labelled else None) for index, ends in down.items()]
+        links = [self._link(index, ends, is_labelled=index in labelled) for index, ends in down.items()]
         anchors = {
             (name, position): contents[name].ports[index] - contents[name].size.width / 2
             for position, (index, ends) in enumerate(down.items())
@@ -161,6 +161,12 @@ class _Nested:
             local = [(layout, [place[index] for index in indexes]) for layout, indexes in closed]
             open_parts.append((pack(local, len(own), self.aspect), own))
         return _in_a_row(open_parts, links, bottoms)
+
+    def _link(self, index: int, ends: tuple[str, str], *, is_labelled: bool) -> Link:
+        """The part of a link between two children of a box."""
+        link = self.links[index]
+        ports = (link.port(end) if end in (link.source, link.target) else None for end in ends)
+        return Link(*ends, link.label if is_labelled else None, *ports)
 
     def _joined(
         self,

@@ -28,13 +28,7 @@ def place_vertices(
         leaving, entering: where edges, by their indexes, leave their upper and enter their lower vertex, relative to
             its middle, if that is fixed.
     """
-    gaps = [
-        [
-            (vertices[a].size.width + vertices[b].size.width) / 2 + distance(vertices[a], vertices[b])
-            for a, b in pairwise(row)
-        ]
-        for row in rows
-    ]
+    gaps = distances(vertices, rows)
     neighbours: list[list[tuple[int, float, float]]] = [[] for _ in vertices]
     for index, (source, target) in enumerate(edges):
         shift = leaving.get(index, 0.0) - entering.get(index, 0.0)
@@ -62,6 +56,17 @@ def place_vertices(
                 places[vertex] = place
     _straighten(vertices, rows, gaps, edges, places)
     return places
+
+
+def distances(vertices: Sequence[Vertex], rows: Sequence[Sequence[int]]) -> list[list[float]]:
+    """The minimum distances between the middles of neighbours in each row."""
+    return [
+        [
+            (vertices[a].size.width + vertices[b].size.width) / 2 + distance(vertices[a], vertices[b])
+            for a, b in pairwise(row)
+        ]
+        for row in rows
+    ]
 
 
 def _straighten(

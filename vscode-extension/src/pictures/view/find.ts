@@ -57,8 +57,10 @@ export interface Sight extends Point {
 const MARGIN = 24;
 /** The minimum legible scale: the smallest texts have 12 px, and need at least 11 px on the screen. */
 const LEGIBLE = 11 / 12;
-/** The minimum scale at which a whole drawing is shown rather than a part of it: its smallest texts have 9 px. */
-const WHOLE = 0.75;
+/** The minimum scale at which a whole drawing is shown rather than a part of it: its smallest texts have 8 px. */
+const WHOLE = 0.67;
+/** The same for the whole width of a drawing: its smallest texts have 9 px. */
+const WIDE = 0.75;
 type Area = Pick<Drawing, "width" | "height">;
 
 function scaleOf(drawing: Area, width: number, height: number): number {
@@ -71,12 +73,34 @@ export function fit(drawing: Area, width: number, height: number): Sight {
     return at(drawing, width, height, Math.max(0.05, scaleOf(drawing, width, height)));
 }
 
-/** The view that shows a whole drawing, if this needs little zoom, otherwise as much of it as is legible, or at least has
- * a scale, beginning at its start. */
+/** The view that shows a whole drawing, or at least its whole width, if this needs little zoom, otherwise as much of it
+ * as is legible, or at least has a scale, beginning at its start. */
 export function fitLegibly(drawing: Area, width: number, height: number, least = LEGIBLE): Sight {
-    const scale = scaleOf(drawing, width, height);
-    return at(drawing, width, height, scale >= WHOLE ? scale : Math.max(least, scale));
+    const { scale, strip } = firstScale(drawing, width, height, least);
+    return at(drawing, width - strip, height, scale);
 }
+
+/** The scale of the first view, and the width of a strip at the right side for the map of a drawing whose height does not
+ * fit, in pixels; 0 if there is no need or no space for it. */
+function firstScale(
+    drawing: Area,
+    width: number,
+    height: number,
+    least: number,
+): { readonly scale: number; readonly strip: number } {
+    const whole = scaleOf(drawing, width, height);
+    if (whole >= WHOLE) return { scale: whole, strip: 0 };
+    const scaleBeside = (strip: number) => Math.min(least, (width - 2 * MARGIN - strip) / Math.max(1, drawing.width));
+    const strip = mapOf(drawing, LARGEST_MAP.width, LARGEST_MAP.height).width + MAP_DISTANCE;
+    const isBeside = scaleBeside(0) > scaleBeside(2 * strip) && scaleBeside(strip) >= WIDE;
+    const across = scaleBeside(isBeside ? strip : 0);
+    return { scale: Math.max(whole, across >= WIDE ? across : least), strip: isBeside ? strip : 0 };
+}
+
+/** The size of the largest map of a drawing, in pixels. */
+export const LARGEST_MAP: Area = { width: 150, height: 190 };
+/** The distance of the map from what is beside it, with its border, in pixels. */
+export const MAP_DISTANCE = 24;
 
 /** The view at a scale. A drawing that is smaller than the window is centred; others are shown from their start. */
 function at(drawing: Area, width: number, height: number, scale: number): Sight {
@@ -98,8 +122,9 @@ export function bestDrawing(drawings: readonly Area[], width: number, height: nu
         const isFirst = drawings.indexOf(drawing) < OUTLINE;
         if (scale >= least) return [2, Number(isFirst), scale];
         if (scale >= WHOLE) return [1, Number(isFirst), scale];
-        const across = Math.min(1, (width - 2 * MARGIN) / (drawing.width * least));
-        const along = Math.min(1, (height - 2 * MARGIN) / (drawing.height * least));
+        const first = firstScale(drawing, width, height, least).scale;
+        const across = Math.min(1, (width - 2 * MARGIN) / (drawing.width * first));
+        const along = Math.min(1, (height - 2 * MARGIN) / (drawing.height * first));
         return [0, Number(across === 1), across * along];
     };
     let best = 0;
@@ -140,12 +165,12 @@ export interface Corner extends Area {
     readonly isTop: boolean;
 }
 
-/** The corners of a window; the earlier ones are preferred. */
+/** The corners of a window; the earlier ones are preferred. What is at the start of a drawing counts more. */
 const CORNERS = [
-    { isLeft: false, isTop: false },
-    { isLeft: true, isTop: false },
-    { isLeft: false, isTop: true },
-    { isLeft: true, isTop: true },
+    { isLeft: false, isTop: false, weight: 1 },
+    { isLeft: true, isTop: false, weight: 1.3 },
+    { isLeft: false, isTop: true, weight: 1.3 },
+    { isLeft: true, isTop: true, weight: 2 },
 ] as const;
 
 /** The corner of the window in which something of a given size covers the smallest area of boxes of the drawing. */
@@ -153,13 +178,17 @@ export function emptiestCorner(sight: Sight, boxes: readonly Box[], width: numbe
     const [w, h] = [size.width / sight.scale, size.height / sight.scale];
     const common = (low: number, length: number, other: number, otherLength: number) =>
         Math.max(0, Math.min(low + length, other + otherLength) - Math.max(low, other));
-    const covered = ({ isLeft, isTop }: (typeof CORNERS)[number]) => {
+    const covered = ({ isLeft, isTop, weight }: (typeof CORNERS)[number]) => {
         const x = sight.x + (isLeft ? 0 : width / sight.scale - w);
         const y = sight.y + (isTop ? 0 : height / sight.scale - h);
-        return boxes.reduce((sum, box) => sum + common(x, w, box.x, box.width) * common(y, h, box.y, box.height), 0);
+        return boxes.reduce(
+            (sum, box) => sum + weight * common(x, w, box.x, box.width) * common(y, h, box.y, box.height),
+            0,
+        );
     };
     const areas = CORNERS.map(covered);
-    return { ...size, ...(CORNERS[areas.indexOf(Math.min(...areas))] ?? CORNERS[0]) };
+    const { isLeft, isTop } = CORNERS[areas.indexOf(Math.min(...areas))] ?? CORNERS[0];
+    return { ...size, isLeft, isTop };
 }
 
 /**
@@ -239,8 +268,11 @@ export function amongOthers(
     return { ...sight, x: best.x, y: best.y };
 }
 
-/** The view with as many whole boxes as possible, and few that are cut off at the upper side; among equally good views,
- * the one nearest to the start. */
+/** The part of the largest number of boxes that is enough for a view nearer to the start. */
+const NEARLY = 0.7;
+
+/** The view nearest to the start with nearly as many whole boxes as possible, and few that are cut off at the upper
+ * side. */
 export function fullest(sight: Sight, drawing: Area, boxes: readonly Box[], width: number, height: number): Sight {
     const [w, h] = [width / sight.scale, height / sight.scale];
     const margin = MARGIN / sight.scale;
@@ -253,17 +285,19 @@ export function fullest(sight: Sight, drawing: Area, boxes: readonly Box[], widt
     };
     const columns = places(sight.x, drawing.width, w, boxes.map(({ x }) => x).sort(ascending));
     const rows = places(sight.y, drawing.height, h, boxes.map(({ y }) => y).sort(ascending));
-    let best = { ...sight, count: -1 };
+    const views: (Sight & { readonly count: number })[] = [];
     for (const y of rows) {
         const inRow = boxes.filter((box) => box.y >= y && box.y + box.height <= y + h);
         const cut = boxes.filter((box) => box.y < y && box.y + box.height > y);
         for (const x of columns) {
             const isWithin = (box: Box) => box.x >= x && box.x + box.width <= x + w;
             const count = inRow.filter(isWithin).length - cut.filter(isWithin).length;
-            if (count > best.count) best = { ...sight, x, y, count };
+            views.push({ ...sight, x, y, count });
         }
     }
-    return { x: best.x, y: best.y, scale: best.scale };
+    const most = Math.max(...views.map(({ count }) => count));
+    const { x, y } = views.find(({ count }) => count >= NEARLY * most) ?? sight;
+    return { ...sight, x, y };
 }
 
 /** The distance of the dot before an initial state from the left or the upper side of the state, in pixels. */

@@ -3,15 +3,12 @@
 
 import type { Box, Drawing, Picture, Point } from "../contract";
 import { toneOf } from "./words";
-import { centered, emptiestCorner, mapOf, visiblePart, type Corner, type MapScale, type Sight } from "./find";
+import { LARGEST_MAP, MAP_DISTANCE, centered, emptiestCorner, mapOf, visiblePart } from "./find";
+import type { Corner, MapScale, Sight } from "./find";
 import { element } from "./scene";
 
-/** The size of the largest map, in pixels. */
-const LARGEST = { width: 150, height: 190 };
 /** A smaller window has no space for a map, in pixels. */
 const SMALLEST_WINDOW = { width: 280, height: 220 };
-/** The distance of the map from what is beside it, with its border, in pixels. */
-const DISTANCE = 24;
 
 export class Minimap {
     readonly svg = element("svg", { class: "minimap hidden", "aria-hidden": "true" });
@@ -79,10 +76,10 @@ export class Minimap {
 
     private draw(drawing: Drawing, part: Box): void {
         const { width, height } = this.view;
-        this.scale = mapOf(drawing, Math.min(LARGEST.width, width / 4), Math.min(LARGEST.height, height / 2));
+        this.scale = mapOf(drawing, Math.min(LARGEST_MAP.width, width / 4), Math.min(LARGEST_MAP.height, height / 2));
         place(this.svg, { width: this.scale.width, height: this.scale.height });
         place(this.frame, { ...part });
-        const size = { width: this.scale.width + DISTANCE, height: this.scale.height + DISTANCE };
+        const size = { width: this.scale.width + MAP_DISTANCE, height: this.scale.height + MAP_DISTANCE };
         this.corner = this.corner
             ? { ...this.corner, ...size }
             : emptiestCorner(this.sight, this.boxes(part), width, height, size);

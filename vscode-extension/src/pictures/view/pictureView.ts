@@ -902,15 +902,29 @@ function coverageLegend(coverage: Coverage, { coverage: words }: Words): HTMLEle
     return [heading, ...entries];
 }
 
-function entry({ tone, text, isLine, kind }: LegendEntry): HTMLElement {
+function entry({ tone, text, isLine, kind, symbol }: LegendEntry): HTMLElement {
     const made = document.createElement("span");
     const sample = element("svg", { width: isLine ? 24 : 10, height: 10, class: "scene", "aria-hidden": "true" });
     const group = element("g", { class: `link tone-${tone} is-${kind}` });
-    const shape = isLine
-        ? element("path", { d: "M 1 5 H 23", class: "line" })
-        : element("rect", { x: 0, y: 0, width: 10, height: 10, rx: 2, class: "badge" });
-    group.append(shape);
+    group.append(...(isLine ? [element("path", { d: "M 1 5 H 23", class: "line" })] : symbolOf(symbol)));
     sample.append(group);
     made.append(sample, text);
     return made;
+}
+
+/** A symbol of 10 x 10 pixels; a colored square by default. */
+function symbolOf(symbol: LegendEntry["symbol"]): SVGElement[] {
+    switch (symbol) {
+        case "dot":
+            return [element("circle", { cx: 5, cy: 5, r: 4, class: "dot" })];
+        case "bar":
+            return [element("rect", { x: 4, y: 0, width: 3, height: 10, rx: 1.5, class: "bar" })];
+        case "double":
+            return [
+                element("rect", { x: 0.5, y: 0.5, width: 9, height: 9, rx: 2, class: "legend-border" }),
+                element("rect", { x: 3, y: 3, width: 4, height: 4, rx: 1, class: "legend-border" }),
+            ];
+        case undefined:
+            return [element("rect", { x: 0, y: 0, width: 10, height: 10, rx: 2, class: "badge" })];
+    }
 }

@@ -47,6 +47,8 @@ export interface LegendEntry {
     readonly kind: string;
     readonly text: string;
     readonly isLine: boolean;
+    /** What a symbol other than a line or a colored square looks like. */
+    readonly symbol?: "dot" | "double" | "bar";
 }
 
 const EDGE_TONES: Partial<Record<EdgeKind, string>> = { eventless: "plain", event: "event", ros: "ros", bt: "tree" };
@@ -82,9 +84,12 @@ export function legendOf(picture: Picture, words: Words): LegendEntry[] {
             for (const { kind } of picture.edges.filter((edge) => !edge.probabilistic))
                 add(EDGE_TONES[kind], words.kinds[kind], true, kind);
             if (picture.edges.some((edge) => edge.probabilistic)) add("chance", words.byChance, true, "chance");
+            entries.push(...stateMarks(picture, words));
             break;
         case "tree":
             for (const { kind } of picture.nodes) add(NODE_TONES[kind], words.kinds[kind], false);
+            if (picture.nodes.some(({ details }) => details.some((detail) => detail.startsWith(MOCK))))
+                entries.push({ tone: "chance", kind: "", text: words.mock, isLine: false, symbol: "bar" });
             break;
         case "ros":
             for (const { kind } of picture.nodes) add(CHANNEL_TONES[kind], words.kinds[kind], true);
@@ -94,6 +99,20 @@ export function legendOf(picture: Picture, words: Words): LegendEntry[] {
             break;
     }
     return entries;
+}
+
+/** How the detail of a node that is its mock begins. */
+const MOCK = "mock: ";
+
+/** The marks of initial states, and of states which no transition leaves. */
+function stateMarks(picture: Picture, words: Words): LegendEntry[] {
+    const states = picture.nodes.filter(({ kind }) => kind === "state");
+    const left = new Set(picture.edges.map(({ source }) => source));
+    const mark = { tone: "plain", kind: "", isLine: false };
+    return [
+        ...(states.some(({ initial }) => initial) ? [{ ...mark, text: words.initial, symbol: "dot" } as const] : []),
+        ...(states.some(({ id }) => !left.has(id)) ? [{ ...mark, text: words.final, symbol: "double" } as const] : []),
+    ];
 }
 
 function isChannel(kind: NodeKind): boolean {

@@ -44,6 +44,7 @@ class Row(Record, frozen=True):
         edges: the indices of the edges in the diagram.
         has_bar: whether a bar in the row's tone is drawn on the left of the lines.
         is_joined: whether there is no distance to the row above.
+        indent: the distance from the beginning of the other rows, in pixels.
         hint: the complete text if the lines show only a part of it, otherwise "".
     """
 
@@ -54,12 +55,13 @@ class Row(Record, frozen=True):
     has_bar: bool = False
     is_joined: bool = False
     hint: str = ""
+    indent: float = 0.0
 
     @property
     def size(self) -> Extent:
         bar = _BAR_WIDTH + _BAR_DISTANCE if self.has_bar else 0.0
         width = max((line.width for line in self.lines), default=0.0)
-        return Extent(width + bar, sum(line.height for line in self.lines))
+        return Extent(width + bar + self.indent, sum(line.height for line in self.lines))
 
 
 class Card(Record, frozen=True):
@@ -80,6 +82,11 @@ class Card(Record, frozen=True):
         return Extent(
             round(max(widths, default=0.0) + 2 * self.padding + 0.5), round(height + 2 * 0.7 * self.padding + 0.5)
         )
+
+    def row_middle(self, index: int) -> float:
+        """The distance of the middle of a row from that of the card, in pixels; negative above it."""
+        heights = list(self._heights())
+        return sum(heights[: index + 1]) - self.rows[index].size.height / 2 - sum(heights) / 2
 
     def _heights(self) -> Iterator[float]:
         for index, row in enumerate(self.rows):
@@ -121,6 +128,7 @@ def row_items(row: Row, x: float, y: float) -> tuple[Item, ...]:
 
 def _row(row: Row, x: float, y: float) -> tuple[Item, ...]:
     items: list[Item] = []
+    x += row.indent
     if row.has_bar:
         items.append(Shape(Box(x, y + 1, _BAR_WIDTH, row.size.height - 2), Outline.PILL, "bar"))
         x += _BAR_WIDTH + _BAR_DISTANCE

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The drawing of a state machine.
 
-- A state is a card with its entry and exit actions. Transitions from a state to itself are rows of its card.
+- A state is a card with its entry and exit actions; it has a double border if no transition leaves it. Transitions from
+  a state to itself are rows of its card.
 - All transitions from one state to another share a line; its label has a row for each of them.
 - A choice is a small junction with the five of a die. If all its targets are the state from which it comes, it is a row
   of the state's card.
+- In a large chart, a long line ends at its label, which names the target; the card of the target names the source.
 - Each action thread is drawn separately, in a frame.
 - A group is a frame around its states; a collapsed one is a card.
 """
@@ -12,11 +14,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple, TypeAlias
 
 from roaml.figures.assembly import moved
 from roaml.figures.drawing import Drawing, Group, Item, Outline, Polyline, Shape, Tone
 from roaml.figures.geometry import Box, Extent
-from roaml.figures.layout import Boxes, LayoutDirection, Link, nested
+from roaml.figures.layout import Boxes, Layout, LayoutDirection, Link, Route, nested
 from roaml.figures.layout.packing import shelves
 from roaml.ide.diagrams.diagram import DetailKind, DiagramEdge, DiagramNodeKind, EdgeKind, Picture
 from roaml.ide.diagrams.drawings.cards import Card, Row, TextLine, is_shortened, paragraph, title
@@ -29,6 +32,14 @@ LABEL_PADDING = 7.0
 """The distance of the text of a label from its edge, in pixels."""
 MAX_GUARD_LINES, MAX_ACTION_LINES, MAX_ACTIONS = 4, 3, 6
 """The maximum numbers of lines of a condition and of an action, and of the actions of a transition that are shown."""
+MAX_FOLLOWED, MIN_FAR = 30, 4
+FAR = 700.0
+"""The number of states above which lines that are longer than `FAR`, in pixels, end at their labels, if there are at
+least `MIN_FAR` of them."""
+_SHORTENINGS = 2
+"""How often such lines are searched: without them, others are in different places."""
+_OUTCOME_INDENT = 10.0
+"""The distance of the outcomes of a choice in a card from the transition to it, in pixels."""
 _JUNCTION, _DIE, _DOT = 14.0, 9.0, 10.0
 _START = "start"
 _FRAME_MARGIN = 18.0
@@ -68,6 +79,27 @@ def _framed(picture: Picture, index: int, direction: LayoutDirection) -> Drawing
     inner = [moved(group, _FRAME_MARGIN, top) for group in chart.groups]
     nodes = {number: place.moved(_FRAME_MARGIN, top) for number, place in chart.nodes.items()}
     return Drawing(size, (frame, *inner), {index: box, **nodes})
+
+
+_Bundle: TypeAlias = tuple[str, str, list[tuple[int, DiagramEdge]]]
+"""Edges that are drawn as one line: their source, their target, and each edge with its index."""
+
+
+class _Arranged(NamedTuple):
+    """A chart with the places of its parts.
+
+    Attributes:
+        labels: the label of each bundle, and `places` where it is, if it is drawn.
+        start: the line from the dot to the initial state, if there is one.
+    """
+
+    layout: Layout
+    cards: Mapping[str, Card]
+    bundles: Sequence[_Bundle]
+    labels: Sequence[Card]
+    places: Sequence[Box | None]
+    start: Route | None
+    routes: Sequence[Route]
 
 
 class _Chart:
@@ -117,53 +149,119 @@ class _Chart:
                         yield _row(number, outcome, CARD_WIDTH, joined=True)
 
     def drawing(self, direction: LayoutDirection) -> Drawing:
+        arranged = self._arranged(direction, frozenset())
+        far: frozenset[int] = frozenset()
+        for _ in range(_SHORTENINGS):
+            more = self._far(arranged) - far
+            if len(more) < MIN_FAR:
+                break
+            far |= more
+            arranged = self._arranged(direction, far)
+        return self._drawn(arranged)
+
+    def _arranged(self, direction: LayoutDirection, far: frozenset[int]) -> _Arranged:
+        """The places of all parts.
+
+        Args:
+            far: the bundles whose lines end at their labels, which name the targets.
+        """
         sizes: dict[str, Extent] = {}
         links: list[Link] = []
-        initial = next((name for name in self._cards if self._picture.nodes[self._index[name]].initial), None)
+        bundles = [bundle for bundle in self._bundles() if self._is_drawn(bundle[0]) and self._is_drawn(bundle[1])]
+        cards = dict(self._cards)
+        for name in {bundles[index][1] for index in far}:
+            sources = dict.fromkeys(bundles[index][0] for index in sorted(far) if bundles[index][1] == name)
+            names = ", ".join(self._name(source) for source in sources)
+            cards[name] = Card((*cards[name].rows, Row(paragraph(f"from {names}", CARD_WIDTH, "muted"))), ruled=True)
+        initial = next((name for name in cards if self._picture.nodes[self._index[name]].initial), None)
         parents = {name: parent for name, parent in self._parents.items() if parent in self._framed}
         if initial is not None:
             sizes[_START] = Extent(_DOT, _DOT)
-            sizes[initial] = self._cards[initial].size
+            sizes[initial] = cards[initial].size
             links.append(Link(_START, initial))
             if initial in parents:
                 parents[_START] = parents[initial]
         for name in self._index:
             if name in self._framed:
                 continue
-            if name in self._cards:
-                sizes[name] = self._cards[name].size
-            elif name not in self._inlined:
+            if name in cards:
+                sizes[name] = cards[name].size
+            elif self._is_drawn(name):
                 sizes[name] = Extent(_JUNCTION, _JUNCTION)
-        bundles = [bundle for bundle in self._bundles() if bundle[0] in sizes and bundle[1] in sizes]
-        labels = [_label(edges) for _, _, edges in bundles]
-        links += [
-            Link(source, target, label.size if label.rows else None)
-            for (source, target, _), label in zip(bundles, labels, strict=True)
+        labels = [
+            _label(edges, self._name(target) if index in far else "")
+            for index, (_, target, edges) in enumerate(bundles)
         ]
-        boxes = Boxes(parents, {name: self._cards[name].size for name in self._framed})
+        for index, ((source, target, _), label) in enumerate(zip(bundles, labels, strict=True)):
+            if index in far:
+                sizes[_stub(index)] = label.size
+                if source in parents:
+                    parents[_stub(index)] = parents[source]
+                links.append(Link(source, _stub(index)))
+            else:
+                links.append(Link(source, target, label.size if label.rows else None))
+        boxes = Boxes(parents, {name: cards[name].size for name in self._framed})
         layout = nested(sizes, links, boxes, direction, _ASPECT[direction])
+        start, routes = (None, layout.routes) if initial is None else (layout.routes[0], layout.routes[1:])
+        places = [layout.nodes[_stub(index)] if index in far else route.label for index, route in enumerate(routes)]
+        return _Arranged(layout, cards, bundles, labels, places, start, routes)
+
+    def _is_drawn(self, name: str) -> bool:
+        """Whether a state or a choice has its own place."""
+        return name in self._cards or (name in self._index and name not in self._inlined)
+
+    def _name(self, name: str) -> str:
+        return self._picture.nodes[self._index[name]].label
+
+    def _far(self, arranged: _Arranged) -> frozenset[int]:
+        """The bundles with lines that are too long to be followed, in a large chart. The lines on which each state is
+        reached first are kept."""
+        if len(self._cards) <= MAX_FOLLOWED:
+            return frozenset()
+        leaving: dict[str, list[int]] = {}
+        for index, (source, _, _) in enumerate(arranged.bundles):
+            leaving.setdefault(source, []).append(index)
+        kept: set[int] = set()
+        reached: dict[str, None] = {}
+        for start in self._cards:
+            pending = [] if start in reached else [start]
+            reached[start] = None
+            for source in pending:
+                for index in leaving.get(source, ()):
+                    target = arranged.bundles[index][1]
+                    if target not in reached:
+                        reached[target] = None
+                        kept.add(index)
+                        pending.append(target)
+        return frozenset(
+            index
+            for index, ((_, target, _), route) in enumerate(zip(arranged.bundles, arranged.routes, strict=True))
+            if index not in kept and target in self._cards and route.length > FAR
+        )
+
+    def _drawn(self, arranged: _Arranged) -> Drawing:
+        layout, labels, routes = arranged.layout, arranged.labels, arranged.routes
         groups: list[Group] = []
-        routes = layout.routes
-        if initial is not None:
-            line = Polyline(routes[0].parts[0], has_arrow=True)
+        if arranged.start is not None:
+            line = Polyline(arranged.start.parts[0], has_arrow=True)
             dot = Shape(layout.nodes[_START], Outline.PILL, "dot")
             groups.append(Group("start", Tone.PLAIN, (line, dot)))
-            routes = routes[1:]
-        for (_, _, edges), route in zip(bundles, routes, strict=True):
-            lines = tuple(
-                Polyline(part, has_arrow=number == len(route.parts) - 1) for number, part in enumerate(route.parts)
-            )
+        for (_, _, edges), route, place in zip(arranged.bundles, routes, arranged.places, strict=True):
+            ends = len(route.parts) - 1 if route.label or place is None else len(route.parts)
+            lines = tuple(Polyline(part, has_arrow=number == ends) for number, part in enumerate(route.parts))
             groups.append(Group("link", _tone(edges), lines, _kinds(edges), edges=tuple(i for i, _ in edges)))
-        for (_, _, edges), label, route in zip(bundles, labels, routes, strict=True):
-            if route.label:
-                shape = Shape(route.label, Outline.ROUNDED, "label-card")
-                groups.append(Group("label", _tone(edges), (shape, *label.items(route.label))))
+        for (_, _, edges), label, place in zip(arranged.bundles, labels, arranged.places, strict=True):
+            if place is not None:
+                shape = Shape(place, Outline.ROUNDED, "label-card")
+                groups.append(Group("label", _tone(edges), (shape, *label.items(place))))
         nodes = {self._index[name]: box for name, box in layout.nodes.items() if name in self._index}
         groups += [self._frame(name, layout.nodes[name]) for name in self._index if name in self._framed]
-        groups += [self._node(index, box) for index, box in sorted(nodes.items()) if self._is_card(index)]
+        groups += [
+            self._node(index, box, arranged.cards) for index, box in sorted(nodes.items()) if self._is_card(index)
+        ]
         return Drawing(layout.size, tuple(groups), nodes)
 
-    def _bundles(self) -> list[tuple[str, str, list[tuple[int, DiagramEdge]]]]:
+    def _bundles(self) -> list[_Bundle]:
         """The edges that are drawn as lines, grouped by source and target, in the order of the first edge of each
         group."""
         bundles: dict[tuple[str, str], list[tuple[int, DiagramEdge]]] = {}
@@ -183,12 +281,14 @@ class _Chart:
         tone = tone_of(node.change, Tone.PLAIN)
         return Group("node", tone, (*items, *card.items(heading)), node.kind.value, node=self._index[name])
 
-    def _node(self, index: int, box: Box) -> Group:
+    def _node(self, index: int, box: Box, cards: Mapping[str, Card]) -> Group:
         node = self._picture.nodes[index]
         if node.kind is DiagramNodeKind.CHOICE:
             shape = Shape(box, Outline.PILL, "junction")
             return Group("node", tone_of(node.change, Tone.CHANCE), (shape, die(box, _DIE)), "choice", node=index)
-        items: tuple[Item, ...] = (Shape(box, Outline.ROUNDED, "card"), *self._cards[node.id].items(box))
+        is_final = all(edge.source != node.id for _, edge in self._edges)
+        outline = Outline.DOUBLE if is_final else Outline.ROUNDED
+        items: tuple[Item, ...] = (Shape(box, outline, "card"), *cards[node.id].items(box))
         kind = kind_of(node.change, f"{node.kind.value} initial" if node.initial else node.kind.value)
         return Group("node", tone_of(node.change, Tone.PLAIN), items, kind, node=index)
 
@@ -215,14 +315,27 @@ def _row(index: int, edge: DiagramEdge, width: float, mark: str = "", *, joined:
         (index,),
         has_bar=True,
         is_joined=joined,
+        indent=_OUTCOME_INDENT if joined else 0.0,
         hint=hint,
     )
 
 
-def _label(edges: Sequence[tuple[int, DiagramEdge]]) -> Card:
-    """The label of a line, with a row for each edge that has labels or actions."""
-    labelled = [(index, edge) for index, edge in edges if edge.labels or edge.actions]
-    return Card(tuple(_row(index, edge, LABEL_WIDTH) for index, edge in labelled), padding=LABEL_PADDING)
+def _label(edges: Sequence[tuple[int, DiagramEdge]], target: str) -> Card:
+    """The label of a line, with a row for each edge that has labels or actions.
+
+    Args:
+        target: the name of the target if the line ends at the label, otherwise "".
+    """
+    rows = [_row(index, edge, LABEL_WIDTH) for index, edge in edges if edge.labels or edge.actions]
+    if target:
+        lines = paragraph(f"→ {target}", LABEL_WIDTH, "title", bold=True)
+        rows.append(Row(lines, _tone(edges), _kinds(edges), tuple(index for index, _ in edges)))
+    return Card(tuple(rows), padding=LABEL_PADDING)
+
+
+def _stub(index: int) -> str:
+    """The name of the end of a bundle in the layout; no state has it, because ids of states contain no such letter."""
+    return f"\0{index}"
 
 
 def _split(edge: DiagramEdge) -> tuple[str, list[str]]:

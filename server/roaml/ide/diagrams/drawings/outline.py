@@ -8,7 +8,7 @@ the others.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from roaml.figures.drawing import MAX_ROUNDING, Drawing, Group, Item, Outline, Shape
 from roaml.figures.geometry import Box, Extent
@@ -23,6 +23,7 @@ from roaml.ide.diagrams.drawings.tree import (
     OUTLINES,
     TONES,
     children_of,
+    common_texts,
     hidden_row,
     links,
     port_rows,
@@ -51,10 +52,10 @@ def draw_outline(picture: Picture, width: float = OUTLINE_WIDTHS[0]) -> Drawing:
     variables = [node.id for node in picture.nodes if node.kind is DiagramNodeKind.VARIABLE]
     written = [node.id for node in picture.nodes if node.kind is not DiagramNodeKind.VARIABLE]
     depths = dict(rows(dict.fromkeys(written), children))
-    cards = {
-        name: _Lines(picture, picture.nodes[index[name]], width - depth * INDENT) for name, depth in depths.items()
-    }
-    cards |= {name: _Lines(picture, picture.nodes[index[name]], OUTLINE_WIDTHS[0]) for name in variables}
+    common = common_texts(picture)
+    available = {name: width - depth * INDENT for name, depth in depths.items()}
+    available |= dict.fromkeys(variables, OUTLINE_WIDTHS[0])
+    cards = {name: _Lines(picture, picture.nodes[index[name]], own, common) for name, own in available.items()}
     layout = outline({name: cards[name].size for name in written}, children)
     boxes, size = with_blackboard(layout.nodes, layout.size, {name: cards[name].size for name in variables})
     groups = links(picture, children, layout.routes)
@@ -67,16 +68,17 @@ class _Lines:
 
     Args:
         available: the maximum width of the node, in pixels.
+        common: the number of nodes with each constant; constants that few have come first.
     """
 
-    def __init__(self, picture: Picture, node: DiagramNode, available: float) -> None:
+    def __init__(self, picture: Picture, node: DiagramNode, available: float, common: Mapping[str, int]) -> None:
         self.node = node
         self.shape = OUTLINES.get(node.kind, Outline.ROUNDED)
         self.side = 0.0 if node.title is None else BADGE + _BADGE_DISTANCE
         # The ends of conditions are round, those of decorators slanted.
         inset = {Outline.PILL: MAX_ROUNDING / 2, Outline.HEXAGON: 6.0, Outline.DOUBLE: 3.0}.get(self.shape, 0.0)
         width = max(_MIN_TEXT_WIDTH, available - self.side - 2 * (PADDING + inset))
-        self.lines = _filled(*_texts(picture, node, width), width)
+        self.lines = _filled(*_texts(picture, node, width, common), width)
         across = max(map(_width, self.lines)) + self.side + 2 * PADDING
         height = max(BADGE, sum(map(_height, self.lines))) + 2 * _PADDING
         if self.shape is Outline.PILL:
@@ -100,18 +102,22 @@ class _Lines:
         return Group("node", tone_of(node.change, TONES[node.kind]), tuple(items), kind, node=index)
 
 
-def _texts(picture: Picture, node: DiagramNode, width: float) -> tuple[list[Row], list[Row]]:
+def _texts(picture: Picture, node: DiagramNode, width: float, common: Mapping[str, int]) -> tuple[list[Row], list[Row]]:
     """The texts of a node that are shown in any case, and its constants; no line is wider."""
     name = f"{{{node.label}}}" if node.title is None else node.title.name.strip() or NO_NAME
     short = wrap(name, MEDIUM, width, bold=True, limit=1)
     texts = [Row((TextLine(short[0], MEDIUM, "title", bold=True),), hint=name if short[0] != name else "")]
-    constants: list[Row] = []
     if node.title is None:
-        return texts, constants
+        return texts, []
+    numbered: list[tuple[int, Row]] = []
     if subtitle(node.title):
         texts.append(Row(paragraph(subtitle(node.title), width, "muted", limit=1)))
     for detail, row in zip(node.details, port_rows(picture, node, width, MAX_LINES), strict=True):
-        (constants if detail.kind is DetailKind.CONSTANT else texts).append(row)
+        if detail.kind is DetailKind.CONSTANT:
+            numbered.append((common[detail.text], row))
+        else:
+            texts.append(row)
+    constants = [row for _, row in sorted(numbered, key=lambda pair: pair[0])]
     return (texts, constants) if len(constants) > 1 else (texts + constants, [])
 
 
@@ -123,9 +129,10 @@ def _filled(texts: Sequence[Row], constants: Sequence[Row], width: float) -> lis
         if lines[-1] and _width([*lines[-1], row, *reserved]) > width:
             lines.append([])
         lines[-1].append(row)
-    hidden = list(constants)
-    while hidden and _width([*lines[-1], hidden[0], *(reserved if hidden[1:] else [])]) <= width:
-        lines[-1].append(hidden.pop(0))
+    hidden: list[Row] = []
+    for row in constants:
+        rest = reserved if hidden or row is not constants[-1] else []
+        (lines[-1] if _width([*lines[-1], row, *rest]) <= width else hidden).append(row)
     if hidden:
         lines[-1].append(hidden_row(ELLIPSIS, hidden))
     return lines

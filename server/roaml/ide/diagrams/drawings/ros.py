@@ -47,8 +47,13 @@ def draw_ros(picture: Picture, direction: LayoutDirection) -> Drawing:
     cards = {node.id: _card(node, CARD_WIDTH[direction]) for node in picture.nodes}
     shown = [(number, edge) for number, edge in enumerate(picture.edges) if edge.source != edge.target]
     labels = [_label(number, edge) for number, edge in shown]
+    nodes = {node.id: node for node in picture.nodes}
+
+    def port(edge: DiagramEdge, end: str) -> float | None:
+        return _row_of(edge, nodes[end], cards[end]) if direction is LayoutDirection.RIGHT else None
+
     links = [
-        Link(edge.source, edge.target, label.size if label else None)
+        Link(edge.source, edge.target, label.size if label else None, port(edge, edge.source), port(edge, edge.target))
         for (_, edge), label in zip(shown, labels, strict=True)
     ]
     boxes = Boxes(parents, {name: cards[name].size for name in framed})
@@ -90,6 +95,16 @@ def _card(node: DiagramNode, width: float) -> Card:
         name = detail.text.removeprefix(f"/{node.label}/")
         rows.append(Row(paragraph(name, width), tones[detail.key], has_bar=True))
     return Card(tuple(rows), padding=14.0 if node.kind in _CHANNELS else 12.0)
+
+
+def _row_of(edge: DiagramEdge, node: DiagramNode, card: Card) -> float | None:
+    """The place of the row of a card for the first interface through which an edge leads; `None` if it has none."""
+    interfaces = [detail for detail in node.details if detail.kind is DetailKind.INTERFACE]
+    first = len(card.rows) - len(interfaces)
+    for number, detail in enumerate(interfaces, first):
+        if edge.interface is not None and detail.key == edge.interface.value and detail.text in edge.labels:
+            return card.row_middle(number)
+    return None
 
 
 def _label(number: int, edge: DiagramEdge) -> Card | None:

@@ -7,6 +7,7 @@ scripts and mock are further rows of the card. The entries of the blackboard are
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from roaml.figures.drawing import MAX_ROUNDING, Drawing, Group, Item, Outline, Polyline, Shape, Tone
@@ -38,7 +39,7 @@ OUTLINES: Mapping[DiagramNodeKind, Outline] = {
 }
 _DETAIL_TONES: Mapping[DetailKind, Tone] = {
     DetailKind.REFERENCE: Tone.BLACKBOARD,
-    DetailKind.SCRIPT: Tone.CONDITION,
+    DetailKind.SCRIPT: Tone.BLACKBOARD,
     DetailKind.MOCK: Tone.CHANCE,
 }
 """The tones of the bars of rows. Rows of other kinds have no bar."""
@@ -51,7 +52,8 @@ _BADGE_DISTANCE = 7.0
 
 def draw_tree(picture: Picture, direction: LayoutDirection) -> Drawing:
     index = {node.id: number for number, node in enumerate(picture.nodes)}
-    cards = {node.id: _card(picture, node) for node in picture.nodes}
+    common = common_texts(picture)
+    cards = {node.id: _card(picture, node, common) for node in picture.nodes}
     children = children_of(picture)
     variables = [node.id for node in picture.nodes if node.kind is DiagramNodeKind.VARIABLE]
     sizes = {name: _size(cards[name], picture.nodes[index[name]].kind) for name in cards}
@@ -109,7 +111,14 @@ def _size(card: Card, kind: DiagramNodeKind) -> Extent:
     return Extent(width + extra, height)
 
 
-def _card(picture: Picture, node: DiagramNode) -> Card:
+def common_texts(picture: Picture) -> Mapping[str, int]:
+    """The number of nodes with the same constant, by its text."""
+    return Counter(
+        detail.text for node in picture.nodes for detail in node.details if detail.kind is DetailKind.CONSTANT
+    )
+
+
+def _card(picture: Picture, node: DiagramNode, common: Mapping[str, int]) -> Card:
     if node.title is None:
         return Card((Row(title(f"{{{node.label}}}", PORT_WIDTH)),))
     rows = [Row(title(node.title.name, TITLE_WIDTH))]
@@ -118,9 +127,11 @@ def _card(picture: Picture, node: DiagramNode) -> Card:
     ports = list(zip(node.details, port_rows(picture, node, PORT_WIDTH, MAX_PORT_LINES), strict=True))
     constants = [row for detail, row in ports if detail.kind is DetailKind.CONSTANT]
     if len(picture.nodes) > LARGE and len(constants) > MAX_CONSTANTS and not any(detail.change for detail, _ in ports):
-        shown = constants[0]
+        # The constant that the fewest nodes have says most.
+        shown = min((pair for pair in ports if pair[1] in constants), key=lambda pair: common[pair[0].text])[1]
         rows += [row for detail, row in ports if detail.kind is not DetailKind.CONSTANT or row is shown]
-        rows.append(hidden_row(f"… {len(constants) - 1} more", constants[1:]))
+        others = [row for row in constants if row is not shown]
+        rows.append(hidden_row(f"… {len(others)} more", others))
     else:
         rows += [row for _, row in ports]
     return Card(tuple(rows), side=BADGE + _BADGE_DISTANCE)
