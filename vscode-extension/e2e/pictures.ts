@@ -19,7 +19,7 @@ export function pictures(stage: Stage): void {
         const picture = await window.picture();
         await window.becomes(() => labels(picture), ["driving", "charging"]);
         assert.equal(await picture.locator(".scene .edge.is-ros").count(), 3);
-        assert.equal(await picture.locator(".dot").count(), 1);
+        assert.equal(await picture.locator("svg.picture .dot").count(), 1);
         assert.equal(await picture.locator("svg.picture .link .line").count(), 4);
         const inside = picture.locator('.node[data-label="driving"] .edge.is-ros');
         assert.match((await inside.textContent()) ?? "", /timer second.*publish \/battery/);
