@@ -25,7 +25,7 @@ from roaml.lower.programs.automaton import (
     node_automaton,
     too_large,
 )
-from roaml.lower.programs.board import Board, build_board, set_entry
+from roaml.lower.programs.board import Board, build_board
 from roaml.lower.programs.code import STATUSES, Child, NodeCode
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree, FrameNames, TreeLinks
 from roaml.lower.programs.nodes import (
@@ -36,6 +36,7 @@ from roaml.lower.programs.nodes import (
     values_and_scripts,
 )
 from roaml.lower.programs.refusal import TreeRefusal
+from roaml.lower.programs.stored_texts import set_entry
 from roaml.model.expand import Instance, entered_uses
 from roaml.model.node_effects import tree_effects
 from roaml.model.system import EntryOutline, System, SystemAutomaton

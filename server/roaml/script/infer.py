@@ -181,12 +181,15 @@ def _assignment(expr: Assignment, entry: Callable[[str], Type]) -> Iterator[Scri
     target, value = entry(name), type_of(expr.value, entry)
     if expr.operator in ("-=", "*=", "/=") and Type.TEXT in (target, value):
         span = expr.target.span if target is Type.TEXT else expr.value.span
-        yield ScriptProblem(span, f"`{expr.operator}` needs numbers, not a string")
+        number = name if target is Type.TEXT else _name(expr.value)
+        message = f"`{expr.operator}` needs numbers, not a string"
+        yield ScriptProblem(span, message, number=number, operator=expr.operator)
     elif target in NUMBERS and value is Type.TEXT:
         if not (isinstance(expr.value, String) and _is_number(expr.value.value)):
             yield ScriptProblem(expr.value.span, f"`{name}` is a number and keeps its type; it cannot become a string")
     elif target is Type.TEXT and value in NUMBERS and expr.operator == "+=":
-        yield ScriptProblem(expr.value.span, f"`{name}` is a string, to which `+=` can add only strings")
+        message = f"`{name}` is a string, to which `+=` can add only strings"
+        yield ScriptProblem(expr.value.span, message, number=name, operator="+=")
     elif target is Type.INTEGER and expr.operator in (":=", "=") and _is_fraction(expr.value):
         yield ScriptProblem(
             expr.value.span, f"`{name}` is an integer and keeps its type; it cannot become a real number"

@@ -17,6 +17,7 @@ from roaml.libraries.version import CASES_WHOLE_SINCE, CONSTANTS_TYPED_SINCE, Ve
 from roaml.lower.programs.cases import number_in
 from roaml.lower.programs.entries import BoardEntry, EntryKind, kind_of_cpp, read_literal
 from roaml.lower.programs.executed import ExecutedNode, ExecutedTree
+from roaml.lower.programs.stored_texts import StoredTexts, set_entry, stored_texts
 from roaml.record import Record, field
 from roaml.roles import Direction
 from roaml.script.infer import Type, type_of
@@ -42,6 +43,7 @@ class Board(Record, frozen=True, eq=False):
         flags: observed entry -> the flags of its observers.
         flag_of: number of an observer -> its flag.
         values: entry -> the values that mocks may write to it.
+        texts: the entries of texts that constants of `SetBlackboard` set.
         read: the names of the entries that programs and scripts read.
         written: the names of the entries that nodes and scripts write.
         computed: the names of the entries that scripts compute from entries, such as counters, or that the programs of
@@ -54,6 +56,7 @@ class Board(Record, frozen=True, eq=False):
     flags: Mapping[str, tuple[BoardEntry, ...]]
     flag_of: Mapping[int, BoardEntry]
     values: Mapping[str, tuple[int | float | str, ...]]
+    texts: StoredTexts
     read: frozenset[str]
     written: frozenset[str]
     computed: frozenset[str]
@@ -154,6 +157,7 @@ class _Reader(Record):
     observed: dict[int, str] = field(default_factory=dict)
     copies: list[tuple[str, str]] = field(default_factory=list)
     switched: list[tuple[str, EntryKind]] = field(default_factory=list)
+    read_texts: list[str] = field(default_factory=list)
 
     def board(self) -> Board:
         for entry, text in (*self.tree.initial.items(), *self.given.items()):
@@ -166,6 +170,9 @@ class _Reader(Record):
                 self.add(entry, EntryKind.TEXT)
         scripts = [(node, _facts(script)) for node in self.tree.nodes for _, script, _ in node_scripts(node, version)]
         self.follow(scripts)
+        for entry in self.read_texts:  # a port that only reads a text converts the value of any type
+            if entry not in self.kinds:
+                self.add(entry, EntryKind.TEXT)
         self.from_texts()
         if self.switched:
             self.follow(scripts)
@@ -218,7 +225,11 @@ class _Reader(Record):
                 self.writers.add(entry)
             if port in written:
                 self.computed.add(entry)
-            self.add(entry, kind_of_cpp(port_type(declared)) if node.type[:6] != "Switch" else None)
+            kind = kind_of_cpp(port_type(declared)) if node.type[:6] != "Switch" else None
+            if kind is EntryKind.TEXT and declared is not None and declared.direction is Direction.IN:
+                self.read_texts.append(entry)
+            else:
+                self.add(entry, kind)
         if node.type.startswith("Switch"):
             self.switch(node)
         elif node.type.startswith("BlackboardCheck"):
@@ -316,13 +327,15 @@ class _Reader(Record):
     def result(self) -> Board:
         entries: dict[str, BoardEntry] = {}
         typed = self.typed or {}
+        texts = self.stored_texts()
         for name in sorted(self.readers | self.stored | typed.keys()):
             initial = self.given.get(name, self.tree.initial.get(name))
             if name not in self.writers and name not in typed and initial is None:
                 continue
             kind = self.kinds.get(name, EntryKind.INTEGER)
             literal = None if initial is None else read_literal(initial)[1] if kind is not EntryKind.TEXT else initial
-            entries[name] = BoardEntry(name, kind, literal, typed.get(name, ""), self.constant_text(name))
+            is_text = name in texts.entries and kind is not EntryKind.TEXT
+            entries[name] = BoardEntry(name, kind, literal, typed.get(name, ""), self.constant_text(name), is_text)
         flags: dict[str, list[BoardEntry]] = {}
         flag_of: dict[int, BoardEntry] = {}
         for number, name in self.observed.items():
@@ -333,7 +346,13 @@ class _Reader(Record):
         values = {name: self.values(name, entry.kind) for name, entry in entries.items()}
         observers = {name: tuple(known) for name, known in flags.items()}
         used = frozenset(self.readers), frozenset(self.writers), frozenset(self.computed)
-        return Board(entries, observers, flag_of, values, *used, self.typed is not None, self.tree.version)
+        return Board(entries, observers, flag_of, values, texts, *used, self.typed is not None, self.tree.version)
+
+    def stored_texts(self) -> StoredTexts:
+        if self.typed is not None:
+            return StoredTexts(frozenset(), frozenset())
+        scripts = ((n, script) for n in self.tree.nodes for _, script, _ in node_scripts(n, self.tree.version))
+        return stored_texts(self.tree, scripts, self.given)
 
     def constant_text(self, name: str) -> str | None:
         """The text of an entry that a `<SubTree>` sets and nothing else writes, if the version stores it as a text."""
@@ -347,12 +366,3 @@ class _Reader(Record):
         mentioned = self.mentioned.get(name, [])
         fitting = [value for value in mentioned if isinstance(value, str) is (kind is EntryKind.TEXT)]
         return tuple(dict.fromkeys((*fitting, *other)))[:MAX_VALUES]
-
-
-def set_entry(node: ExecutedNode, *, in_system: bool) -> str | None:
-    """The entry that a `SetBlackboard` writes or an `UnsetBlackboard` removes; `None` if its name is known only when
-    the tree runs. In a system, `{v}` refers to the entry `v` itself (docs/spec/nodes.md#library)."""
-    for port, entry, text, _ in node.ports():
-        if port in ("output_key", "key"):
-            return node.frame.entry(text.strip()) if entry is None else entry if in_system else None
-    return None

@@ -27,6 +27,7 @@ class BoardEntry(Record, frozen=True):
         initial: the value before the first write; `None` if the entry does not exist then.
         type: the type of the variable of the blackboard if a plugin determines it; "" if `kind` determines it.
         text: the text that scripts read, if the entry is a constant text whatever `kind` is; otherwise `None`.
+        is_text: whether the library stores the numbers as texts, because constants of `SetBlackboard` set the entry.
     """
 
     variable: str
@@ -34,6 +35,7 @@ class BoardEntry(Record, frozen=True):
     initial: int | float | str | None = None
     type: str = ""
     text: str | None = None
+    is_text: bool = False
 
     @property
     def local(self) -> str:

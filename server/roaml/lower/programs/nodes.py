@@ -15,12 +15,13 @@ from roaml.libraries.programs.assembly import NodeProgram, is_executable, progra
 from roaml.libraries.programs.statuses import RUNNING, STATUS_CODES, Known
 from roaml.libraries.scripts import script_ports
 from roaml.libraries.version import NEWEST_VERSION, Version
-from roaml.lower.programs.board import Board, names_read, node_scripts, set_entry
+from roaml.lower.programs.board import Board, names_read, node_scripts
 from roaml.lower.programs.cases import case_value
 from roaml.lower.programs.entries import BoardEntry, EntryKind, kind_of_cpp, read_literal
 from roaml.lower.programs.executed import ExecutedNode
 from roaml.lower.programs.refusal import INVALID_SCRIPT, TreeRefusal, first_of
 from roaml.lower.programs.scripts import CompiledScript, ScriptRefusal, compiled
+from roaml.lower.programs.stored_texts import set_entry
 from roaml.record import Record, field
 from roaml.roles import UNBOUNDED, NodeKind
 from roaml.script.tree import Script
@@ -334,6 +335,8 @@ class _Reader(Record, eq=False):
                     f'the tree runs; write `{port}="{entry}"` for the entry `{entry}` itself'
                 )
                 raise TreeRefusal(Location(node.origin.path, span), reason)
+        if node.type == "SetBlackboard" and not board.in_system:
+            _check_copy(node, target, board)
         if target is None or target not in board.entries:
             known["value"] = 0
             return
@@ -370,6 +373,26 @@ class _Reader(Record, eq=False):
                 read = tuple(read_literal(item)[1] for item in items)
                 return tuple(float(v) for v in read) if node.type == "LoopDouble" else read
         return ()
+
+
+def _check_copy(node: ExecutedNode, target: str | None, board: Board) -> None:
+    """Refuse a copy of a text that has no declared type, because scripts cannot read it in the library.
+
+    Raises:
+        TreeRefusal: the library fails, or throws an exception when a script reads the copy.
+    """
+    for port, entry, _, span in node.ports():
+        if port != "value" or entry is None or entry not in board.texts.untyped:
+            continue
+        source = board.entries.get(entry)
+        is_text = source is not None and source.kind is EntryKind.TEXT
+        is_read = target in board.read and target in board.texts.untyped
+        if entry in board.texts.entries or (is_text and is_read):
+            reason = (
+                f"the library cannot copy the text of `{entry}` to `{target}`; "
+                f'copy it with a script, such as `<Script code="{target} := {entry}"/>`'
+            )
+            raise TreeRefusal(Location(node.origin.path, span), reason)
 
 
 def _compares_texts(program: NodeProgram) -> bool:

@@ -18,7 +18,7 @@ from roaml.expr.tree import Unary as UnaryExpr
 from roaml.lower.build import binary, both, equal, floor, integer, name
 from roaml.lower.programs.entries import BoardEntry, EntryKind, constant, read_literal
 from roaml.lower.programs.refusal import INVALID_SCRIPT
-from roaml.record import Record, field
+from roaml.record import Record, field, replace
 from roaml.script import tree as syntax
 from roaml.text import NO_SPAN, Span
 
@@ -52,14 +52,24 @@ class CompiledScript(Record, frozen=True, eq=False):
     truth: Expr | None
 
 
+def _is_text(name: str) -> str:
+    """Why the entry `name` with numbers is not a number in a script, and what to do."""
+    return (
+        f"`{name}` is a text, because `SetBlackboard` stores its constant as a text; "
+        f'to use `{name}` as a number, set it with a script, such as `<Script code="{name} := 4"/>`'
+    )
+
+
 _JOINED = "texts cannot be joined in the translation"
 
 
 class _Value(Record, frozen=True):
-    """A translated expression. `kind` is the kind of its value; `None` for a condition."""
+    """A translated expression. `kind` is the kind of its value; `None` for a condition. `text_of` is the name of the
+    entry if its numbers are stored as texts."""
 
     expr: Expr
     kind: EntryKind | None
+    text_of: str = ""
 
 
 def compiled(
@@ -129,7 +139,7 @@ class _Compiler(Record):
                     return _Value(constant(EntryKind.TEXT, entry.text), EntryKind.TEXT)
                 if entry.variable not in self.writes:
                     self.reads[entry.variable] = entry
-                return _Value(name(entry.local), entry.kind)
+                return _Value(name(entry.local), entry.kind, expr.name if entry.is_text else "")
             case syntax.Unary():
                 return self.unary(expr)
             case syntax.Binary():
@@ -193,6 +203,10 @@ class _Compiler(Record):
     def comparable(self, expr: syntax.Expr, left: _Value, right: _Value) -> tuple[_Value, _Value]:
         if left.kind is EntryKind.TEXT and right.kind is EntryKind.TEXT:
             return left, right
+        if left.text_of or right.text_of:
+            if EntryKind.TEXT in (left.kind, right.kind) or (left.text_of and right.text_of):
+                self.refuse(expr, _is_text(left.text_of or right.text_of))
+            left, right = replace(left, text_of=""), replace(right, text_of="")
         if EntryKind.TEXT in (left.kind, right.kind):
             return self.with_text(expr, left, right)
         return self.number(left, expr), self.number(right, expr)
@@ -257,6 +271,10 @@ class _Compiler(Record):
             self.refuse(
                 expr, f"the entry `{expr.target.name}` is {entry.kind.value}, but the assigned value has another type"
             )
+        if value.text_of:
+            value = replace(value, text_of="")
+        elif entry.is_text:
+            self.refuse(expr, _is_text(expr.target.name))
         number = self.number(value, expr.value)
         if entry.kind is EntryKind.INTEGER and number.kind is EntryKind.REAL:
             if self.assignments:
@@ -273,6 +291,8 @@ class _Compiler(Record):
             return _Value(as_number, EntryKind.INTEGER)
         if value.kind is EntryKind.TEXT:
             self.refuse(expr, "a number is needed here, but the value is a text")
+        if value.text_of:
+            self.refuse(expr, _is_text(value.text_of))
         return value
 
     def truth(self, value: _Value, span: Span) -> Expr:
@@ -280,4 +300,6 @@ class _Compiler(Record):
             return value.expr
         if value.kind is EntryKind.TEXT:
             raise ScriptRefusal(span, "the value is a text, which is neither true nor false")
+        if value.text_of:
+            raise ScriptRefusal(span, _is_text(value.text_of))
         return UnaryExpr(NO_SPAN, UnaryOperator.NOT, equal(value.expr, integer(0)))
