@@ -380,3 +380,37 @@ def test_entries_are_for_trees(tmp_path: Path, capsys: pytest.CaptureFixture[str
     path = tmp_path / "main.xml"
     path.write_text("<roaml/>", encoding="utf-8")
     assert "entries and a tick rate are for files of behavior trees" in refused(capsys, str(path), "--entry", "a=1")
+
+
+def test_equal_leaves_of_a_tree_that_is_used_twice_have_numbers(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    content = (
+        '<Sequence><SubTree ID="Inner" name="a"/><SubTree ID="Inner" name="b"/><Last/></Sequence></BehaviorTree>\n'
+        '<BehaviorTree ID="Inner"><Drive/>'
+    )
+    assert run(["verify", tree(tmp_path, content), "--mock", "*: 0.9", "--verbose"]) == 0
+    raised = re.findall(r"raising (\w+) \(.*tree\.xml:\d+(.*?)\) from", capsys.readouterr().out)
+    assert sorted(raised) == [("Drive", ", bt_1001"), ("Drive", ", bt_1002"), ("Last", "")]
+
+
+def test_a_leaf_with_scripts_returns_failure_by_chance(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Its mock decides before its scripts are executed, in other turns of the same tick."""
+    content = (
+        "<Sequence><Script code='a := 0'/><Work _onFailure='a += 1' _post='a += 1' _skipIf='a &gt; 5'/>"
+        "<ScriptCondition code='a == 1'/></Sequence>"
+    )
+    assert run(["verify", tree(tmp_path, content), "--mock", "*: 0.25"]) == 0
+    assert re.search(r"because Work \(.*tree\.xml:3\) returns FAILURE \(by chance, 0\.75\)\n", capsys.readouterr().out)
+
+
+def test_flags_of_observed_entries_have_one_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    content = (
+        "<Sequence><SetBlackboard value='1' output_key='goal'/><WasEntryUpdated entry='{goal}'/>"
+        "<SkipUnlessUpdated entry='{goal}'><Drive/></SkipUnlessUpdated></Sequence>"
+    )
+    assert run(["simulate", tree(tmp_path, content), "--mock", "*: 1"]) == 0
+    text = capsys.readouterr().out
+    assert "{goal} updated for bt_1002: 1 → 0" in text
+    assert "(goal updated for bt_1002: 1, goal updated for bt_1003: 1)" in text
+    assert not re.search(r"goal__|goal\.|entry__", text)

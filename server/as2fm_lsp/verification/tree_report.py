@@ -6,14 +6,16 @@ from __future__ import annotations
 import bisect
 import itertools
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from as2fm_lsp.verification.status_table import status_table
 from roaml.durations import AT_ONCE, moment
+from roaml.lower.programs.executed import ExecutedNode
 from roaml.lower.programs.nodes import EVENT_PROBABILITY
 from roaml.mocks.network import MockedTree
-from roaml.scxml.names import TreeEventKind, sent_by, tree_event_name
+from roaml.scxml.names import TREE_PREFIX, TreeEventKind, sent_by, tree_event_name
 from roaml.smc.program import TRUE
 from roaml.smc.record import SELECTED
 from roaml.smc.story import Story
@@ -102,8 +104,9 @@ def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf, is_whole
         yield f"  ended by an exception of the library: {_interval(outcome.exceptions)}"
     if outcome.time is not None:
         yield f"  time until success: {_time(outcome.time)}; {', '.join(_quantiles(outcome))}"
+    shown = _shown([node for node, _, _ in outcome.counts], place_of)
     counts = [
-        f"{_count(value)} {counter.replace('_', ' ')} of {node.name} ({place_of(node.origin)})"
+        f"{_count(value)} {counter.replace('_', ' ')} of {shown[node.number]}"
         for node, counter, value in outcome.counts
         if value.value or is_whole
     ]
@@ -121,8 +124,20 @@ def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf, is_whole
             if outcome.rare is not None and outcome.rare < MIN_NORMAL_TRACES
             else ""
         )
-        influences = [_influence(influence, place_of) for influence in outcome.influences]
+        shown = _shown([influence.leaf.node for influence in outcome.influences], place_of)
+        influences = [_influence(influence, shown) for influence in outcome.influences]
         yield from _listed(f"influence on the probability of success{note}", influences, MAX_LEAVES, is_whole)
+
+
+def _shown(nodes: Iterable[ExecutedNode], place_of: PlaceOf) -> dict[int, str]:
+    """Number of a node -> the node with its place, and with its number if another node of this name has the same place,
+    because a tree is used several times."""
+    shown = {node.number: (node.name, place_of(node.origin)) for node in nodes}
+    count = Counter(shown.values())
+    return {
+        number: f"{name} ({place}{f', {TREE_PREFIX}{number}' if count[name, place] > 1 else ''})"
+        for number, (name, place) in shown.items()
+    }
 
 
 def _listed(title: str, parts: Sequence[str], most: int, is_whole: bool) -> Iterator[str]:
@@ -149,13 +164,13 @@ def _quantiles(outcome: TreeOutcome) -> Iterator[str]:
         yield f"{', '.join(others)}{' and ' if others else ''}{last} % within {time} s"
 
 
-def _influence(influence: Influence, place_of: PlaceOf) -> str:
+def _influence(influence: Influence, shown: Mapping[int, str]) -> str:
     """What a small change of the probability of a mock does, such as `raising Grasp (tree.xml:5) from 0.9 to 0.91 adds
     0.008`."""
     node, before = influence.leaf.node, influence.leaf.probability
     change = RAISED_BY if before + RAISED_BY <= 1 else 1 - before
     low, value, high = (change * v for v in (influence.bounds.lower, influence.value, influence.bounds.upper))
-    raised = f"raising {node.name} ({place_of(node.origin)}) from {before:.6g} to {before + change:.6g}"
+    raised = f"raising {shown[node.number]} from {before:.6g} to {before + change:.6g}"
     if abs(value) < NEGLIGIBLE and abs(low) < NEGLIGIBLE and abs(high) < NEGLIGIBLE:
         return f"{raised} makes almost no difference (less than {NEGLIGIBLE:g})"
     if low == high:

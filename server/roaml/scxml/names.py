@@ -145,6 +145,9 @@ BLACKBOARD_WRITE_PREFIX = "bt_blackboard_set_"
 ENTRY_PREFIX = "entry__"
 """The beginning of the name of the variable in which a node of a library stores the value of a blackboard entry that it
 has read last."""
+_UPDATED = regex(r"(.+)__updated_(\d+)")
+"""The name of the entry that stores whether another entry was written since a node checked it last, with the name of
+that entry and the number of the node as groups."""
 _TREE_EVENT = regex(r"bt_(\d+)(?:_inner\d*)?_(tick|response|halt|halt_response)")
 _OBSERVER_SUFFIX = "__observer"
 """The end of the name of the automaton that observes a property in XML (docs/spec/jani.md#observers)."""
@@ -322,6 +325,19 @@ def is_blackboard_answer(event: str) -> bool:
 def is_blackboard_event(event: str) -> bool:
     """Whether an event reads or writes a blackboard, or contains its values."""
     return event.startswith(BLACKBOARD_WRITE_PREFIX) or is_blackboard_request(event) or is_blackboard_answer(event)
+
+
+def update_flag(entry: str, number: int) -> str:
+    """The name of the entry that stores whether `entry` was written since the node `number` checked it last."""
+    return f"{entry}__updated_{number}"
+
+
+def entry_name(entry: str, marks: tuple[str, str] = ("", "")) -> str:
+    """The name of an entry for users, between two marks: `goal`, or `goal updated for bt_1003` for the entry that
+    stores whether `goal` was written since the node 1003 checked it last."""
+    flag = _UPDATED.fullmatch(entry)
+    name = marks[0] + (flag[1] if flag else entry) + marks[1]
+    return f"{name} updated for {TREE_PREFIX}{flag[2]}" if flag else name
 
 
 def written_entry(event: str) -> str:

@@ -139,7 +139,7 @@ def _why_tree_ends(before: Sequence[Turn], result: str, place_of: Callable[[Orig
     node = _responsible(before)
     if node is None:
         return ""
-    cause_ = f"{_node(node, place_of)} {_returned(node)}"
+    cause_ = f"{_node(node, place_of)} {_returned(node, before)}"
     if node.status == result:
         return f", because {cause_}"
     above = (turn for turn in before[before.index(node) :] if turn.status == result and turn.time == node.time)
@@ -155,8 +155,15 @@ def _node(turn: Turn, place_of: Callable[[Origin], str]) -> str:
     return f"{_NUMBER.sub('', turn.who)}{place}" if place else turn.who
 
 
-def _returned(turn: Turn) -> str:
-    odds = chances(turn)
+def _returned(turn: Turn, before: Sequence[Turn]) -> str:
+    """What a node returned, and the outcome of chance in this tick, which comes before what its conditions do."""
+    odds: list[str] = []
+    for own in reversed(before[: before.index(turn) + 1]):
+        if own.automaton != turn.automaton:
+            continue
+        odds = chances(own)
+        if odds or own.is_ticked:
+            break
     return f"returns {turn.status}{f' ({odds[-1]})' if odds else ''}"
 
 

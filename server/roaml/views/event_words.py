@@ -16,6 +16,7 @@ from roaml.scxml.names import (
     TreeEventKind,
     cancel_request,
     client_of,
+    entry_name,
     is_blackboard_answer,
     is_blackboard_event,
     is_blackboard_request,
@@ -120,7 +121,7 @@ def message_phrases(variables: Iterable[str], clients: Collection[str]) -> list[
 def blackboard_phrase(event: str) -> str:
     """A short phrase for an event of the blackboard; "" for other events."""
     if entry := written_entry(event):
-        return f"the blackboard entry {entry}"
+        return f"the blackboard entry {entry_name(entry)}"
     if is_blackboard_request(event):
         return "a request to the blackboard"
     return "the blackboard" if is_blackboard_answer(event) else ""

@@ -8,11 +8,12 @@ from collections.abc import Iterator, Mapping
 from roaml.durations import moment
 from roaml.jani.model import Clause
 from roaml.jani.semantics import EvaluationError, Value, evaluate
-from roaml.scxml.names import CLOCK, MOCK_FAILURES, MOCK_SUCCESSES, TREE_ROOT_PREFIX
+from roaml.scxml.names import CLOCK, ENTRY_PREFIX, MOCK_FAILURES, MOCK_SUCCESSES, TREE_ROOT_PREFIX
 from roaml.smc.record import AutomatonStep
 from roaml.views.arrays import DeclaredChange, DeclaredValue
 from roaml.views.turns import Message, Turn
 from roaml.views.values import shown_parameters, shown_value
+from roaml.views.variables import entry_phrase
 
 MAX_CHARACTERS = 60
 """The maximum number of characters of the states or the parameters of an event in a line."""
@@ -106,6 +107,8 @@ def message_text(message: Message) -> str:
 def _change(change: DeclaredChange, turn: Turn) -> str:
     name = change.variable.name
     phrase = turn.phrases.get(name, name) if change.variable.instance == turn.instance else name
+    if phrase == name and name.startswith(ENTRY_PREFIX):  # an entry that the node writes, but never reads
+        phrase = entry_phrase(name)
     return f"{phrase}: {_shown(change.before, change.after)}"
 
 

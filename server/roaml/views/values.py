@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from roaml.scxml.names import entry_name
 from roaml.views.arrays import DeclaredValue
 
 
@@ -25,4 +26,4 @@ def shown_value(value: DeclaredValue) -> str:
 
 def shown_parameters(values: Mapping[str, DeclaredValue]) -> str:
     """The parameters of an event in a readable form, such as `pose.x: 1, pose.y: 2`."""
-    return ", ".join(f"{name.replace('__', '.')}: {shown_value(value)}" for name, value in values.items())
+    return ", ".join(f"{entry_name(name).replace('__', '.')}: {shown_value(value)}" for name, value in values.items())

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 
 from roaml.jani.model import Automaton
 from roaml.jani.node import Origin
-from roaml.scxml.names import CONDITIONS_PREFIX, ENTRY_PREFIX, is_length
+from roaml.scxml.names import CONDITIONS_PREFIX, ENTRY_PREFIX, entry_name, is_length
 from roaml.views.event_words import goal_phrases
 from roaml.views.library_nodes import is_library_node
 
@@ -26,8 +26,13 @@ def variable_phrases(automaton: Automaton, is_event: Callable[[str], bool]) -> M
     """
     names = [variable.name for variable in automaton.variables]
     if is_library_node(automaton) or automaton.name.startswith(CONDITIONS_PREFIX):
-        return {name: f"{{{name.removeprefix(ENTRY_PREFIX)}}}" for name in names if name.startswith(ENTRY_PREFIX)}
+        return {name: entry_phrase(name) for name in names if name.startswith(ENTRY_PREFIX)}
     return {**dict(_members(automaton)), **goal_phrases(names, is_event)}
+
+
+def entry_phrase(name: str) -> str:
+    """A phrase for the variable with the value of a blackboard entry, such as `{load}`."""
+    return entry_name(name.removeprefix(ENTRY_PREFIX), ("{", "}"))
 
 
 def _members(automaton: Automaton) -> Iterator[tuple[str, str]]:

@@ -22,6 +22,7 @@ from roaml.record import Record, field
 from roaml.roles import Direction
 from roaml.script.infer import Type, type_of
 from roaml.script.tree import Assignment, Comparison, Name, Number, Script, String, walk
+from roaml.scxml.names import update_flag
 from roaml.text import Decoded
 from roaml.xml_syntax import Attribute
 
@@ -341,7 +342,7 @@ class _Reader(Record):
         for number, name in self.observed.items():
             if name in self.writers or name in self.given or name in self.tree.initial:
                 is_set = name in self.given or name in self.tree.initial
-                flag_of[number] = BoardEntry(f"{name}__updated_{number}", EntryKind.INTEGER, int(is_set))
+                flag_of[number] = BoardEntry(update_flag(name, number), EntryKind.INTEGER, int(is_set))
                 flags.setdefault(name, []).append(flag_of[number])
         values = {name: self.values(name, entry.kind) for name, entry in entries.items()}
         observers = {name: tuple(known) for name, known in flags.items()}

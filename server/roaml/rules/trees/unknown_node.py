@@ -95,7 +95,7 @@ def _of_version_3(span: Span, name: str, now: str, *fixes: Fix) -> Finding:
 def _undeclared(trees: Forest, node: TreeNode, name: Name) -> Iterator[Finding]:
     """Report a name similar to that of a known node, and a name that nothing declares although the nodes of the program
     are known."""
-    close, system = _meant(trees, name.value), trees.system
+    close, system = _meant(trees, node, name.value), trees.system
     message, severity = f"there is no node `{name.value}`", _severity(trees)
     if system is not None and name.value in [outline.name for _, outline in system.nodes]:
         message += "; its file is listed in `<node_models>`, but plugins must be listed in `<behavior_tree>`"
@@ -117,17 +117,24 @@ def _undeclared(trees: Forest, node: TreeNode, name: Name) -> Iterator[Finding]:
     yield RULE.at(name.span, message, *_renamings(node, name, close), severity=severity)
 
 
-def _meant(trees: Forest, name: str) -> tuple[str, ...]:
-    """The names that are probably intended. Without a system, the program may register nodes with similar names."""
+def _meant(trees: Forest, node: TreeNode, name: str) -> tuple[str, ...]:
+    """The names that are probably intended. Without a system, the program may register nodes with similar names, so a
+    leaf is not a misspelled node with children, nor the other way round."""
     if trees.system is not None:
         return close_names(name, trees.names)
-    near = probably_meant(name, trees.names) or probably_meant(name, trees.trees, most=1)
+    similar = [known for known in trees.names if _may_be(trees.node(known), node)]
+    near = probably_meant(name, similar) or probably_meant(name, trees.trees, most=1)
     return () if near is None else (near,)
 
 
 def _severity(trees: Forest) -> Severity | None:
     """The severity of a name that a program without a system could register."""
     return Severity.WARNING if trees.system is None else None
+
+
+def _may_be(known: Node | None, node: TreeNode) -> bool:
+    """Whether a node is a leaf like `known`, or has children like it."""
+    return known is None or (known.children[1] > 0 if node.children else known.children[0] == 0)
 
 
 def _has_children_of(node: TreeNode, known: Node) -> bool:
