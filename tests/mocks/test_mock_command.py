@@ -414,3 +414,11 @@ def test_flags_of_observed_entries_have_one_name(tmp_path: Path, capsys: pytest.
     assert "{goal} updated for bt_1002: 1 → 0" in text
     assert "(goal updated for bt_1002: 1, goal updated for bt_1003: 1)" in text
     assert not re.search(r"goal__|goal\.|entry__", text)
+
+
+def test_the_reason_for_estimates(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tree(tmp_path, "<Sequence><Drive/><Ask/></Sequence>")
+    reason = "\n  estimated from traces, because there are more than 2 states (max-states)\n"
+    for options, is_stated in ((("--max-states", "2"), True), ((), False), (("--max-traces", "100"), False)):
+        assert run(["verify", path, "--mock", "*: 0.5", *options]) == 0
+        assert (reason in capsys.readouterr().out) is is_stated

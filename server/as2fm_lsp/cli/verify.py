@@ -167,7 +167,7 @@ def _run_tree(
                 options.main, declared, options.max_time, settings, MESSAGES, counts=True, texts=options.texts
             )
             status.stage("exploring the states")
-            outcome: TreeOutcome | str = ""
+            outcome: TreeOutcome | str = ""  # a reason why there is none
             if options.exhaustive or not asks_for_traces(options):
                 try:
                     outcome = measure_exactly(tree.mocked, tree.target, state_limits_in(options))
@@ -188,7 +188,8 @@ def _run_tree(
             )
             if not is_exact and not options.exhaustive:
                 status.stage("making traces")
-                outcome = measure(tree.mocked, tree.target, limits)
+                reason = outcome if isinstance(outcome, str) else ""
+                outcome = replace(measure(tree.mocked, tree.target, limits), reason=reason)
     except api.MockError as error:
         raise UsageError(str(error)) from None
     except api.ModelError as error:

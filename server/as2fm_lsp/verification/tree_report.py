@@ -95,6 +95,8 @@ def _likes(mocked: MockedTree) -> str:
 
 
 def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf, is_whole: bool) -> Iterator[str]:
+    if outcome.reason:
+        yield f"  estimated from traces, because {outcome.reason}"
     is_unfinished = outcome.unfinished.value > NEVER
     if is_unfinished or outcome.exceptions.value:
         yield f"  the tree fails: {_interval(outcome.failure)}"

@@ -126,6 +126,7 @@ class TreeOutcome(Record, frozen=True, eq=False):
             whose mock never or always succeeds are omitted. Empty if all traces had the same outcome, which shows no
             influence.
         shortest: the number of the shortest trace that does not succeed; `None` if there is none.
+        reason: why the values are estimated although no option asks for traces, a clause for users; otherwise "".
     """
 
     traces: int | None
@@ -140,6 +141,7 @@ class TreeOutcome(Record, frozen=True, eq=False):
     counts: tuple[tuple[ExecutedNode, str, Measured], ...]
     influences: tuple[Influence, ...]
     shortest: int | None = None
+    reason: str = ""
 
     @property
     def is_exact(self) -> bool:
