@@ -7,7 +7,7 @@ The summary contains names of states and handles, but no positions, so most chan
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence, Set
 from typing import TypeAlias
 
 from roaml.interruption import checkpoint
@@ -93,6 +93,8 @@ class ChartOutline(Record, frozen=True):
         unhurried: the answers that a plugin may wait for while it owes no answer to a tick or halt.
         certain_reactions: pairs of events: whenever the machine handles the first, it sends the second before it
             receives another event, whatever the conditions are.
+        repeated_reactions: pairs of a tick and a message: in some configurations, the machine sends the message at each
+            tick, whatever the conditions are, and the tick leads to such a configuration again.
     """
 
     promises: tuple[Promise, ...]
@@ -101,6 +103,7 @@ class ChartOutline(Record, frozen=True):
     overlaps: frozenset[tuple[Awaited, ProtocolEvent]] | None = None
     unhurried: frozenset[Awaited] = frozenset()
     certain_reactions: frozenset[tuple[ProtocolEvent, ProtocolEvent]] = frozenset()
+    repeated_reactions: frozenset[tuple[ProtocolEvent, ProtocolEvent]] = frozenset()
 
 
 UNKNOWN = ChartOutline((), frozenset(), ())
@@ -159,6 +162,7 @@ class _Summary:
             frozenset(self._overlaps()),
             self._unhurried(),
             frozenset(self._certain_reactions()),
+            frozenset(self._repeated_reactions()),
         )
 
     def _overlaps(self) -> Iterator[tuple[Awaited, ProtocolEvent]]:
@@ -271,6 +275,52 @@ class _Summary:
             if all(any(step.handler.cond is None for step in alternatives) for alternatives in configurations):
                 always = [_always_sent(step, outgoing) for alternatives in configurations for step in alternatives]
                 yield from ((event, sent) for sent in frozenset.intersection(*always))
+
+    def _repeated_reactions(self) -> Iterator[tuple[ProtocolEvent, ProtocolEvent]]:
+        outgoing = self.behavior.outgoing()
+        steps: dict[ProtocolEvent, list[BehaviorStep]] = {}
+        for step in self.behavior.steps:
+            if step.event is not None and step.event.part is ProtocolPart.TICK:
+                steps.setdefault(step.event, []).append(step)
+        for event, handled in steps.items():
+            always = {id(step): _always_sent(step, outgoing) for step in handled}
+            for message in frozenset[ProtocolEvent]().union(*always.values()):
+                if message.part is ProtocolPart.MESSAGE:
+                    sending = {id(step) for step in handled if message in always[id(step)]}
+                    if self._repeats_in_some(event, sending, outgoing):
+                        yield event, message
+
+    def _repeats_in_some(
+        self, event: ProtocolEvent, sending: Set[int], outgoing: Sequence[Sequence[BehaviorStep]]
+    ) -> bool:
+        """Whether there are configurations in which all steps with `event` have an `id()` in `sending` and lead to
+        such configurations again, perhaps through transitions without event."""
+        entered: list[list[int]] = [[] for _ in outgoing]
+        for step in self.behavior.steps:
+            entered[step.target].append(step.source)
+        lasting = set(range(len(outgoing)))
+        open_ = list(lasting)
+        while open_:
+            checkpoint()
+            number = open_.pop()
+            if number in lasting and not _lasts(event, outgoing[number], sending, lasting):
+                lasting.discard(number)
+                open_ += entered[number]
+        return any(step.event == event for number in lasting for step in outgoing[number])
+
+
+def _lasts(event: ProtocolEvent, outgoing: Sequence[BehaviorStep], sending: Set[int], lasting: Container[int]) -> bool:
+    """Whether a configuration with the steps `outgoing` reacts to `event` with a step in `sending`, whatever the
+    conditions are, and goes on to a configuration in `lasting`."""
+    at_once = [step for step in outgoing if step.event is None]
+    if any(step.target not in lasting and not step.ignored for step in at_once):
+        return False
+    if any(step.handler.cond is None for step in at_once):
+        return True
+    handled = [step for step in outgoing if step.event == event]
+    return any(step.handler.cond is None for step in handled) and all(
+        id(step) in sending and step.target in lasting for step in handled
+    )
 
 
 def _always_sent(step: BehaviorStep, outgoing: Sequence[Sequence[BehaviorStep]]) -> frozenset[ProtocolEvent]:

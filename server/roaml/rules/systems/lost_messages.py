@@ -6,12 +6,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
+from roaml.expr.tree import Member, walk
 from roaml.model.behavior.phases import ProtocolEvent
 from roaml.model.machine import Chart, Handler, State
+from roaml.model.syntax import Expression
 from roaml.model.system import ChannelEndpoint
 from roaml.model.timing import TimerRate, rates
 from roaml.model.triggers import trigger
 from roaml.model.value_types import find_handle
+from roaml.model.values.domain import TRUE
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.interfaces import declared
@@ -34,12 +37,12 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _fastest(timers: list[TimerRate], sources: Iterable[ChannelEndpoint]) -> TimerRate | None:
-    """The timer with the highest rate at each tick of which a machine may publish to a topic."""
+    """The timer with the highest rate that makes a machine publish to a topic at one tick after the other."""
     sending = []
     for endpoint in sources:
         sent = ProtocolEvent(ProtocolPart.MESSAGE, endpoint.use.handle)
         for chart in endpoint.automaton.outline.charts:
-            causes = {first.name for first, second in chart.reactions if second == sent and first.part is _TICK}
+            causes = {tick.name for tick, second in chart.repeated_reactions if second == sent}
             sending += [t for t in timers if t.automaton is endpoint.automaton and t.name in causes]
     return max(sending, key=lambda timer: timer.hertz, default=None)
 
@@ -57,6 +60,8 @@ def _lost(
             sent = arrival.get(declaration.handle.value) if declaration and declaration.handle else None
             if sent is None or len(handler.targets) != 1 or handler.targets[0].state is None:
                 continue
+            if handler.cond is not None and not _may_hold_for_each(context, chart, handler.cond):
+                continue
             after = states.get(handler.targets[0].state.value)
             wait = _wait(context, after, handler, own) if after is not None else None
             if after is not None and after.id is not None and wait is not None and sent.hertz > wait.hertz:
@@ -68,6 +73,15 @@ def _lost(
                     f"`{after.id.value}`, or send fewer"
                 )
                 yield RULE.at(handler.element.name_span, message, related=[Related(after.id.span, "waits here")])
+
+
+def _may_hold_for_each(context: MachineContext, chart: Chart, cond: Expression) -> bool:
+    """Whether a condition may hold for one message after the other: not if it chooses between a few known messages,
+    such as the colors of a light, which probably alternate."""
+    values = context.values.charts.get(chart.scope)
+    seen = values.at(cond.tree) if values is not None else None
+    fields = (values.at(node) for node in walk(cond.tree) if isinstance(node, Member)) if values is not None else ()
+    return seen == TRUE or not any(field is not None and field.only is not None for field in fields)
 
 
 def _wait(context: MachineContext, state: State, handler: Handler, own: dict[str, TimerRate]) -> TimerRate | None:
