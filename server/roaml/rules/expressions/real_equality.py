@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import RealEquality
 from roaml.expr.operators import Operator
-from roaml.expr.tree import Binary, Call, Expr, Member, walk
+from roaml.expr.tree import Binary, Call, Expr, Member, Name, is_draw, walk
 from roaml.model.syntax import Expression
 from roaml.model.value_types import TypedValue
 from roaml.model.values.domain import ANYTHING, ValueSet
@@ -33,8 +33,10 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 
 def _is_exact(context: MachineContext, value: TypedValue, problem: RealEquality) -> bool:
-    """Whether both numbers are some of a few known numbers, which are equal or clearly different, or nothing is known
-    about one of them, which may be a number that is only passed on, and the other is an integer."""
+    """Whether both numbers are constants, or some of a few known numbers, which are equal or clearly different, or
+    nothing is known about one of them, which may be a number that is only passed on, and the other is an integer."""
+    if _is_constant(problem.left) and _is_constant(problem.right):
+        return True
     values = context.values.charts.get(value.place.chart.scope)
     if values is None:
         return True
@@ -46,6 +48,12 @@ def _is_exact(context: MachineContext, value: TypedValue, problem: RealEquality)
     whole = any(side is not None and isinstance(side.value, int | float) and side.value % 1 == 0 for side in sides)
     passed_on = any(values.at(side) == ANYTHING and not _is_computed(side) for side in (problem.left, problem.right))
     return whole and passed_on
+
+
+def _is_constant(expr: Expr) -> bool:
+    """Whether an expression has the same value each time: it names nothing but functions other than `Math.random`."""
+    nodes = list(walk(expr))
+    return not any(is_draw(node) or (isinstance(node, Name) and node.name != "Math") for node in nodes)
 
 
 def _is_computed(expr: Expr) -> bool:
