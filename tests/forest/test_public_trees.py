@@ -182,15 +182,15 @@ def test_the_only_tree_of_a_file_needs_no_name(tmp_path: Path, capsys: pytest.Ca
 @pytest.mark.parametrize(
     ("script", "message"),
     [
-        ("way := way + 1", "`+` needs numbers, but the port `variable` of `Switch2` makes `way` a string"),
-        ("x := -way", "`-` needs numbers, but the port `variable` of `Switch2` makes `way` a string"),
+        ("way := way + 1", "`+` needs numbers, but the port `value` of `LoopString` makes `way` a string"),
+        ("x := -way", "`-` needs numbers, but the port `value` of `LoopString` makes `way` a string"),
         ("x := 'a'; y := x + 1", "`+` cannot join a string and a number; use `..`"),
         ("x := 'a' + 1; y := way .. 1", "`+` cannot join a string and a number; use `..`"),
     ],
 )
 def test_a_number_that_a_port_makes_a_string(script: str, message: str, tmp_path: Path) -> None:
-    switch = '<Switch2 variable="{way}" case_1="1" case_2="2"><A/><B/><A/></Switch2>'
-    tree = f'<BehaviorTree ID="Main"><Sequence><Script code="{script}"/>{switch}</Sequence></BehaviorTree>'
+    loop = '<LoopString queue="1;2" value="{way}"><A/></LoopString>'
+    tree = f'<BehaviorTree ID="Main"><Sequence>{loop}<Script code="{script}"/></Sequence></BehaviorTree>'
     findings = found(tmp_path, {"tree.xml": f'<root BTCPP_format="4">{tree}</root>'})
     (error,) = [text for _, code, text in findings if code == "script-type"]
     assert error.startswith(message)
