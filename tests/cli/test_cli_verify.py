@@ -120,7 +120,10 @@ def test_a_value_is_unknown_if_no_trace_is_decided(command: Command, tmp_path: P
     goal = {"p": probability(op("F", op("=", "x", 50)))}
     name = write(tmp_path, document(automaton("a", "s", [counts]), variables=[variable("x")], properties=goal))
     done = command("verify", name, "--max-steps", 5, "--method", "adaptive")
-    assert "p: unknown: 0 of 100 traces passed, 100 were cut after 5 steps: raise max-steps, or" in done.out
+    assert "p: unknown: all 100 traces were cut after 5 steps: raise max-steps, or" in done.out
+    few = command("verify", name, "--max-steps", 5, "--method", "adaptive", "--max-states", 2).out
+    assert few.startswith("p: unknown: all 100 traces were cut after 5 steps: ")
+    assert "note: the minimum of p over all schedulers is not known" in few
 
 
 def test_junit(command: Command, tmp_path: Path) -> None:

@@ -175,7 +175,10 @@ def test_endless_traces_are_not_said_to_be_missing(command: Command, tmp_path: P
 
 def test_all_states_show_that_the_system_gets_stuck(command: Command, tmp_path: Path) -> None:
     write(tmp_path, STUCK, {"op": "∧", "left": "topic_A_msg.valid", "right": "topic_B_msg.valid"})
-    warning = "the system can get stuck before the property is decided, and then F is false and G is true"
+    warning = (
+        "the system can get stuck before the property is decided; what has not happened by then "
+        "counts as never happening"
+    )
     done = command("verify", "main.xml", "--exhaustive")
     assert done.status == 0
     assert f"  warning: {warning}; `verify` without --exhaustive shows where\n" in done.out

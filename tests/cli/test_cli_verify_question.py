@@ -102,7 +102,8 @@ def test_a_small_model_is_answered_exactly(command: Command, tmp_path: Path) -> 
     assert others == [
         "  `done` holds at some time.",
         "  it fails, for example, if `worker` is delayed for ever while `busy` repeats 50 steps",
-        "  expected ≤ 0.1: met by the minimum over all schedulers, which is 0, but not by the maximum, which is 1",
+        "  expected ≤ 0.1: met by the minimum over all schedulers, which is 0, because the property asks for it; "
+        "not met by the maximum, which is 1, so ask for the maximum if all schedulers must meet it",
         "uniform choices: each step that is possible is equally probable; a scheduler: a rule that chooses which of "
         "the possible steps is next, such as which of two messages arrives first",
     ]
@@ -113,7 +114,8 @@ def test_a_small_model_is_answered_exactly(command: Command, tmp_path: Path) -> 
         "  shortest traces: it holds after 1 step",
         others[1],
         "  ends of 200 random traces: goal decided 200",
-        "  expected ≤ 0.1: met by the minimum over all schedulers, which is 0, but not by the maximum, which is 1",
+        "  expected ≤ 0.1: met by the minimum over all schedulers, which is 0, because the property asks for it; "
+        "not met by the maximum, which is 1, so ask for the maximum if all schedulers must meet it",
     ]
     assert lines[6].startswith("exact values, computed from all reachable states: minimum and maximum over all ")
     assert lines[7:] == others[3:]
@@ -204,7 +206,7 @@ def test_all_schedulers_agree(command: Command, tmp_path: Path) -> None:
     assert row["minimum"] == row["maximum"]
     assert "warning" not in row
     traces = command("verify", "model.jani", "--method", "adaptive").out
-    assert "all schedulers agree on 0.3: all 3 states were explored" in traces
+    assert "the exact value is 0.3 for all schedulers: all 3 states were explored" in traces
     few = command("verify", "model.jani", "--method", "adaptive", "--max-states", "2").out
     assert "were explored" not in few
     assert few.startswith("heads: minimum not known")

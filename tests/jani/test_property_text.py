@@ -170,7 +170,7 @@ def test_names_are_checked() -> None:
             "Assumption: only traces that satisfy `G b` count; `||` before F, G or X begins an assumption.",
         ),
         ('R{"time"}=? [ F a ]', "The time is in s."),
-        ('R{"steps"}=? [ F a ]', ""),
+        ('R{"steps"}=? [ F a ]', "The steps are those of the model: each transition of an automaton is one."),
     ],
 )
 def test_what_a_reader_may_mistake(text: str, remark: str) -> None:

@@ -10,8 +10,8 @@ from roaml.smc.goal import Question
 from roaml.verification.results import Computed, Result, StoppedTime
 
 CAN_GET_STUCK = (
-    "the system can get stuck before the property is decided, and then F is false and G is true; `verify` without "
-    "--exhaustive shows where"
+    "the system can get stuck before the property is decided; what has not happened by then counts as never happening; "
+    "`verify` without --exhaustive shows where"
 )
 
 
@@ -43,8 +43,12 @@ def _stopped_time(stopped: StoppedTime) -> str:
     who = " and ".join(stopped.names) if stopped.names else "machines"
     verb = "takes" if len(stopped.names) == 1 else "take"
     where = "" if stopped.time is None else f", in trace {stopped.trace} at {moment(stopped.time)}"
+    traces = f"{stopped.count:,} of {stopped.traces:,} traces"
+    if stopped.count < stopped.traces:
+        # The percentage keeps this number apart from the value of the property in the line before.
+        traces = f"{stopped.count:,} of {stopped.traces:,} random traces ({100 * stopped.count / stopped.traces:.3g} %)"
     return (
-        f"time stops in {stopped.count:,} of {stopped.traces:,} traces{where}: {who} {verb} steps for ever that "
+        f"time stops in {traces}{where}: {who} {verb} steps for ever that "
         "need no time, so no timer ticks after that, and what has not happened by then never happens; let one of these "
         "steps wait for a timer, or for an event of another machine"
     )

@@ -161,13 +161,13 @@ def _quantile_text(quantile: RewardQuantile) -> str:
     low, high = (number(end) for end in (quantile.low, quantile.high))
     limit = number(quantile.value)
     if math.isinf(quantile.value):
-        text = f"no limit is known, at least {low}, because too few reach the condition"
+        text = f"no limit is known, because too few reach the condition; it is at least {low}"
     elif low == limit == high:
         text = f"at most {limit}"
     elif math.isinf(quantile.high):
-        text = f"at most {limit} (this limit is {low} or more)"
+        text = f"at most about {limit} (an estimate; the true limit is {low} or more)"
     else:
-        text = f"at most {limit} (this limit is between {low} and {high})"
+        text = f"at most about {limit} (an estimate; the true limit is from {low} to {high})"
     return f"{100 * quantile.share:g} % of the traces: {text}; from {quantile.traces:,} traces with uniform choices"
 
 

@@ -37,8 +37,9 @@ def remark(question: Question, choices: Choices | None) -> str:
         return ""
     if choices.agreement:
         value = choices.minimum
-        on = f" on {number(value.value)}" if value is not None and value.is_exact else ""
-        return f"all schedulers agree{on}: {choices.agreement}"
+        if value is not None and value.is_exact:
+            return f"the exact value is {number(value.value)} for all schedulers: {choices.agreement}"
+        return f"all schedulers agree: {choices.agreement}"
     asked = f"the property asks for the {extreme_of(question)} over all schedulers"
     known = choices.minimum if is_minimised(question) else choices.maximum
     if known is not None and choices.differ:

@@ -51,6 +51,7 @@ _OTHER_HEADS = {
 _TEMPORAL = frozenset("FGXUWR")
 _BINARY_LEVELS = (("<=>",), ("=>",), ("|",), ("&",))
 _RELATIONS = frozenset(("=", "!=", "<", "<=", ">", ">="))
+_STEP_REWARD = "The steps are those of the model: each transition of an automaton is one."
 _STEPS = "A bound without a unit counts steps of the model, not seconds; `F<=5 s` has one."
 """The remark on the bounds of a system with a clock."""
 MAX_DEPTH = 100
@@ -226,6 +227,8 @@ class _Parser:
 
     def expectation(self, operator: str, reward: Json) -> Json:
         accumulate = ["steps"] if reward == 1 else ["steps", "exit"]
+        if reward == 1:
+            self.remarks.append(_STEP_REWARD)
         value = {"op": operator, "exp": reward, "accumulate": accumulate}
         if self.takes("C"):
             self.expect("<=")

@@ -266,7 +266,10 @@ def _deciding_bound(expectation: Expectation, exact: Exact, question: Question) 
     if threshold.met(other):
         return by
     opposite = "maximum" if asked == "minimum" else "minimum"
-    return f"{by}, but not by the {opposite}, which is {distinct(other, threshold.number)}"
+    return (
+        f"{by}, because the property asks for it; not met by the {opposite}, which is "
+        f"{distinct(other, threshold.number)}, so ask for the {opposite} if all schedulers must meet it"
+    )
 
 
 def _side_of_example(expectation: Expectation, exact: Exact, question: Question, *, only_uniform: bool) -> int:

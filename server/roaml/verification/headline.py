@@ -107,7 +107,8 @@ def of_answer(answer: Answer, choices: Choices | None = None) -> Headline:
     if not claim and answer.question.is_conditional and answer.tally.traces:
         # The minimum and the maximum under a condition are not computed.
         return Headline("", f"under uniform choices: {estimate}", f"uniform {short}")
-    if not claim:
+    if not claim or (_is_open(answer) and claim.endswith(NOT_KNOWN)):
+        # Nothing is known: once is enough.
         return Headline("", estimate, short)
     brief = claim
     for words, sign in _SIGNS:
@@ -165,12 +166,19 @@ def estimate_text(answer: Answer) -> str:
         if tally.undecided:
             counts += f", {tally.undecided:,} undecided"
         return f"{value} in [{number(lower)}, {number(upper)}] from {counts}"
+    if _is_open(answer):
+        return f"{UNKNOWN}: {_undecided(answer)}"
     results = [f"{tally.successes:,} of {tally.traces:,} traces {good}"]
     results += [f"{answer.failures:,} {bad}"] if answer.failures else []
     results.append(_undecided(answer))
     bounds = _between(answer)
     confidence = "" if bounds == UNKNOWN else f" ({answer.options.confidence:g} confidence)"
     return f"{bounds}{confidence}: {', '.join(results)}"
+
+
+def _is_open(answer: Answer) -> bool:
+    """Whether there are traces, and none of them decides a probability."""
+    return 0 < answer.tally.traces == answer.tally.undecided and not answer.question.is_reward
 
 
 def _between(answer: Answer) -> str:
@@ -193,13 +201,19 @@ def _undecided(answer: Answer) -> str:
     open_ = answer.tally.undecided - cut
     parts = []
     if cut:
-        were = "was" if cut == 1 else "were"
         steps = f"{answer.options.max_steps:,} steps"
-        parts.append(f"{cut:,} {were} cut after {steps}: raise max-steps, or explore all states")
+        parts.append(f"{_these(cut, answer)} cut after {steps}: raise max-steps, or explore all states")
     if open_:
-        were = "was" if open_ == 1 else "were"
-        parts.append(f"{open_:,} {were} too short, because the time ended before a deadline: raise max_time")
+        these = _these(open_, answer)
+        parts.append(f"{these} too short, because the time ended before a deadline: raise max_time")
     return "; ".join(parts)
+
+
+def _these(count: int, answer: Answer) -> str:
+    """Some or all traces of an estimate, as a subject with its verb."""
+    if count == answer.tally.traces:
+        return "the only trace was" if count == 1 else f"all {count:,} traces were"
+    return f"{count:,} {'was' if count == 1 else 'were'}"
 
 
 def _short(answer: Answer) -> str:
