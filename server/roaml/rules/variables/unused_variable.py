@@ -49,8 +49,10 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 message = f"the variable `{data.id.value}` is never used"
                 yield RULE.at(data.id.span, message, _remove(context, data), tags=(Tag.UNNECESSARY,))
             elif data.id.value in written:
+                spans, computed, reads_itself = written[data.id.value]
                 message = f"the variable `{data.id.value}` is assigned, but its value is never read"
-                spans, computed = written[data.id.value]
+                if reads_itself:
+                    message += " except in its own assignments"
                 related = [Related(span, "assigned here") for span in spans]
                 twin = _twin(context, chart, data.id.value, spans)
                 types = context.typed.variables.get(chart.scope, {})
@@ -77,9 +79,10 @@ def _remove(context: MachineContext, data: Data) -> Fix:
     return Fix(title, (removal(text, Span(start, data.element.span.end)),))
 
 
-def _only_written(values: list[Value], chart: Chart) -> dict[str, tuple[list[Span], bool]]:
-    """Variable that is assigned and read nowhere else than in its own assignments -> the places of the assignments, and
-    whether one of them computes its value, as in `n + 1`."""
+def _only_written(values: list[Value], chart: Chart) -> dict[str, tuple[list[Span], bool, bool]]:
+    """Variable that is assigned and read nowhere else than in its own assignments -> the places of the assignments,
+    whether one of them computes its value, as in `m + 1`, and whether one of them reads the variable itself, as in
+    `n + 1` for `n` or in an index of its location."""
     assigned: dict[str, list[Span]] = {}
     own: dict[Span, str] = {}
     for statement in chart.statements:
@@ -89,17 +92,20 @@ def _only_written(values: list[Value], chart: Chart) -> dict[str, tuple[list[Spa
             own[statement.location.span] = root
             if isinstance(statement.value, Expression):
                 own[statement.value.span] = root
-    read, computed = _named(chart), set()
+    read, computed, itself = _named(chart), set(), set()
     locations = {span for spans in assigned.values() for span in spans}
     for value in values:
         if not isinstance(value, Expression):
             continue
         target = own.get(value.span)
         nodes = list(walk(value.tree))
-        read |= {node.name for node in nodes if isinstance(node, Name) and node.name != target}
+        names = [node.name for node in nodes if isinstance(node, Name)]
+        read |= {name for name in names if name != target}
+        if target is not None and names.count(target) > (value.span in locations):
+            itself.add(target)
         if target is not None and value.span not in locations and any(_computes(node, target) for node in nodes):
             computed.add(target)
-    return {name: (spans, name in computed) for name, spans in assigned.items() if name not in read}
+    return {name: (spans, name in computed, name in itself) for name, spans in assigned.items() if name not in read}
 
 
 def _twin(context: MachineContext, chart: Chart, name: str, spans: Sequence[Span]) -> str | None:
