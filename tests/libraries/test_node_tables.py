@@ -134,6 +134,26 @@ def test_the_checks_of_entries_compare_values_of_the_type_in_their_names() -> No
         assert {port.direction for port in node.ports} == {Direction.IN}
 
 
+@pytest.mark.parametrize("name", ["IfThenElse", "WhileDoElse"])
+def test_a_choice_may_lack_the_child_of_the_other_case(name: str) -> None:
+    node = library_node(name)
+    assert node is not None
+    assert node.children == (2, 3)
+
+
+def test_another_name_of_a_port_is_a_port_like_it() -> None:
+    renamed = [
+        (port, node.port(port.alias_of))
+        for node in library(BEHAVIORTREE_CPP).nodes.values()
+        for port in node.ports
+        if port.alias_of
+    ]
+    assert renamed
+    for port, meant in renamed:
+        assert meant is not None
+        assert (port.direction, port.type) == (meant.direction, meant.type)
+
+
 def test_switches_compare_values_of_any_type() -> None:
     """In the trees of systems, entries have the types of the state machines."""
     ports = [port for name in SWITCHES for port in BEHAVIOR_TREE.elements[name].ports]

@@ -6,7 +6,7 @@ from __future__ import annotations
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from random_trees import COUNTS, OF_OLD_VERSIONS, WITH_WORLD, Drawn, as_xml, trees
+from random_trees import COUNTS, OF_OLD_VERSIONS, WITH_WORLD, Drawn, Kinds, as_xml, trees
 from translated_trees import with_mocks
 from tree_comparison import difference_with_mocks
 
@@ -41,14 +41,37 @@ def test_random_trees_do_what_older_versions_do(drawn: Drawn, seed: int, version
     compare(drawn, seed, version=read_version(version) or NEWEST_VERSION)
 
 
+def compare_node(name: str, nodes: Kinds, version: Version = NEWEST_VERSION) -> None:
+    """Compare a node with children whose answers are random, with several values of its ports."""
+    ports_of = {**nodes.controls, **nodes.decorators}[name]
+    count = 1 if name in nodes.decorators else COUNTS.get(name, (3, 3))[1]
+    leaves = [Drawn(f"Act{number % 4}") for number in range(count)]
+    for number in range(max(2, *map(len, ports_of.values()), 2)):
+        ports = tuple((key, values[number % len(values)]) for key, values in ports_of.items())
+        compare(Drawn(name, ports, tuple(leaves)), number, happens=number % 2 == 1, version=version)
+
+
 @pytest.mark.parametrize("name", sorted(NODES))
 def test_each_node_does_what_the_library_does(name: str) -> None:
-    """Each node with children whose answers are random."""
+    compare_node(name, WITH_WORLD)
+
+
+@pytest.mark.parametrize("name", sorted(NODES))
+def test_each_node_does_what_the_library_does_if_children_are_skipped(name: str) -> None:
+    """All of them at first; `Act0` counts the ticks in `x`, of which the last children are skipped until the third."""
     count = 1 if name in DECORATED else COUNTS.get(name, (3, 3))[1]
-    leaves = [Drawn(f"Act{number % 4}") for number in range(count)]
-    for number in range(max(2, *map(len, NODES[name].values()), 2)):
+    skipped = tuple(Drawn(f"Act{number + 1}", (("_skipIf", "x < 2"),)) for number in range(count))
+    ticks = Drawn("ForceSuccess", (), (Drawn("Act0", (("_onSuccess", "x += 1"), ("_onFailure", "x += 1"))),))
+    for number in range(max(1, *map(len, NODES[name].values()), 1)):
         ports = tuple((key, values[number % len(values)]) for key, values in NODES[name].items())
-        compare(Drawn(name, ports, tuple(leaves)), number, happens=number % 2 == 1)
+        compare(Drawn("Sequence", (), (ticks, Drawn(name, ports, skipped))), number)
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("name", sorted({**OF_OLD_VERSIONS.controls, **OF_OLD_VERSIONS.decorators}))
+def test_each_node_does_what_older_versions_do(name: str, version: str) -> None:
+    """Random trees contain each change of a node in each version only by chance."""
+    compare_node(name, OF_OLD_VERSIONS, read_version(version) or NEWEST_VERSION)
 
 
 DEFAULTS = {
