@@ -89,7 +89,9 @@ def _types(entries: Entries) -> dict[str, Type]:
     for key, uses in entries.by_entry.items():
         ports = [bound.use for bound in uses if _decides(bound.use)]
         names = {use.type for use in ports}
-        type_ = _TYPES.get(names.pop()) if len(names) == 1 else None
+        # blackboard-type-conflict reports ports of different types.
+        is_single = len(names) == 1 and {bound.use.type for bound in uses if not bound.use.script} <= {*names, ANY}
+        type_ = _TYPES.get(names.pop()) if is_single else None
         if type_ is not None:
             is_read_only = all(use.writes is False for use in ports)
             types[key] = Type.REAL if is_read_only and type_ is Type.INTEGER else type_
