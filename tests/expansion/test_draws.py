@@ -332,6 +332,16 @@ def test_what_depends_on_a_drawn_value_is_no_finding(tmp_path: Path) -> None:
     assert findings(write_system(tmp_path, always)) == [("self-assignment", "x")]
 
 
+def test_a_branch_after_a_draw_is_executed_for_some_values(tmp_path: Path) -> None:
+    """Its condition is constant in each copy of the handler, but not equal in all."""
+    branch = '<if cond="x {} 3"><assign location="x" expr="x + 10" /></if>'
+    draw = DRAW.format("uniform_int(1, 4)")
+    assert findings(write_system(tmp_path, draw + branch.format("=="))) == []
+    assert [code for code, _ in findings(write_system(tmp_path, draw + branch.format("&lt; -")))] == [
+        "constant-condition"
+    ]
+
+
 def test_origins_are_places_in_the_files(tmp_path: Path) -> None:
     main = write_system(tmp_path, DRAW.format("x + uniform_int(0, 2)"))
     system = api.load(str(main))

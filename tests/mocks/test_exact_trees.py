@@ -91,6 +91,22 @@ def test_an_output_may_have_the_value_with_which_a_node_of_version_3_compares_it
     assert exact(loaded(str(path), "Look: 0.9")).success.value == pytest.approx(0.9 / values, abs=1e-12)
 
 
+@pytest.mark.parametrize("count", [2, 6])
+def test_an_output_has_each_value_with_which_the_tree_compares_it_and_another_one(count: int, tmp_path: Path) -> None:
+    """Only the last child of the switch succeeds, which is ticked if the text is empty: one of `count + 1` values."""
+    model = '<TreeNodesModel><Action ID="Read"><output_port name="text" type="std::string"/></Action></TreeNodesModel>'
+    cases = " ".join(f'case_{number}="v{number}"' for number in range(1, count + 1))
+    children = "<AlwaysFailure/>" * count + "<AlwaysSuccess/>"
+    switch = f'<Switch{count} variable="{{x}}" {cases}>{children}</Switch{count}>'
+    path = tmp_path / "tree.xml"
+    sequence = f'<Sequence><Read text="{{x}}"/>{switch}</Sequence>'
+    path.write_text(
+        f'<root BTCPP_format="4" main_tree_to_execute="T"><BehaviorTree ID="T">{sequence}</BehaviorTree>{model}</root>',
+        encoding="utf-8",
+    )
+    assert exact(loaded(str(path), "Read: 1")).success.value == pytest.approx(1 / (count + 1), abs=1e-12)
+
+
 def test_influences_are_differences() -> None:
     """Each influence is the quotient of a small difference of two exact probabilities."""
     outcome = exact(loaded(str(FETCH), *fetch_mocks()))

@@ -275,10 +275,10 @@ def _related(
 def _in_all_copies(text: ExpandedText, findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
     """The findings in a text in which the bodies of handlers are copied. A finding in a copy is reported once; one that
     is not an error, only if it occurs in all copies: otherwise it depends on a value that may be drawn."""
-    count = Counter((finding.code, text.origin(finding.span)) for finding in findings)
+    places = [(finding.code, text.origin(finding.span), _claim(finding)) for finding in findings]
+    count = Counter(places)
     kept: dict[object, Finding] = {}
-    for finding in findings:
-        place = (finding.code, text.origin(finding.span))
+    for finding, place in zip(findings, places, strict=True):
         if (copies := text.places(finding.span)) == 1:
             kept[finding] = finding
         elif _own_severity(finding) is Severity.ERROR or count[place] >= copies:
@@ -288,8 +288,12 @@ def _in_all_copies(text: ExpandedText, findings: tuple[Finding, ...]) -> tuple[F
 
 def _stated(finding: Finding) -> tuple[str, Span, bool | None]:
     """What a finding states and where: `always true` and `never true` differ, and the values of parameters do not."""
-    facts = finding.facts
-    return finding.code, finding.span, facts.is_true if isinstance(facts, ConstantCondition) else None
+    return finding.code, finding.span, _claim(finding)
+
+
+def _claim(finding: Finding) -> bool | None:
+    """Whether a condition is always or never true; `None` for findings about something else."""
+    return finding.facts.is_true if isinstance(finding.facts, ConstantCondition) else None
 
 
 _OF_VALUES = (invalid_value.RULE.code,)

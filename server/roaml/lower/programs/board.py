@@ -26,9 +26,6 @@ from roaml.scxml.names import update_flag
 from roaml.text import Decoded
 from roaml.xml_syntax import Attribute
 
-MAX_VALUES = 6
-"""The maximum number of values that a mock writes to an entry."""
-
 _NO_PORTS: frozenset[str] = frozenset()
 _KIND = {Type.INTEGER: EntryKind.INTEGER, Type.REAL: EntryKind.REAL, Type.TEXT: EntryKind.TEXT}
 _TYPE = {kind: type_ for type_, kind in _KIND.items()}
@@ -366,4 +363,4 @@ class _Reader(Record):
         other: list[int | float | str] = [""] if kind is EntryKind.TEXT else [0, 1]
         mentioned = self.mentioned.get(name, [])
         fitting = [value for value in mentioned if isinstance(value, str) is (kind is EntryKind.TEXT)]
-        return tuple(dict.fromkeys((*fitting, *other)))[:MAX_VALUES]
+        return tuple(dict.fromkeys((*fitting, *other)))
