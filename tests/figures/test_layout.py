@@ -13,7 +13,9 @@ from examples import examples
 from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.layout import Boxes, Layout, LayoutDirection, Link, layered, nested, outline, tidy_tree
 from roaml.figures.layout.layers import assign_layers
+from roaml.figures.layout.order import crossings
 from roaml.figures.layout.spread import spread
+from roaml.figures.layout.straight import Straightening
 from roaml.figures.layout.tracks import assign_tracks
 from roaml.figures.layout.vertices import Vertex, VertexKind
 
@@ -413,3 +415,25 @@ def test_rows_of_long_lines_fit_a_window() -> None:
     width, height = layered(nodes, links, LayoutDirection.RIGHT, 1.8).size
     assert 900 < width <= 1250
     assert height / width < 3
+
+
+def test_straightening_keeps_track_of_straight_lines() -> None:
+    """After moves, the vertices that straight lines connect are the same as if they were searched again."""
+    chance = random.Random(7)
+    rows = [list(range(start, start + 8)) for start in range(0, 80, 8)]
+    edges = [(upper, chance.choice(rows[index + 1])) for index, row in enumerate(rows[:-1]) for upper in row]
+    places = [float(vertex % 8 * 60 + chance.randrange(20)) for row in rows for vertex in row]
+    straightening = Straightening(rows, [[40.0] * 7 for _ in rows], edges, places, [0.0] * len(edges))
+    straightening.run()
+    assert straightening.places != places
+    known = {tuple(sorted(group)) for group in straightening._groups}
+    again = Straightening(rows, [[40.0] * 7 for _ in rows], edges, straightening.places, [0.0] * len(edges))
+    assert known == {tuple(sorted(group)) for group in again._groups}
+
+
+def test_crossings_stop_at_a_limit() -> None:
+    """A count above the limit need not be complete; one that is not above it is."""
+    rows = [[0, 1, 2], [3, 4, 5], [6, 7, 8]]
+    below = [[5], [4], [3], [8], [7], [6], [], [], []]
+    assert crossings(rows, below) == crossings(rows, below, 6) == 6
+    assert 2 < crossings(rows, below, 2) <= 6

@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
+import math
 import random
 from bisect import bisect_right, insort
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 MAX_SWEEPS = 12
@@ -42,6 +43,7 @@ def order_layers(layers: Sequence[int], edges: Sequence[tuple[int, int]]) -> lis
                 rows = [[] for _ in range(count)]
                 for vertex in _by_depth(layers, below, above, chance):
                     rows[layers[vertex]].append(vertex)
+        earlier: list[list[list[int]]] = []
         for sweep in range(MAX_SWEEPS):
             if least == 0:
                 return best
@@ -50,23 +52,31 @@ def order_layers(layers: Sequence[int], edges: Sequence[tuple[int, int]]) -> lis
                 fixed = rows[index - 1 if downwards else index + 1]
                 rows[index] = _by_barycenter(rows[index], fixed, above if downwards else below)
             _exchange(rows, above, below)
-            now = crossings(rows, below)
+            now = crossings(rows, below, least)
             if now < least:
                 best, least = [list(row) for row in rows], now
+            if rows in earlier[-2::-2]:  # the sweeps that follow repeat those after this one
+                break
+            earlier.append([list(row) for row in rows])
     return best
 
 
-def crossings(rows: Sequence[Sequence[int]], below: Sequence[Sequence[int]]) -> int:
-    """The number of crossings of the links between all neighbouring layers."""
+def crossings(rows: Sequence[Sequence[int]], below: Sequence[Sequence[int]], limit: float = math.inf) -> int:
+    """The number of crossings of the links between all neighbouring layers; a smaller number if it is above a limit."""
     total = 0
     for upper, lower in pairwise(rows):
         place = {vertex: index for index, vertex in enumerate(lower)}
         ends: list[int] = []
         for vertex in upper:
-            targets = sorted(place[target] for target in below[vertex])
-            total += sum(len(ends) - bisect_right(ends, target) for target in targets)
+            targets = [place[target] for target in below[vertex]]
+            if len(targets) > 1:
+                targets.sort()
+            for target in targets:
+                total += len(ends) - bisect_right(ends, target)
             for target in targets:
                 insort(ends, target)
+        if total > limit:
+            break
     return total
 
 
@@ -94,12 +104,14 @@ def _by_barycenter(row: list[int], fixed: Sequence[int], neighbours: Sequence[Se
     """The vertices of a row, ordered by the mean of the places of their neighbours. Vertices without neighbours keep
     their places."""
     place = {vertex: index for index, vertex in enumerate(fixed)}
-    means = {
-        vertex: sum(place[other] for other in neighbours[vertex]) / len(neighbours[vertex])
-        for vertex in row
-        if neighbours[vertex]
-    }
-    movable = iter(sorted(means, key=lambda vertex: means[vertex]))
+    means: dict[int, float] = {}
+    for vertex in row:
+        others = neighbours[vertex]
+        if len(others) == 1:
+            means[vertex] = place[others[0]]
+        elif others:
+            means[vertex] = sum([place[other] for other in others]) / len(others)
+    movable = iter(sorted(means, key=means.__getitem__))
     return [next(movable) if vertex in means else vertex for vertex in row]
 
 
@@ -107,19 +119,34 @@ def _exchange(rows: list[list[int]], above: Sequence[Sequence[int]], below: Sequ
     """Exchange adjacent vertices of a row where this removes crossings."""
     place = {vertex: index for row in rows for index, vertex in enumerate(row)}
     for row in rows:
+        ends = {vertex: (_ends(above[vertex], place), _ends(below[vertex], place)) for vertex in row}
         improved = True
         while improved:
             improved = False
             for index in range(len(row) - 1):
                 left, right = row[index], row[index + 1]
-                now = _pair(above, left, right, place) + _pair(below, left, right, place)
-                other = _pair(above, right, left, place) + _pair(below, right, left, place)
-                if other < now:
+                (left_above, left_below), (right_above, right_below) = ends[left], ends[right]
+                if _are_apart(left_above, right_above) and _are_apart(left_below, right_below):
+                    continue
+                if _removed(left_above, right_above) + _removed(left_below, right_below) > 0:
                     row[index], row[index + 1] = right, left
-                    place[left], place[right] = index + 1, index
                     improved = True
+        for index, vertex in enumerate(row):
+            place[vertex] = index
 
 
-def _pair(neighbours: Sequence[Sequence[int]], left: int, right: int, place: dict[int, int]) -> int:
-    """The number of crossings of the links of two vertices, if `left` is left of `right`."""
-    return sum(place[a] > place[b] for a in neighbours[left] for b in neighbours[right])
+def _ends(neighbours: Sequence[int], place: Mapping[int, int]) -> list[int]:
+    """The places of the neighbours of a vertex in the next row, in their order."""
+    if len(neighbours) == 1:
+        return [place[neighbours[0]]]
+    return sorted([place[other] for other in neighbours])
+
+
+def _are_apart(left: Sequence[int], right: Sequence[int]) -> bool:
+    """Whether the links to these places do not cross."""
+    return not left or not right or left[-1] <= right[0]
+
+
+def _removed(left: Sequence[int], right: Sequence[int]) -> int:
+    """The number of crossings that an exchange of two adjacent vertices removes."""
+    return sum([(a > b) - (a < b) for a in left for b in right])

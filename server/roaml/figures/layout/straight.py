@@ -15,7 +15,7 @@ BEND = 40.0
 STRAIGHT, NEARLY = 0.01, 14.0
 """A line whose ends differ by less than this is straight, or nearly straight, in pixels."""
 _ROUNDS = 4
-_MAX_MOVED = 100
+_MAX_MOVED = 40
 """The maximum number of vertices that move together."""
 
 
@@ -54,7 +54,9 @@ class Straightening:
             for (left, right), gap in zip(pairwise(row), row_gaps, strict=True):
                 self._after[left] = right, gap
                 self._before[right] = left, gap
-        self._groups = self._connected()
+        self._groups: list[list[int]] = [[] for _ in places]
+        """The vertices that straight lines connect with each vertex."""
+        self._connect(range(len(places)))
 
     def run(self) -> None:
         for _ in range(_ROUNDS):
@@ -67,22 +69,29 @@ class Straightening:
         upper, lower = self._edges[index]
         return self.places[upper] + self._shifts[index] - self.places[lower]
 
-    def _connected(self) -> list[list[int]]:
-        """The vertices that straight lines connect with each vertex."""
-        groups: list[list[int]] = [[] for _ in self.places]
-        for start in range(len(groups)):
-            if groups[start]:
+    def _connect(self, vertices: Sequence[int]) -> None:
+        """Group the vertices that straight lines connect; these lead to no others than the given ones."""
+        for vertex in vertices:
+            self._groups[vertex] = []
+        for start in vertices:
+            if self._groups[start]:
                 continue
             group = [start]
-            groups[start] = group
+            self._groups[start] = group
             for vertex in group:
                 for index in self._incident[vertex]:
                     if abs(self._offset(index)) <= STRAIGHT:
                         for other in self._edges[index]:
-                            if not groups[other]:
-                                groups[other] = group
+                            if not self._groups[other]:
+                                self._groups[other] = group
                                 group.append(other)
-        return groups
+
+    def _move(self, distances: Mapping[int, float]) -> None:
+        """Move vertices, and group again those whose lines have changed."""
+        for vertex, distance in distances.items():
+            self.places[vertex] += distance
+        near = {end for vertex in distances for index in self._incident[vertex] for end in self._edges[index]}
+        self._connect(sorted({member for vertex in near.union(distances) for member in self._groups[vertex]}))
 
     def _straighten(self, index: int) -> bool:
         """Move one of the ends of an edge so that it is straight; return whether this is better."""
@@ -96,10 +105,7 @@ class Straightening:
             moved = self._pushed(moving, fixed, distance)
             if moved and (cost := self._added(moved)) < least - STRAIGHT:
                 best, least = moved, cost
-        for vertex, distance in best.items():
-            self.places[vertex] += distance
-        if best:
-            self._groups = self._connected()
+        self._move(best)
         return bool(best)
 
     def _pushed(self, vertex: int, fixed: int, distance: float) -> Mapping[int, float]:
@@ -108,19 +114,21 @@ class Straightening:
         if self._groups[vertex] is self._groups[fixed]:
             return {}
         following = self._after if distance > 0 else self._before
+        groups, places, barrier = self._groups, self.places, self._groups[fixed]
         moved: dict[int, float] = {}
         pending = [(vertex, abs(distance))]
         while pending:
             start, length = pending.pop()
             if moved.get(start, 0.0) >= length - STRAIGHT:
                 continue
-            if self._groups[start] is self._groups[fixed] or len(moved) + len(self._groups[start]) > 2 * _MAX_MOVED:
+            group = groups[start]
+            if group is barrier or len(moved) + len(group) > 2 * _MAX_MOVED:
                 return {}
-            for member in self._groups[start]:
+            for member in group:
                 moved[member] = length
                 if member in following:
                     other, gap = following[member]
-                    needed = gap - way * (self.places[other] - self.places[member]) + length
+                    needed = gap - way * (places[other] - places[member]) + length
                     if needed > STRAIGHT:
                         pending.append((other, needed))
             if len(moved) > _MAX_MOVED:
