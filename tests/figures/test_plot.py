@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from roaml.figures.drawing import Area, Polyline, Shape, TextItem
 from roaml.figures.plot import (
+    NAME_DISTANCE,
     HeatMap,
     LinePlot,
     PlotAxis,
@@ -118,6 +119,36 @@ def test_a_line_that_the_title_names_has_no_legend() -> None:
     for title, has_legend in (("line by x", False), ("p by x", True)):
         plot = LinePlot(title, PlotAxis("x"), PlotAxis("y"), (line((0, 0.5), (1, 0.6)),))
         assert any(group.role == "legend" for group in drawing_of(plot).groups) == has_legend
+
+
+def test_names_of_lines_are_beside_their_ends() -> None:
+    ends = (0.9, 0.1, 0.88, 0.9)
+    lines = tuple(
+        Series(f"p = {number}", (PlotPoint(0, 0.3 * number), PlotPoint(1, end))) for number, end in enumerate(ends)
+    )
+    drawing = drawing_of(LinePlot("t", PlotAxis("x"), PlotAxis("y", low=0, high=1), lines))
+    legend = [group for group in drawing.groups if group.role == "legend"]
+    names = [item for group in legend for item in group.items if isinstance(item, TextItem)]
+    assert sorted(names, key=lambda name: name.y) == [names[3], names[0], names[2], names[1]]
+    assert names[0].y - names[3].y >= NAME_DISTANCE
+    curves = [group.items[0] for group in drawing.groups if group.role == "series"]
+    leaders = [group.items[0] for group in drawing.groups if group.role == "leader-line"]
+    for curve, leader, name in zip(curves, leaders, names, strict=True):
+        assert isinstance(curve, Polyline)
+        assert isinstance(leader, Polyline)
+        assert leader.points[0] == curve.points[-1]
+        assert leader.points[-1].x < name.x
+        assert abs(leader.points[-1].y + 4 - name.y) < 0.01
+        assert name.box.right <= drawing.size.width
+
+
+def test_long_names_of_lines_are_above_them() -> None:
+    lines = tuple(replace(line((0, 0.5), (1, end)), name=f"{'name ' * 12}{end}") for end in (0.1, 0.9))
+    drawing = drawing_of(LinePlot("t", PlotAxis("x"), PlotAxis("y"), lines))
+    names = [item for g in drawing.groups if g.role == "legend" for item in g.items if isinstance(item, TextItem)]
+    curves = [item for _, item in drawing.walk() if isinstance(item, Polyline) and item.role == "axis-line"]
+    assert max(name.y for name in names) < min(point.y for curve in curves for point in curve.points)
+    assert not any(group.role == "leader-line" for group in drawing.groups)
 
 
 def test_six_lines_have_six_marks() -> None:

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Plots of numbers: lines with bands, and heat maps.
 
-- Every axis has a name, with its unit; every line has its name in the legend, and marks that differ without colors.
+- Every axis has a name, with its unit; every line has its name at its end, or in a legend if the names have no space
+  there, and marks that differ without colors.
 - A number that does not exist is a gap in its line, or an empty cell; it is never drawn as 0.
 - The description of a plot contains the numbers that it shows, for readers who do not see it.
 """
@@ -14,6 +15,7 @@ from html import escape
 from typing import TypeAlias
 
 from roaml.figures.drawing import Area, Drawing, Group, Item, Outline, Polyline, Shape, TextItem, Tone
+from roaml.figures.end_labels import label_heights
 from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.pdf import pdf_file
 from roaml.figures.scales import Scale, ScaleKind, number_label, scale_of
@@ -31,6 +33,10 @@ MAX_DESCRIBED = 12
 """The maximum number of points of a line that its description lists; they are chosen at equal distances."""
 MAX_COVERS = 3
 """The maximum number of equal lines over a line for which the line becomes wider."""
+MAX_NAME_WIDTH, MAX_NAMES, NAME_DISTANCE = 240.0, 16, 18.0
+"""The maximum width of the names at the ends of lines, in pixels, their maximum number, and their minimum distance."""
+_NAMES_FROM, _SAMPLE = 26.0, 26.0
+"""The distance of these names from the area of the lines, and the width of the samples before them, in pixels."""
 _MARK = 4.0
 _Corners: TypeAlias = tuple[tuple[float, float], ...]
 _CROSS: _Corners = tuple(
@@ -248,7 +254,8 @@ def _lines(plot: LinePlot) -> Drawing:
     labels = [number_label(tick) for tick in y.ticks] if not plot.y.words else list(plot.y.words)
     left = max(text_width(label, SMALL) for label in labels) + 10
     is_named = len(plot.series) == 1 and plot.series[0].name in plot.title  # a legend would repeat the title
-    head, top = _head(plot.title, () if is_named else plot.series, left, plot.y.name)
+    has_end_names = not is_named and _has_space_for_names(plot.series)
+    head, top = _head(plot.title, () if is_named or has_end_names else plot.series, left, plot.y.name)
     area = Box(left, top, WIDTH, HEIGHT)
 
     def placed(across: float, up: float) -> Point:
@@ -278,8 +285,38 @@ def _lines(plot: LinePlot) -> Drawing:
         if bands:
             groups.append(Group("bands", tone, bands))
         groups += _curve(plot, series, number, points, placed, covers)
+    right = area.right + 12
+    if has_end_names:
+        groups += _end_names(plot.series, [points for _, points in clipped], area, placed)
+        right = max(
+            [right] + [item.box.right for group in groups for item in group.items if isinstance(item, TextItem)]
+        )
     foot, bottom = _foot(plot.notes, left, area.bottom + 44)
-    return Drawing(Extent(area.right + 12, bottom), (*groups, *foot), {})
+    return Drawing(Extent(right, bottom), (*groups, *foot), {})
+
+
+def _has_space_for_names(series: Sequence[Series]) -> bool:
+    """Whether the names of lines are written at their ends. Points without lines have a legend."""
+    widest = max((text_width(line.name, SMALL) for line in series), default=0.0)
+    return len(series) <= MAX_NAMES and widest <= MAX_NAME_WIDTH and all(line.has_line for line in series)
+
+
+def _end_names(
+    series: Sequence[Series], clipped: Sequence[Sequence[PlotPoint]], area: Box, placed: _Placed
+) -> Iterator[Group]:
+    """The names of lines beside their ends; a fine line leads from each end to the name."""
+    paths = [[placed(p.x, p.y) for p in points if not math.isnan(p.y)] for points in clipped]
+    heights = label_heights([[p.y for p in path] for path in paths], NAME_DISTANCE, area.y, area.bottom)
+    at = area.right + _NAMES_FROM
+    for number, (line, path, height) in enumerate(zip(series, paths, heights, strict=True)):
+        name = TextItem(line.name, at + _SAMPLE + 8, height + 4, SMALL, "")
+        kind = "dashed" if line.is_dashed else ""
+        if path:
+            leader = Polyline((path[-1], Point(at - 4, height)), role="leader", is_round=False)
+            yield Group("leader-line", _TONES[number % len(_TONES)], (leader,))
+        yield Group(
+            "legend", _TONES[number % len(_TONES)], (*_sample(line, number, Point(at, height)), name), kind=kind
+        )
 
 
 def _scales(plot: LinePlot) -> tuple[Scale, Scale]:
@@ -428,20 +465,25 @@ def _head(title: str, series: Sequence[Series], left: float, up: str) -> tuple[l
     groups = [Group("title", Tone.PLAIN, tuple(items))]
     place, at = 0.0, at + (20 if series else 0)
     for number, line_ in enumerate(series):
-        width = 34 + text_width(line_.name, SMALL) + 18
+        width = _SAMPLE + 8 + text_width(line_.name, SMALL) + 18
         if place and place + width > left + WIDTH:
             place, at = 0.0, at + 20
-        sample: list[Item] = []
-        if line_.has_line:
-            sample.append(Polyline((Point(place, at - 4), Point(place + 26, at - 4)), role="curve"))
-        if line_.has_marks and len(line_.points) <= MAX_MARKS:
-            sample.append(_mark(number, Point(place + 13, at - 4)))
         tone, kind = _TONES[number % len(_TONES)], "dashed" if line_.is_dashed else ""
-        groups.append(Group("legend", tone, (*sample, TextItem(line_.name, place + 34, at, SMALL, "")), kind=kind))
+        sample = _sample(line_, number, Point(place, at - 4))
+        name = TextItem(line_.name, place + _SAMPLE + 8, at, SMALL, "")
+        groups.append(Group("legend", tone, (*sample, name), kind=kind))
         place += width
     at += 26
     groups.append(Group("label-up", Tone.PLAIN, (TextItem(up, 0.0, at, SMALL, ""),)))
     return groups, at + 12
+
+
+def _sample(line: Series, number: int, at: Point) -> Iterator[Item]:
+    """A short piece of a line with its mark, which begins at a point."""
+    if line.has_line:
+        yield Polyline((at, Point(at.x + _SAMPLE, at.y)), role="curve")
+    if line.has_marks and len(line.points) <= MAX_MARKS:
+        yield _mark(number, Point(at.x + _SAMPLE / 2, at.y))
 
 
 def _foot(notes: Sequence[str], left: float, at: float) -> tuple[list[Group], float]:
