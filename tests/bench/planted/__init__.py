@@ -2,7 +2,7 @@
 """Mistakes that are planted in systems without mistakes, one at a time: which of them does a check report, and where?
 
 Each file `*.toml` of this folder lists mistakes of one class. Systems beside the project are read where they are and
-are edited in memory; mistakes in systems that are absent are left out.
+are edited in memory; mistakes in systems that are absent are left out. The systems in `systems` are only for this bench.
 
     [[planted]]
     system = "examples/case_study/main.xml"     # of a folder in `ROOTS`
@@ -52,6 +52,7 @@ FOLDER = Path(__file__).parent
 PROJECT = FOLDER.parents[2]
 ROOTS = {
     "examples": PROJECT / "examples",
+    "own": FOLDER / "systems",
     "conformance": conformance.ROOT / "models",
     "real": conformance.ROOT.parent / "real",
     "trees": conformance.ROOT / "trees",
