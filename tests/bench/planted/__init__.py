@@ -2,7 +2,8 @@
 """Mistakes that are planted in systems without mistakes, one at a time: which of them does a check report, and where?
 
 Each file `*.toml` of this folder lists mistakes of one class. Systems beside the project are read where they are and
-are edited in memory; mistakes in systems that are absent are left out. The systems in `systems` are only for this bench.
+are edited in memory; mistakes in systems that are absent are left out.
+The systems in the folder `systems` are only for this bench.
 
     [[planted]]
     system = "examples/case_study/main.xml"     # of a folder in `ROOTS`

@@ -33,6 +33,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 yield RULE.at(
                     problem.span, message, *_fixes(context, value, problem.given, problem.required, problem.span)
                 )
+        if value.use is ValueUse.PARAMETER and isinstance(value.value, Expression):
+            yield from _too_long(value.value.tree, value.type, size)
         if value.required is None:
             continue
         if (value.use in CHECKED or isinstance(value.value, PortRead)) and not can_hold(value.required, value.type):
