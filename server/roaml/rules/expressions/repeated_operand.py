@@ -3,19 +3,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.expr.format import format_expr
-from roaml.expr.operators import Operator
+from roaml.expr.operators import Operator, OperatorKind
 from roaml.expr.tree import Binary, Expr, is_draw, walk
 from roaml.jani import expressions as jani
 from roaml.jani.operators import BinaryOperator
 from roaml.jani.properties import BinaryFormula, Formula
 from roaml.jani.properties import walk as walk_formula
+from roaml.model.property_file import WrittenProperty, WrittenScope
 from roaml.model.property_links import LinkedFile
 from roaml.model.syntax import Expression
+from roaml.observers.properties import Pattern
 from roaml.rules.rule import MachineContext, PropertiesContext, Rule
+from roaml.rules.support.compared_numbers import required
 from roaml.text import Span
 
 _JOINING = (Operator.AND, Operator.OR)
@@ -39,9 +42,56 @@ def check_properties(file: LinkedFile) -> Iterator[Finding]:
                 "this is also the first event of the property, so the pattern decides nothing; did you mean another?"
             )
             yield RULE.at(events[1].span, message, related=[Related(events[0].span, "the same event")])
+        elif len(events) == 2:
+            yield from _implied(written, events)
+        for scope in written.scopes:
+            yield from _never_begun(scope)
         for expression in written.expressions:
             if not expression.broken:
                 yield from _repeated(expression.tree)
+                yield from _compared_with_itself(expression.tree)
+
+
+def _implied(written: WrittenProperty, events: Sequence[Expression]) -> Iterator[Finding]:
+    """Report a response that its own cause implies, and a precedence that its own effect implies."""
+    pattern = written.pattern.value if written.pattern is not None else ""
+    if pattern not in _ORDERED or any(interval.after is not None for interval in written.intervals):
+        return
+    cause, answer = events if pattern == Pattern.RESPONSE.value else (events[1], events[0])
+    if _parts(answer) <= _parts(cause):
+        message = (
+            "this always holds when the other event of the property happens, so the pattern decides nothing; did you "
+            "mean another?"
+        )
+        yield RULE.at(answer.span, message, related=[Related(cause.span, "the event that contains it")])
+
+
+def _never_begun(scope: WrittenScope) -> Iterator[Finding]:
+    """Report a scope whose end holds whenever its begin does: it begins only where its end does not hold."""
+    event, until = scope.event, scope.until
+    if event is None or until is None or event.broken or until.broken:
+        return
+    if _parts(until) <= _parts(event):
+        message = "this always holds when the scope would begin, so the scope never begins; did you mean another event?"
+        yield RULE.at(until.span, message, related=[Related(event.span, "the begin of the scope")])
+
+
+def _parts(condition: Expression) -> set[str]:
+    """The texts of the parts that a condition joins with `&&`."""
+    parts = list(required(condition.tree))
+    return {format_expr(part) for part in parts if not (isinstance(part, Binary) and part.operator is Operator.AND)}
+
+
+def _compared_with_itself(tree: Expr) -> Iterator[Finding]:
+    for node in walk(tree):
+        if isinstance(node, Binary) and node.operator.kind in (OperatorKind.EQUALITY, OperatorKind.ORDER):
+            left, right = format_expr(node.left), format_expr(node.right)
+            if left == right:
+                message = f"`{left}` is compared with itself; did you mean another?"
+                yield RULE.at(node.right.span, message, related=[Related(node.left.span, "the same operand")])
+
+
+_ORDERED = (Pattern.RESPONSE.value, Pattern.PRECEDENCE.value)
 
 
 def check_jani(context: PropertiesContext) -> Iterator[Finding]:

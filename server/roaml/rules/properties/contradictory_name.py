@@ -5,17 +5,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from roaml.diagnostics import Finding, Related, Severity
+from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.edit.elements import rename_tag
+from roaml.expr.tree import Name as Variable
+from roaml.expr.tree import walk as walk_expr
 from roaml.jani.expressions import Binary, Integer, Name
 from roaml.jani.operators import BinaryOperator
 from roaml.jani.properties import Property, walk
+from roaml.model.property_file import WrittenProperty
 from roaml.model.property_links import LinkedFile
+from roaml.model.syntax import Expression
 from roaml.model.tree import TreeNode, nodes
 from roaml.observers.properties import Pattern, ScopeKind
 from roaml.regex import regex
 from roaml.rules.rule import PropertiesContext, Rule, TreeContext, replacements
 from roaml.rules.support.words import words_of
+from roaml.text import TextEdit
+from roaml.xml_syntax.escapes import escape
 
 _SEQUENCE, _FALLBACK = "Sequence", "Fallback"
 
@@ -67,7 +73,10 @@ _NEGATIONS = frozenset(
 def _xml(file: LinkedFile) -> Iterator[Finding]:
     """Report properties whose names contradict their patterns. Expectations may turn a pattern into its opposite."""
     for written in file.file.properties:
-        if written.id is None or written.pattern is None or written.expect is not None:
+        if written.id is None or written.pattern is None:
+            continue
+        yield from _order(written, written.id.value)
+        if written.expect is not None:
             continue
         words = words_of(written.id.value)
         is_global = all(s.type is None or s.type.value == ScopeKind.GLOBALLY.value for s in written.scopes)
@@ -79,15 +88,54 @@ def _xml(file: LinkedFile) -> Iterator[Finding]:
                     f"the name of this property says `{word}`, but its pattern is `{written.pattern.value}`; did you "
                     f"mean `{named.value}`?"
                 )
-                yield RULE.at(written.pattern.span, message, *replacements(written.pattern.span, (named.value,)))
+                fixes = replacements(written.pattern.span, (named.value,))
+                yield RULE.at(written.pattern.span, message, *fixes, severity=Severity.WARNING)
+
+
+_EFFECT_FIRST = (("only", "when"), ("only", "after"), ("only", "if"), ("only", "while"))
+"""Words between the name of an effect and the name of what must precede it."""
+
+_CAUSE_FIRST = (("leads", "to"), ("then",), ("causes",), ("triggers",), ("before",), ("precedes",))
+"""Words between the name of a cause, or of what must precede, and the name of its effect."""
+
+
+def _order(written: WrittenProperty, name: str) -> Iterator[Finding]:
+    """Report the two events of a response or precedence that are in the other order in the name of the property, as in
+    `docks_only_when_low`: one of them names a word on one side only, and the other one does not contradict it."""
+    pattern = written.pattern.value if written.pattern is not None else ""
+    if pattern not in (Pattern.RESPONSE.value, Pattern.PRECEDENCE.value) or len(written.conditions) != 2:
+        return
+    words = words_of(name)
+    for joint, is_exchanged in [*((j, True) for j in _EFFECT_FIRST), *((j, False) for j in _CAUSE_FIRST)]:
+        at = next((i for i in range(1, len(words)) if tuple(words[i : i + len(joint)]) == joint), None)
+        if at is None or (joint == ("before",) and pattern != Pattern.PRECEDENCE.value):
+            continue
+        sides = (set(words[:at]), set(words[at + len(joint) :]))
+        first, second = (_words_in(condition) for condition in written.conditions)
+        earlier, later = reversed(sides) if is_exchanged else sides
+        fitting = len(first & earlier) + len(second & later)
+        crossed = len(first & later) + len(second & earlier)
+        if crossed and not fitting:
+            message = (
+                f"the name `{name}` states the events in the other order: the first event is the one that comes "
+                "first; exchange the events"
+            )
+            a, b = written.conditions
+            fix = Fix("Exchange the events", (TextEdit(a.span, escape(b.text)), TextEdit(b.span, escape(a.text))))
+            yield RULE.at(a.span, message, fix, severity=Severity.WARNING, related=[Related(b.span, "the other event")])
+        return
+
+
+def _words_in(condition: Expression) -> set[str]:
+    """The words of the variables in a condition."""
+    return {word for node in walk_expr(condition.tree) if isinstance(node, Variable) for word in words_of(node.name)}
 
 
 _STATUS = regex(r"bt_\d+_response__status\Z")
-_RUNNING = 3
 _STATUSES = {
     1: ("SUCCESS", frozenset(("success", "succeeds", "succeeded"))),
     2: ("FAILURE", frozenset(("failure", "fails", "failed"))),
-    _RUNNING: ("RUNNING", frozenset(("running", "runs"))),
+    3: ("RUNNING", frozenset(("running", "runs"))),
 }
 
 
@@ -105,10 +153,8 @@ def _jani(context: PropertiesContext) -> Iterator[Finding]:
                 f"the name `{property_.name}` says {_STATUSES[named[0]][0]}, which is {named[0]}, but {number.value} "
                 f"is {_STATUSES[number.value][0]}"
             )
-            # Each tree is RUNNING at times, so nobody names this after its end.
-            severity = Severity.WARNING if number.value == _RUNNING else None
             fixes = replacements(number.origin.span, (f"{named[0]}",))
-            yield RULE.at(number.origin.span, message, *fixes, severity=severity)
+            yield RULE.at(number.origin.span, message, *fixes, severity=Severity.WARNING)
 
 
 def _compared(property_: Property) -> Iterator[tuple[Name, Integer]]:

@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.expr.tree import Name as Variable
 from roaml.expr.tree import walk
-from roaml.jani.expressions import Binary, Boolean, Name, Unary
-from roaml.jani.operators import BinaryOperator, UnaryOperator
+from roaml.expr.types import BOOL, INT, Scalar, is_kind
+from roaml.jani.expressions import Binary, Boolean, Integer, Name, Real, Unary
+from roaml.jani.operators import BinaryOperator, Signature, UnaryOperator
 from roaml.jani.properties import (
     BinaryFormula,
     BinaryPath,
@@ -24,6 +25,7 @@ from roaml.jani.properties import (
     identifiers,
 )
 from roaml.json_syntax import JsonString
+from roaml.model.globals import GlobalVariable
 from roaml.model.property_file import WrittenProperty
 from roaml.model.property_links import LinkedFile
 from roaml.model.syntax import Expression
@@ -32,7 +34,7 @@ from roaml.model.values.evaluate import Evaluator
 from roaml.observers.properties import Pattern, ScopeKind
 from roaml.rules.rule import PropertiesContext, Rule
 from roaml.rules.support.jani_formulas import operator_at
-from roaml.scxml.names import flagged_by
+from roaml.scxml.names import FLAG, flagged_by
 from roaml.text import TextEdit
 
 NEVER = "so the property never holds; did you mean another pattern or condition?"
@@ -92,7 +94,9 @@ def check_jani(context: PropertiesContext) -> Iterator[Finding]:
         while isinstance(formula, (Filter, Probability)):
             formula = formula.values if isinstance(formula, Filter) else formula.path
         part, value, effect = _decisive_part(formula)
-        if part is None or formula.origin is None or _at_start(part) is not value or not any(identifiers(part)):
+        if part is None or formula.origin is None or not any(identifiers(part)):
+            continue
+        if _at_start(part, context.variables or {}) is not value:
             continue
         operator = operator_at(context.value, formula.origin.span)
         if operator is not None:
@@ -123,24 +127,45 @@ def _decisive_part(formula: Formula) -> tuple[Formula | None, bool, str]:
     return None, False, ""
 
 
-def _at_start(formula: Formula) -> bool | None:
-    """The value of a formula in the first state, as far as the flags of events determine it."""
+def _at_start(formula: Formula, variables: Mapping[str, GlobalVariable]) -> bool | None:
+    """The value of a formula in the first state, as far as the flags and parameters of events determine it. Before an
+    event is sent, its parameters are 0 or false (docs/spec/jani.md#global-variables)."""
     match formula:
         case Boolean(value):
             return value
-        case Name(identifier) if flagged_by(identifier):
+        case Name(identifier) if flagged_by(identifier) or _is_parameter(variables, identifier, BOOL):
             return False
         case (
             Unary(operator=UnaryOperator.NOT, operand=operand)
             | UnaryFormula(operator=UnaryOperator.NOT, operand=operand)
         ):
-            inner = _at_start(operand)
+            inner = _at_start(operand, variables)
             return None if inner is None else not inner
+        case Binary(operator=operator, left=left, right=right) if operator.signature in _COMPARING:
+            numbers = [_number(side, variables) for side in (left, right)]
+            return None if None in numbers else bool(operator.function(*numbers))
         case (
             Binary(operator=operator, left=left, right=right) | BinaryFormula(operator=operator, left=left, right=right)
         ):
-            return _joined(operator, _at_start(left), _at_start(right))
+            return _joined(operator, _at_start(left, variables), _at_start(right, variables))
     return None
+
+
+_COMPARING = (Signature.EQUALITY, Signature.ORDER)
+
+
+def _number(formula: Formula, variables: Mapping[str, GlobalVariable]) -> float | None:
+    match formula:
+        case Integer(value) | Real(value):
+            return value
+        case Name(identifier) if _is_parameter(variables, identifier, INT):
+            return 0
+    return None
+
+
+def _is_parameter(variables: Mapping[str, GlobalVariable], name: str, type_: Scalar) -> bool:
+    known = variables.get(name)
+    return known is not None and known.parameter != FLAG and is_kind(known.type, type_.kind)
 
 
 def _joined(operator: BinaryOperator, left: bool | None, right: bool | None) -> bool | None:

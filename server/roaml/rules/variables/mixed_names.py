@@ -3,22 +3,28 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Mapping
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.expr.operators import COMPARING, Operator
 from roaml.expr.tree import Binary, Name, walk
 from roaml.expr.types import Type
+from roaml.jani.expressions import Binary as JaniBinary
+from roaml.jani.expressions import Name as JaniName
+from roaml.jani.operators import Signature
+from roaml.jani.properties import Property
+from roaml.jani.properties import walk as walk_formula
 from roaml.model.behavior.knowledge import variables_in
 from roaml.model.machine import Assign, Chart, Handler, If, ReturnStatus, Send, statements, values_of
 from roaml.model.syntax import Expression
 from roaml.model.syntax import Name as SyntaxName
 from roaml.model.waits import fixed_variables
-from roaml.rules.rule import MachineContext, Rule, replacements
+from roaml.rules.rule import MachineContext, PropertiesContext, Rule, replacements
 from roaml.rules.support.counted_names import other_guards, steps_from_others
 from roaml.rules.support.numbered_machines import numbers_of_others
 from roaml.rules.support.similar_parts import copied_names
-from roaml.rules.support.words import LIMITS, with_word, words_of
+from roaml.rules.support.words import LIMITS, difference, with_word, words_of
 from roaml.scxml.names import STATUSES
 from roaml.text import Span, TextEdit
 
@@ -34,6 +40,36 @@ def check(context: MachineContext) -> Iterator[Finding]:
                 reported.add(finding.span)
                 yield finding
     yield from _numbered(context)
+
+
+def check_jani(context: PropertiesContext) -> Iterator[Finding]:
+    """Report a name that is compared with two similar ones, although there is a name that is similar in the same way:
+    `pose_y = goal_x` beside `pose_x = goal_x`."""
+    for property_ in context.properties if context.variables is not None else ():
+        compared = [*_compared_in_jani(property_)]
+        for (name, other), (earlier_name, earlier_other) in itertools.permutations(compared, 2):
+            words = difference(earlier_name.identifier, name.identifier)
+            if words is None or other.identifier != earlier_other.identifier or other.origin is None:
+                continue
+            if not all(len(word) == 1 and word.isalpha() for word in words):
+                continue  # two robots can be compared with the place of one of them, but x not with y
+            meant = with_word(other.identifier, *words)
+            if meant is not None and meant in (context.variables or {}) and earlier_other.origin is not None:
+                message = (
+                    f"`{name.identifier}` is compared with this, as `{earlier_name.identifier}` is, although there is "
+                    f"`{meant}`; did you mean that?"
+                )
+                related = [Related(earlier_other.origin.span, "the other comparison")]
+                yield RULE.at(other.origin.span, message, related=related)
+
+
+def _compared_in_jani(property_: Property) -> Iterator[tuple[JaniName, JaniName]]:
+    for part in walk_formula(property_.expression):
+        if not isinstance(part, JaniBinary) or part.operator.signature not in (Signature.EQUALITY, Signature.ORDER):
+            continue
+        if isinstance(part.left, JaniName) and isinstance(part.right, JaniName):
+            yield part.left, part.right
+            yield part.right, part.left
 
 
 def _copied(context: MachineContext, chart: Chart) -> Iterator[Finding]:
@@ -234,5 +270,6 @@ RULE = Rule(
     Severity.WARNING,
     "A name belongs to a similar part of the machine.",
     machine=check,
+    properties=check_jani,
     whole=True,
 )
