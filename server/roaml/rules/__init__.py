@@ -146,6 +146,7 @@ from roaml.rules.properties import (
 )
 from roaml.rules.rule import Rule
 from roaml.rules.states import (
+    asymmetric_parts,
     constant_condition,
     delayed_transition,
     duplicate_state,
