@@ -173,8 +173,17 @@ const CORNERS = [
     { isLeft: true, isTop: true, weight: 2 },
 ] as const;
 
-/** The corner of the window in which something of a given size covers the smallest area of boxes of the drawing. */
-export function emptiestCorner(sight: Sight, boxes: readonly Box[], width: number, height: number, size: Area): Corner {
+/**
+ * The corner of the window in which something of a given size covers the smallest area of boxes of the drawing, and this
+ * area.
+ */
+export function emptiestCorner(
+    sight: Sight,
+    boxes: readonly Box[],
+    width: number,
+    height: number,
+    size: Area,
+): Corner & { readonly covered: number } {
     const [w, h] = [size.width / sight.scale, size.height / sight.scale];
     const common = (low: number, length: number, other: number, otherLength: number) =>
         Math.max(0, Math.min(low + length, other + otherLength) - Math.max(low, other));
@@ -187,8 +196,31 @@ export function emptiestCorner(sight: Sight, boxes: readonly Box[], width: numbe
         );
     };
     const areas = CORNERS.map(covered);
-    const { isLeft, isTop } = CORNERS[areas.indexOf(Math.min(...areas))] ?? CORNERS[0];
-    return { ...size, isLeft, isTop };
+    const least = Math.min(...areas);
+    const { isLeft, isTop } = CORNERS[areas.indexOf(least)] ?? CORNERS[0];
+    return { ...size, isLeft, isTop, covered: least };
+}
+
+/** The factors by which the map is smaller where the largest one would cover something. */
+const SHRINKS = [1, 0.75, 0.55, 0.4] as const;
+
+/**
+ * The corner of the window for a map with its distance from what is beside it, and the factor by which the map is smaller:
+ * the largest map that covers nothing, otherwise the smallest one, where it covers the least.
+ */
+export function mapCorner(
+    sight: Sight,
+    boxes: readonly Box[],
+    width: number,
+    height: number,
+    map: Area,
+): Corner & { readonly shrink: number } {
+    const corners = SHRINKS.map((shrink) => {
+        const size = { width: map.width * shrink + MAP_DISTANCE, height: map.height * shrink + MAP_DISTANCE };
+        return { ...emptiestCorner(sight, boxes, width, height, size), shrink };
+    });
+    const smallest = corners.reduce((one, other) => (other.shrink < one.shrink ? other : one));
+    return corners.find(({ covered }) => covered === 0) ?? smallest;
 }
 
 /**

@@ -3,7 +3,7 @@
 
 import type { Box, Drawing, Picture, Point } from "../contract";
 import { toneOf } from "./words";
-import { LARGEST_MAP, MAP_DISTANCE, centered, emptiestCorner, mapOf, visiblePart } from "./find";
+import { LARGEST_MAP, centered, mapCorner, mapOf, visiblePart } from "./find";
 import type { Corner, MapScale, Sight } from "./find";
 import { element } from "./scene";
 
@@ -20,9 +20,17 @@ export class Minimap {
     private isHidden = true;
     private boxes: (part: Box) => readonly Box[] = () => [];
     /** The corner of the window with the map. It is chosen when the map appears, and kept while the view moves. */
-    private corner: Corner | undefined;
+    private corner: (Corner & { readonly shrink: number }) | undefined;
+
+    /** Whether the pointer is on the map, which then has its full size. */
+    private isPointed = false;
 
     constructor(move: (sight: Sight) => void) {
+        for (const type of ["pointerenter", "pointerleave"] as const)
+            this.svg.addEventListener(type, () => {
+                this.isPointed = type === "pointerenter";
+                this.look(this.sight, this.view.width, this.view.height);
+            });
         const center = (event: PointerEvent) => {
             const point = this.pointAt(event);
             if (point) move(centered(this.sight, point, this.view.width, this.view.height));
@@ -76,13 +84,13 @@ export class Minimap {
 
     private draw(drawing: Drawing, part: Box): void {
         const { width, height } = this.view;
-        this.scale = mapOf(drawing, Math.min(LARGEST_MAP.width, width / 4), Math.min(LARGEST_MAP.height, height / 2));
+        const [most, highest] = [Math.min(LARGEST_MAP.width, width / 4), Math.min(LARGEST_MAP.height, height / 2)];
+        const largest = mapOf(drawing, most, highest);
+        this.corner ??= mapCorner(this.sight, this.boxes(part), width, height, largest);
+        const shrink = this.isPointed ? 1 : this.corner.shrink;
+        this.scale = mapOf(drawing, most * shrink, highest * shrink);
         place(this.svg, { width: this.scale.width, height: this.scale.height });
         place(this.frame, { ...part });
-        const size = { width: this.scale.width + MAP_DISTANCE, height: this.scale.height + MAP_DISTANCE };
-        this.corner = this.corner
-            ? { ...this.corner, ...size }
-            : emptiestCorner(this.sight, this.boxes(part), width, height, size);
         const { isLeft, isTop } = this.corner;
         this.svg.classList.toggle("is-left", isLeft);
         this.svg.classList.toggle("is-top", isTop);

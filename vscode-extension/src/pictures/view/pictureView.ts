@@ -42,12 +42,14 @@ import {
 } from "./find";
 import { breakpointOf } from "../breakpoints";
 import { filled, isOf, paint, shareOf, summaryOf } from "./coverage";
+import { ExitChips } from "./exitChips";
 import { Minimap } from "./minimap";
 import { MockPane } from "./mocks";
 import { menuOf } from "./menu";
 import { element, inkOf, pngData, sceneOf, spoken, type Scene } from "./scene";
 import { shownActivity, shownId } from "./shown";
 import { legendOf, type LegendEntry } from "./words";
+import { edgesOf, markEdges, type NodeEdges } from "./surroundings";
 import { theme } from "./theme";
 
 const ZOOM = 1.25;
@@ -61,6 +63,8 @@ const EMPHASIS_MS = 500;
 const GLIDE = { duration: 180, easing: "ease-out" };
 /** The maximum number of nodes of an animated drawing. */
 const MAX_ANIMATED = 300;
+/** The number of lines from which on those of the selected node, or of the node of the caret, stand out. */
+const MANY_LINES = 12;
 
 export class PictureView {
     private readonly svg = element("svg", { class: "picture", tabindex: 0, role: "application" });
@@ -75,6 +79,19 @@ export class PictureView {
         this.moved = true;
         this.look(sight);
     });
+    private readonly exits = new ExitChips(
+        (node) => {
+            this.moved = true;
+            this.select(node);
+            this.svg.focus();
+        },
+        (edges) => {
+            this.pointed = edges.length > 0 ? { leaving: edges, entering: [] } : undefined;
+            this.showSurroundings();
+        },
+    );
+    /** The edges that the pointer emphasises: those of a node, or of a chip. */
+    private pointed: NodeEdges | undefined;
     private readonly mocks = new MockPane((message) => {
         this.post(message);
     });
@@ -122,7 +139,7 @@ export class PictureView {
         this.said.setAttribute("role", "status");
         const stage = document.createElement("div");
         stage.className = "stage";
-        stage.append(this.svg, this.notice, this.minimap.svg);
+        stage.append(this.svg, this.exits.layer, this.notice, this.minimap.svg);
         const middle = document.createElement("div");
         middle.className = "middle";
         middle.append(stage, this.mocks.pane);
@@ -238,6 +255,8 @@ export class PictureView {
         this.svg.setAttribute("aria-description", words.help);
         for (const [index, group] of this.scene.nodes) group.id = `${this.prefix}-node${index}`;
         for (const [index, groups] of this.scene.edges) spoken(groups).id ||= `${this.prefix}-edge${index}`;
+        this.exits.show(picture, drawing, this.scene);
+        this.pointed = undefined;
         this.offerOutline();
         this.showCoverage(picture, drawing, words);
         this.look(this.sight);
@@ -288,6 +307,7 @@ export class PictureView {
         this.highlight(this.highlighted);
         this.scene?.nodes.get(this.selected)?.classList.add("selected");
         for (const group of this.scene?.edges.get(this.selectedEdge) ?? []) group.classList.add("selected");
+        this.showSurroundings();
     }
 
     private clear(): void {
@@ -299,6 +319,7 @@ export class PictureView {
         this.notice.textContent = "";
         this.legend.replaceChildren();
         this.minimap.clear();
+        this.exits.clear();
     }
 
     // ------------------------------------------------------------------- looking
@@ -309,6 +330,7 @@ export class PictureView {
         this.scene?.root.setAttribute("transform", `scale(${scale}) translate(${-x} ${-y})`);
         const { width, height } = this.svg.getBoundingClientRect();
         this.minimap.look(sight, width, height);
+        this.exits.look(sight, width, height, this.minimap.covered);
     }
 
     fit(): void {
@@ -425,10 +447,28 @@ export class PictureView {
         this.onSelect(this.picture?.nodes[node]?.id ?? "");
         const chosen = this.scene?.nodes.get(node);
         chosen?.classList.add("selected");
+        this.showSurroundings();
         if (!chosen) return;
         if (moves) this.reveal(node);
         this.notice.textContent = "";
         this.svg.setAttribute("aria-activedescendant", chosen.id);
+    }
+
+    /** Let the lines of the node with the pointer stand out, otherwise in large pictures those of the selected node or of
+     * the caret. */
+    private showSurroundings(): void {
+        const { picture, scene, here, selected } = this;
+        if (!picture || !scene || picture.kind === "tree") return;
+        const hasMany = scene.root.querySelectorAll(":scope > .link").length >= MANY_LINES;
+        const node = selected >= 0 || here === null ? selected : this.nodeOf(here);
+        markEdges(scene, this.pointed ?? edgesOf(picture, hasMany ? node : -1));
+    }
+
+    private pointAt(target: EventTarget | null): void {
+        const group = target instanceof Element ? target.closest<SVGGElement>("[data-node]") : null;
+        const node = Number(group?.dataset["node"] ?? -1);
+        this.pointed = this.picture && node >= 0 ? edgesOf(this.picture, node) : undefined;
+        this.showSurroundings();
     }
 
     /** The element that handles the keys. */
@@ -465,6 +505,7 @@ export class PictureView {
         for (const group of this.parts(this.here)) group.classList.remove("here");
         this.here = here;
         for (const group of this.parts(here)) group.classList.add("here");
+        this.showSurroundings();
         if (here === null || !this.picture) return;
         this.keepInView(this.nodeOf(here));
     }
@@ -700,6 +741,12 @@ export class PictureView {
             const node = target instanceof Element && target.closest<SVGGElement>("[data-node]")?.dataset["node"];
             if (node) this.select(Number(node));
         });
+        this.svg.addEventListener("pointerover", ({ target }) => {
+            this.pointAt(target);
+        });
+        this.svg.addEventListener("pointerleave", () => {
+            this.pointAt(null);
+        });
         this.svg.addEventListener("dblclick", ({ target }) => {
             const node = target instanceof Element && target.closest<SVGGElement>("[data-node]")?.dataset["node"];
             if (target === this.svg) this.fit();
@@ -766,7 +813,8 @@ export class PictureView {
             return true;
         }
         // They press the button that has the focus.
-        if ((key === "Enter" || key === " ") && this.bar.contains(document.activeElement)) return false;
+        const isOnButton = [this.bar, this.exits.layer].some((part) => part.contains(document.activeElement));
+        if ((key === "Enter" || key === " ") && isOnButton) return false;
         if (ctrlKey || metaKey) {
             const change = { z: shiftKey ? "redo" : "undo", y: "redo" } as const;
             if (key.toLowerCase() in change) {

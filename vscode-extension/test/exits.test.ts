@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+/** Lines that lead out of the view, and the lines of a node. */
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import type { Picture } from "../src/pictures/contract";
+import { chipsOf, cornersOf, exitsOf, inARow, type DrawnLine } from "../src/pictures/view/exits";
+import { mapCorner } from "../src/pictures/view/find";
+import { edgesOf } from "../src/pictures/view/surroundings";
+
+const SIGHT = { x: 0, y: 0, scale: 1 };
+const BOXES = new Map([
+    [0, { x: 40, y: 40, width: 20, height: 20 }],
+    [1, { x: 40, y: 300, width: 20, height: 20 }],
+    [2, { x: 70, y: 40, width: 20, height: 20 }],
+]);
+
+function line(source: number, target: number, path: string): DrawnLine {
+    return { edge: 7, source, target, points: cornersOf(path) };
+}
+
+test("a line that leaves the view has an exit with its other end", () => {
+    const down = line(0, 1, "M 50 60 L 50 90 Q 50 96 56 96 L 60 96 L 60 200 L 50 200 L 50 300");
+    const [exit, ...others] = exitsOf([down], BOXES, SIGHT, 100, 100);
+    assert.deepEqual(others, []);
+    assert.deepEqual({ ...exit, distance: 0 }, { side: "bottom", at: 60, edge: 7, node: 1, isOut: true, distance: 0 });
+    // The same line the other way leads into the view.
+    const up = { ...down, source: 1, target: 0, points: down.points.toReversed() };
+    const [entry] = exitsOf([up], BOXES, SIGHT, 100, 100);
+    assert.deepEqual([entry?.side, entry?.at, entry?.node, entry?.isOut], ["bottom", 60, 1, false]);
+});
+
+test("the exit is in pixels of the window, at the last place where the line leaves it", () => {
+    const around = line(0, 1, "M 40 50 L -20 50 L -20 80 L 30 80 L 30 -20 L -50 -20 L -50 310 L 40 310");
+    const [exit] = exitsOf([around], BOXES, { x: -10, y: -10, scale: 0.5 }, 60, 60);
+    assert.deepEqual([exit?.side, exit?.at], ["top", 20]);
+});
+
+test("lines without a visible end, with two, or that end at a label have no exit", () => {
+    const lines = [
+        line(0, 2, "M 50 40 L 50 -20 L 80 -20 L 80 40"),
+        line(1, 1, "M 50 300 L 50 0"),
+        line(0, 1, "M 50 60 L 50 90"),
+        // This line ends at a label that names its target.
+        { ...line(1, 0, "M 50 300 L 50 280"), points: [...cornersOf("M 50 300 L 50 280")] },
+    ];
+    assert.deepEqual(exitsOf(lines, BOXES, SIGHT, 100, 100), []);
+});
+
+test("neighbouring exits of a direction share a chip, which names each node once, the nearest first", () => {
+    const exit = (at: number, node: number, distance: number, isOut = true) =>
+        ({ side: "top", at, edge: at, node, isOut, distance }) as const;
+    const chips = chipsOf(
+        [exit(30, 3, 90), exit(10, 1, 50), exit(20, 2, 10), exit(25, 2, 10), exit(15, 4, 5, false)],
+        15,
+    );
+    assert.deepEqual(
+        chips.map(({ at, isOut, exits }) => [at, isOut, exits.map(({ node }) => node)]),
+        [
+            [17.5, true, [2, 1]],
+            [15, false, [4]],
+            [30, true, [3]],
+        ],
+    );
+});
+
+test("chips in a row do not overlap, and stay near their lines and inside", () => {
+    const row = [
+        { at: 5, size: 40 },
+        { at: 30, size: 40 },
+        { at: 150, size: 20 },
+        { at: 195, size: 30 },
+    ];
+    assert.deepEqual(inARow(row, 4, 200, 4), [4, 48, 140, 170]);
+});
+
+test("the map is smaller where it would cover something", () => {
+    const map = { width: 100, height: 100 };
+    const wall = { x: 40, y: -1000, width: 120, height: 2000 };
+    assert.equal(mapCorner(SIGHT, [], 200, 200, map).shrink, 1);
+    const beside = mapCorner(SIGHT, [{ ...wall, x: 90, width: 20 }], 200, 200, map);
+    assert.ok(beside.shrink < 1 && beside.shrink > 0.4);
+    assert.equal(beside.width, 100 * beside.shrink + 24);
+    // If each covers something, it is the smallest one.
+    assert.equal(mapCorner(SIGHT, [wall], 200, 200, map).shrink, 0.4);
+});
+
+test("the lines of a node leave it, also through a choice, or enter it", () => {
+    const node = (id: string, kind = "state") => ({ id, kind });
+    const edge = (source: string, target: string) => ({ source, target });
+    const picture = {
+        nodes: [node("a"), node("b"), node("c", "choice"), node("d")],
+        edges: [edge("a", "b"), edge("a", "c"), edge("c", "d"), edge("d", "a"), edge("a", "a"), edge("b", "d")],
+    } as unknown as Picture;
+    assert.deepEqual(edgesOf(picture, 0), { leaving: [0, 1, 2], entering: [3] });
+    assert.deepEqual(edgesOf(picture, 3), { leaving: [3], entering: [1, 2, 5] });
+    assert.deepEqual(edgesOf(picture, -1), { leaving: [], entering: [] });
+});
