@@ -437,3 +437,30 @@ def test_crossings_stop_at_a_limit() -> None:
     below = [[5], [4], [3], [8], [7], [6], [], [], []]
     assert crossings(rows, below) == crossings(rows, below, 6) == 6
     assert 2 < crossings(rows, below, 2) <= 6
+
+
+def test_a_part_whose_first_node_is_at_the_end_is_mirrored() -> None:
+    """The first node is in the left part of the drawing, unless the layers are in the order of the nodes."""
+    ends = [(0, 1), (1, 2), (0, 3), (3, 2), (3, 4), (4, 5), (1, 6), (6, 7), (7, 1), (5, 3), (2, 8), (8, 9), (9, 0)]
+    firsts = []
+    for order in range(12):
+        chance = random.Random(order)
+        links = [Link(str(a), str(b), Extent(60, 20)) for a, b in chance.sample(ends, len(ends))]
+        layout = layered({str(n): Extent(90, 30) for n in range(10)}, links, LayoutDirection.DOWN, 1.0)
+        rows: dict[float, list[tuple[float, int]]] = {}
+        for name, box in layout.nodes.items():
+            rows.setdefault(round(box.y + box.height / 2), []).append((box.x, int(name)))
+        is_in_order = all([n for _, n in sorted(row)] == sorted(n for _, n in row) for row in rows.values())
+        first = layout.nodes["0"]
+        firsts.append(is_in_order or first.x + first.width / 2 <= 0.6 * layout.size.width)
+    assert all(firsts)
+
+
+def test_mirrored_twice_is_the_same() -> None:
+    links = [Link("a", "b", Extent(50, 20)), Link("a", "c"), Link("b", "a")]
+    layout = layered(dict.fromkeys("abc", Extent(80, 30)), links, LayoutDirection.DOWN, 1.0)
+    assert layout.mirrored != layout
+    assert layout.mirrored.nodes["b"].x == layout.size.width - layout.nodes["b"].right
+    again = layout.mirrored.mirrored
+    assert all(abs(again.nodes[name].x - box.x) < NEAR for name, box in layout.nodes.items())
+    assert len(segments(again)) == len(segments(layout)) > 0

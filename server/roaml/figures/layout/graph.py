@@ -79,6 +79,22 @@ class Layout(Record, frozen=True):
         boxes = {name: box.turned for name, box in self.nodes.items()}
         return Layout(self.size.turned, boxes, tuple(route.turned for route in self.routes))
 
+    @property
+    def mirrored(self) -> Layout:
+        """The layout with its left and right sides exchanged."""
+
+        def box(old: Box) -> Box:
+            return Box(self.size.width - old.right, old.y, old.width, old.height)
+
+        routes = tuple(
+            Route(
+                tuple(tuple(Point(self.size.width - x, y) for x, y in part) for part in route.parts),
+                box(route.label) if route.label else None,
+            )
+            for route in self.routes
+        )
+        return Layout(self.size, {name: box(old) for name, old in self.nodes.items()}, routes)
+
 
 def at_origin(boxes: Mapping[str, Box], routes: Sequence[Route]) -> Layout:
     """A layout moved so that its upper left corner is the origin."""

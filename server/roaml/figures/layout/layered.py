@@ -42,6 +42,8 @@ BELOW_START = 2
 """The number of layers above further columns."""
 STRAIGHTENINGS = 2
 """How often vertices, then ports, are moved so that lines become straight."""
+MIN_MIRRORED = 0.6
+"""The place of the first node in a part, as a fraction of the width, from which on the part is mirrored."""
 MAX_COMPARED = 100
 """The maximum number of nodes of a part whose layers are divided in all these ways, to find the smallest drawing."""
 
@@ -110,7 +112,7 @@ def _part(
 
     best = made()
     if len(names) < MIN_WRAPPED:
-        return best
+        return _from_the_beginning(best, names, [links[index] for index in indexes])
     width, height = best.size
     if _excess(best) > 1 and height > width:
         columns = 1
@@ -128,7 +130,21 @@ def _part(
             best = min(best, made(limit=limit), key=lambda layout: (_excess(layout), _area(layout)))
             if _excess(best) <= 1 and len(names) > MAX_COMPARED:
                 break
-    return best
+    return _from_the_beginning(best, names, [links[index] for index in indexes])
+
+
+def _from_the_beginning(layout: Layout, names: Sequence[str], links: Sequence[Link]) -> Layout:
+    """The layout, mirrored if its first node is much nearer to the right side, so that it is read from the left. If all
+    layers are in the order of the nodes, they stay so, and also if links have wanted places at nodes."""
+    middles = [layout.nodes[name].x + layout.nodes[name].width / 2 for name in names]
+    if middles[0] < MIN_MIRRORED * layout.size.width or any(
+        link.port(end) is not None for link in links for end in (link.source, link.target)
+    ):
+        return layout
+    rows: dict[float, list[float]] = {}
+    for name, middle in zip(names, middles, strict=True):
+        rows.setdefault(round(layout.nodes[name].y + layout.nodes[name].height / 2), []).append(middle)
+    return layout if all(row == sorted(row) for row in rows.values()) else layout.mirrored
 
 
 def _area(layout: Layout) -> float:

@@ -57,10 +57,9 @@ export interface Sight extends Point {
 const MARGIN = 24;
 /** The minimum legible scale: the smallest texts have 12 px, and need at least 11 px on the screen. */
 const LEGIBLE = 11 / 12;
-/** The minimum scale at which a whole drawing is shown rather than a part of it: its smallest texts have 8 px. */
-const WHOLE = 0.67;
-/** The same for the whole width of a drawing: its smallest texts have 9 px. */
-const WIDE = 0.75;
+/** The minimum scale at which a whole drawing, or its whole width, is shown rather than a part of it: its smallest texts
+ * have 9 px. */
+const WHOLE = 0.75;
 type Area = Pick<Drawing, "width" | "height">;
 
 function scaleOf(drawing: Area, width: number, height: number): number {
@@ -92,9 +91,9 @@ function firstScale(
     if (whole >= WHOLE) return { scale: whole, strip: 0 };
     const scaleBeside = (strip: number) => Math.min(least, (width - 2 * MARGIN - strip) / Math.max(1, drawing.width));
     const strip = mapOf(drawing, LARGEST_MAP.width, LARGEST_MAP.height).width + MAP_DISTANCE;
-    const isBeside = scaleBeside(0) > scaleBeside(2 * strip) && scaleBeside(strip) >= WIDE;
+    const isBeside = scaleBeside(0) > scaleBeside(2 * strip) && scaleBeside(strip) >= WHOLE;
     const across = scaleBeside(isBeside ? strip : 0);
-    return { scale: Math.max(whole, across >= WIDE ? across : least), strip: isBeside ? strip : 0 };
+    return { scale: Math.max(whole, across >= WHOLE ? across : least), strip: isBeside ? strip : 0 };
 }
 
 /** The size of the largest map of a drawing, in pixels. */
