@@ -13,6 +13,7 @@ from drawing_check import problems
 from ide_models import CORNERS, ROBOT, load, system_file
 
 from fixture import split_files
+from roaml.figures.drawing import TextItem
 from roaml.figures.layout import LayoutDirection
 from roaml.ide.diagrams import (
     DetailKind,
@@ -60,6 +61,24 @@ MACHINE = """\
   </ros_action_thread>
 </ascxml>
 """
+
+
+def test_transitions_with_the_same_trigger_have_their_order(tmp_path: Path) -> None:
+    """`[else]` is the last of several transitions, if only it has no condition; two need no numbers then."""
+    for transitions, orders in (
+        ('<transition event="a" cond="x"/><transition event="b"/>', ["", ""]),
+        ('<transition event="a" cond="x"/><transition event="a"/>', ["", "[else]"]),
+        ('<transition cond="x"/><transition event="a"/><transition/>', ["", "", "[else]"]),
+        ('<transition event="a" cond="x"/><transition event="a" cond="!x"/>', ["1.", "2."]),
+        ('<transition cond="x"/><transition cond="!x"/><transition/>', ["1.", "2.", "3. [else]"]),
+    ):
+        text = f'<ascxml name="M" version="1.0" initial="s"><state id="s">{transitions}</state></ascxml>'
+        picture = machine_picture(load(tmp_path, {"m.ascxml": text}), str(tmp_path / "m.ascxml"))
+        assert picture is not None
+        assert [edge.order for edge in picture.edges] == orders
+        drawing = draw(DiagramKind.MACHINE, picture, LayoutDirection.DOWN)
+        texts = {item.text for _, item in drawing.walk() if isinstance(item, TextItem)}
+        assert {order for order in orders if "else" in order} <= texts
 
 
 def shown(picture: Picture | None) -> list[str]:

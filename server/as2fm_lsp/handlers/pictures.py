@@ -128,7 +128,7 @@ def _converted(session: Session, analysis: Analysis, kind: DiagramKind, picture:
                 "source": edge.source,
                 "target": edge.target,
                 "kind": edge.kind.value,
-                "labels": [*edge.labels, *(f"/ {action}" for action in edge.actions)],
+                "labels": [*edge.labels, *filter(None, [edge.order]), *(f"/ {action}" for action in edge.actions)],
                 "probabilistic": edge.probabilistic,
                 "interface": edge.interface.value if edge.interface else "",
                 "place": place(edge.place),

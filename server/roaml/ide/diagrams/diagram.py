@@ -150,6 +150,7 @@ class DiagramEdge(Record, frozen=True):
     Attributes:
         labels: lines of text. Those of a transition are the trigger, the condition in brackets, and the probability.
             Those of an edge through interfaces that are not shown are their names.
+        order: what is written before the condition of a transition if others have the same trigger (`precedence`).
         actions: the texts for the statements that a transition executes.
         probabilistic: whether it is one of several edges of a choice, of which one is chosen at random.
         internal: whether it represents a transition without a target, which does not leave its state.
@@ -168,6 +169,7 @@ class DiagramEdge(Record, frozen=True):
     place: Location | None = None
     change: Change | None = None
     interface: DiagramNodeKind | None = None
+    order: str = ""
 
 
 class Picture(Record, frozen=True):

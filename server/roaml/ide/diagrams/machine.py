@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping
 
 from roaml.ide.diagrams.actions import Wording, guard, outcome
 from roaml.ide.diagrams.diagram import Detail, DetailKind, DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
+from roaml.ide.diagrams.precedence import precedence
 from roaml.model.machine import Body, Chart, Handler, Machine, State, Target, Thread
 from roaml.project.analysis import Analysis
 from roaml.roles import ProtocolPart
@@ -108,26 +109,27 @@ class _Chart:
 
     def edges(self) -> Iterator[DiagramEdge]:
         for state in self._shown:
-            for index, handler in enumerate(state.handlers):
+            orders = precedence(self._wording, state.handlers)
+            for index, (handler, order) in enumerate(zip(state.handlers, orders, strict=True)):
                 if not handler.effective:
                     continue
                 if handler.is_probabilistic:
-                    yield from self._by_chance(state, index, handler)
+                    yield from self._by_chance(state, index, handler, order)
                     continue
                 labels = tuple(filter(None, (self._wording.trigger(handler), guard(handler))))
                 for target in handler.targets:
-                    yield from self._edge(state, self._id(state), handler, target, labels)
+                    yield from self._edge(state, self._id(state), handler, target, labels, order)
 
-    def _by_chance(self, state: State, index: int, handler: Handler) -> Iterator[DiagramEdge]:
+    def _by_chance(self, state: State, index: int, handler: Handler, order: str) -> Iterator[DiagramEdge]:
         choice = self._choice(state, index)
         labels = tuple(filter(None, (self._wording.trigger(handler), guard(handler))))
         place = Location(self._path, handler.element.span)
-        yield DiagramEdge(self._id(state), choice, _kind(handler), labels, place=place)
+        yield DiagramEdge(self._id(state), choice, _kind(handler), labels, place=place, order=order)
         for target in handler.targets:
             yield from self._edge(state, choice, handler, target, ())
 
     def _edge(
-        self, state: State, source: str, handler: Handler, target: Target, labels: tuple[str, ...]
+        self, state: State, source: str, handler: Handler, target: Target, labels: tuple[str, ...], order: str = ""
     ) -> Iterator[DiagramEdge]:
         if target.state is not None and target.state.value not in self._states:
             return
@@ -143,6 +145,7 @@ class _Chart:
             handler.is_probabilistic,
             target.state is None,
             Location(self._path, element.span),
+            order=order,
         )
 
     def _bodies(self, state: State) -> Iterator[str]:

@@ -306,7 +306,7 @@ def _row(index: int, edge: DiagramEdge, width: float, mark: str = "", *, joined:
         lines += paragraph(f"/ {action}{dots}", width, "muted", limit=MAX_ACTION_LINES)
     if not lines:
         lines = [TextLine(f"{mark}without event")]
-    texts = (*edge.labels, *(f"/ {action}" for action in edge.actions))
+    texts = (*edge.labels, edge.order, *(f"/ {action}" for action in edge.actions))
     hint = "\n".join(texts) if is_shortened(lines, *texts) else ""
     return Row(
         signed(lines, edge.change),
@@ -321,12 +321,12 @@ def _row(index: int, edge: DiagramEdge, width: float, mark: str = "", *, joined:
 
 
 def _label(edges: Sequence[tuple[int, DiagramEdge]], target: str) -> Card:
-    """The label of a line, with a row for each edge that has labels or actions.
+    """The label of a line, with a row for each edge that has labels, actions or an order.
 
     Args:
         target: the name of the target if the line ends at the label, otherwise "".
     """
-    rows = [_row(index, edge, LABEL_WIDTH) for index, edge in edges if edge.labels or edge.actions]
+    rows = [_row(index, edge, LABEL_WIDTH) for index, edge in edges if edge.labels or edge.actions or edge.order]
     if target:
         lines = paragraph(f"→ {target}", LABEL_WIDTH, "title", bold=True)
         rows.append(Row(lines, _tone(edges), _kinds(edges), tuple(index for index, _ in edges)))
@@ -339,9 +339,12 @@ def _stub(index: int) -> str:
 
 
 def _split(edge: DiagramEdge) -> tuple[str, list[str]]:
-    """The labels of an edge that are not conditions, as one text, and the conditions."""
+    """The labels of an edge that are not conditions, as one text; and the conditions, with their order."""
     guards = [text for text in edge.labels if text.startswith("[")]
-    return " ".join(text for text in edge.labels if text not in guards), guards
+    heads = " ".join(text for text in edge.labels if text not in guards)
+    if edge.order:
+        guards = [" ".join((edge.order, *guards[:1])), *guards[1:]]
+    return heads, guards
 
 
 def _tone(edges: Sequence[tuple[int, DiagramEdge]]) -> Tone:
