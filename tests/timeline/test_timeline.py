@@ -145,6 +145,44 @@ def test_messages_at_one_time_are_beside_each_other_with_a_dot_at_each_sender() 
     assert len(set(places)) == len(places)
 
 
+def test_messages_at_one_time_are_all_named() -> None:
+    session = api.session(api.load(str(DELIVERY)), seed=3)
+    session.until_decided(2_000)
+    timeline = timeline_of(session)
+    drawing = draw_timeline(timeline, View(Axis.TIME, 0.0, extent(timeline, Axis.TIME), 1200.0))
+    by_time: dict[float, list[str]] = {}
+    for message in timeline.messages:
+        by_time.setdefault(timeline.times[message.received], []).append(message.name)
+    assert any(len(set(names)) > 1 for names in by_time.values())
+    written = [
+        i.text for group in drawing.groups if group.role == "event" for i in group.items if isinstance(i, TextItem)
+    ]
+    assert written == [", ".join(dict.fromkeys(names)) for names in by_time.values()]
+
+
+@pytest.mark.parametrize("axis", list(Axis))
+@pytest.mark.parametrize("path", [ROBOT, DELIVERY, CASE_STUDY], ids=lambda path: path.parent.name)
+def test_no_arrow_is_on_the_name_of_a_state(path: Path, axis: Axis) -> None:
+    session = api.session(api.load(str(path)), seed=3)
+    session.until_decided(2_000)
+    timeline = timeline_of(session)
+    arrows = 0
+    for share, width in itertools.product((1.0, 0.3, 0.05), (500.0, 1600.0)):
+        drawing = draw_timeline(timeline, View(axis, 0.0, extent(timeline, axis) * share, width))
+        states = [group for group in drawing.groups if group.role == "state"]
+        texts = [item.box for group in states for item in group.items if isinstance(item, TextItem)]
+        for _, item in drawing.walk():
+            if not isinstance(item, Polyline) or item.role != "message":
+                continue
+            (x, start), (right, end) = item.points
+            arrows += 1
+            assert x == right or axis is Axis.STEPS
+            for text in texts if x == right else ():
+                is_beside = text.bottom < min(start, end) or max(start, end) < text.y
+                assert is_beside or not text.x - 4.5 < x < text.right + 4.5
+    assert arrows
+
+
 @pytest.mark.parametrize("axis", list(Axis))
 @pytest.mark.parametrize("path", [ROBOT, DELIVERY, CASE_STUDY], ids=lambda path: path.parent.name)
 def test_names_of_messages_overlap_no_name_and_no_mark(path: Path, axis: Axis) -> None:

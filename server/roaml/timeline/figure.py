@@ -30,8 +30,8 @@ _TEXT_MARGIN = 9.0
 """The distance of the name of a state from its beginning, where arrows of messages are, in pixels."""
 _DOT = 7.0
 """The size of the mark at the sender of a message, in pixels."""
-_SIDEWAYS = 6.0
-"""The distance of the arrows of messages at one place, in pixels."""
+_SIDEWAYS = 10.0
+"""The minimum distance of the arrows of messages, in pixels: those at one instant are side by side."""
 _LEAST = 5.0
 """The minimum width of a state, in pixels. Adjacent states that are narrower are drawn as one, and so are messages
 without arrows whose distance is smaller."""
@@ -143,6 +143,7 @@ class _Painter:
         self._view = view
         self._scale = view.width / max(view.end - view.start, 1e-9)
         self._end = self._x(timeline.count)
+        self._arrow_places = self._placed_arrows()
         self.height = height_of(timeline, view.curves)
 
     def _x(self, step: int) -> float:
@@ -287,11 +288,27 @@ class _Painter:
         state = lane.states[number]
         box = Box(x, y, end - x, _SPAN)
         items: list[Item] = [Shape(box, Outline.RECTANGLE, "span")]
-        text = _fitting(state, end - x - _TEXT_MARGIN - 3.0)
+        left, right = self._free_part(x, end, y, text_width(state, SMALL))
+        text = _fitting(state, right - left)
         if text:
-            items.append(TextItem(text, x + _TEXT_MARGIN, y + _SPAN / 2 + SMALL * 0.35, SMALL, "text"))
+            items.append(TextItem(text, left, y + _SPAN / 2 + SMALL * 0.35, SMALL, "text"))
         hint = f"{lane.name}: {state}, {self._when(lane.starts[number])}"
         return Group("state", _tone(lane, state), tuple(items), hint=hint, step=lane.starts[number])
+
+    def _free_part(self, x: float, end: float, y: float, width: float) -> tuple[float, float]:
+        """The ends of the first part of a state, between the arrows that cross it, that is at least `width` wide;
+        otherwise of the widest part."""
+        middle = y + _SPAN / 2
+        arrows = [
+            place
+            for place, top, bottom in self._arrow_places
+            if x - _TEXT_MARGIN <= place < end and top <= middle <= bottom
+        ]
+        starts = [place + _TEXT_MARGIN for place in (x, *arrows)]
+        ends = [*(place - _TEXT_MARGIN for place in arrows), end - 3.0]
+        parts = list(zip(starts, ends, strict=True))
+        fitting = (part for part in parts if part[1] - part[0] >= width)
+        return next(fitting, max(parts, key=lambda part: part[1] - part[0]))
 
     def _busy(self, lane: Lane, first: int, number: int, x: float, end: float, y: float) -> Group:
         box = Box(max(x, 0.0), y, max(min(end, self._view.width) - max(x, 0.0), 2.0), _SPAN)
@@ -309,14 +326,13 @@ class _Painter:
     # ------------------------------------------------------------ messages
 
     def _messages(self) -> Iterator[Group]:
-        """Marks for the messages, with their names if there is space. If there are too many messages, they have no
-        arrows, and those that are close to each other have one mark."""
+        """Marks for the messages, with their names if there is space; those at one instant share a text, in their
+        order. If there are too many messages, they have no arrows, and those that are close to each other have one
+        mark."""
         messages = self._timeline.messages
-        first = bisect_left(messages, self._first_step(0.0), key=_received)
-        last = bisect_right(messages, self._first_step(self._view.width + 1.0), key=_received)
-        has_arrows = last - first <= self._view.width / _ARROW_DISTANCE
+        first, last = self._visible_messages()
+        has_arrows = bool(self._arrow_places)
         free_from = -math.inf
-        beside_arrows, sideways = -math.inf, 0.0
         number = first
         while number < last:
             following = number + 1 if has_arrows else self._behind_mark(number, last)
@@ -330,17 +346,41 @@ class _Painter:
             following = bisect_left(messages, self._first_step(end + 1.0), following, last, key=_received)
             beside = self._x(messages[following].received) if following < last else min(self._view.width, self._end)
             name = ", ".join(dict.fromkeys(message.name for message in marked[:_SAMPLE]))
-            left, text = _beside(name, x, end, free_from, beside)
+            here = messages[number - len(marked) : min(following, number + _SAMPLE)]
+            names = ", ".join(dict.fromkeys(message.name for message in here))
+            left, text = _beside(names, x, end, free_from, beside)
             if text:
                 items.append(TextItem(text, left, AXIS + MESSAGES / 2 + SMALL * 0.35, SMALL, "text"))
             free_from = max(free_from, left + text_width(text, SMALL) + 6.0 if text else 0.0, end + 6.0)
             if has_arrows:
-                sideways = sideways + _SIDEWAYS if x - beside_arrows < _DOT else 0.0
-                beside_arrows = x
-                items += self._arrows(marked[0], -sideways if x + sideways > self._view.width - _DOT else sideways)
+                items += self._arrows(marked[0], self._arrow_places[number - 1 - first][0] - x)
             # There, the message is in the ROS graph, and the next step is at the line that receives it.
             step = marked[0].received - 1 if len(marked) == 1 else None
             yield Group("event", Tone.PLAIN, tuple(items), hint=self._message_hint(name, marked), step=step)
+
+    def _visible_messages(self) -> tuple[int, int]:
+        """The number of the first visible message, and that behind the last one."""
+        messages = self._timeline.messages
+        first = bisect_left(messages, self._first_step(0.0), key=_received)
+        return first, bisect_right(messages, self._first_step(self._view.width + 1.0), key=_received)
+
+    def _placed_arrows(self) -> list[tuple[float, float, float]]:
+        """The horizontal position of the arrow of each visible message, and the vertical range that it crosses; empty
+        if there are too many. Arrows at one instant are from left to right in the order of their messages."""
+        first, last = self._visible_messages()
+        if last - first > self._view.width / _ARROW_DISTANCE:
+            return []
+        messages = self._timeline.messages[first:last]
+        places: list[float] = []
+        for message in messages:
+            places.append(max(self._x(message.received), places[-1] + _SIDEWAYS if places else -math.inf))
+        limit = self._view.width - _DOT
+        for number in range(len(places) - 1, -1, -1):
+            if self._x(messages[number].received) <= self._view.width:
+                places[number] = min(places[number], limit)
+                limit = places[number] - _SIDEWAYS
+        crossed = [[_middle(lane) for lane in (message.sender, *message.receivers)] for message in messages]
+        return [(x, min(lanes) - _DOT, max(lanes) + _DOT) for x, lanes in zip(places, crossed, strict=True)]
 
     def _behind_mark(self, number: int, last: int) -> int:
         """The number of the first message after the mark that begins with a message."""
@@ -468,11 +508,14 @@ def _range(plots: Sequence[Plot]) -> tuple[float, float]:
 
 def _beside(name: str, x: float, end: float, free_from: float, beside: float) -> tuple[float, str]:
     """The left end of the text beside a mark from `x` to `end`, and the text. It is right of the mark if it ends before
-    `beside`, otherwise left of it if it begins after `free_from`, otherwise shortened and right of the mark."""
+    `beside`, otherwise left of it if it begins after `free_from`, otherwise shortened on the side with more space."""
     width = text_width(name, SMALL)
-    if end + 3.0 + width > beside - 3.0 and x - 3.0 - width >= max(free_from, 0.0):
-        return x - 3.0 - width, name
-    return end + 3.0, _fitting(name, beside - end - 6.0) if end >= free_from - 6.0 else ""
+    before = x - 3.0 - max(free_from, 0.0)
+    behind = beside - end - 6.0 if end >= free_from - 6.0 else 0.0
+    if width > beside - end - 6.0 and before > behind:
+        text = _fitting(name, before)
+        return x - 3.0 - text_width(text, SMALL), text
+    return end + 3.0, _fitting(name, behind) if behind > 0 else ""
 
 
 def _received(message: SentMessage) -> int:
