@@ -166,6 +166,19 @@ def test_six_lines_have_six_marks() -> None:
     assert len(forms) == 6
 
 
+def test_numbers_in_cells_fit() -> None:
+    values = tuple(0.008561234 * 7 ** (number % 3) for number in range(11))
+    drawing = drawing_of(HeatMap("t", "a", "b", tuple(map(str, range(11))), ("x",), (values,), "value"))
+    cells = [group for group in drawing.groups if group.role == "heat" and len(group.items) > 1]
+    assert len(cells) == 11
+    for group, value in zip(cells, values, strict=True):
+        shape, text = group.items
+        assert isinstance(shape, Shape)
+        assert isinstance(text, TextItem)
+        assert shape.box.x < text.x < text.box.right < shape.box.right
+        assert math.isclose(float(text.text), value, rel_tol=0.01)
+
+
 def test_points_lie_inside_the_drawing() -> None:
     for plot in (
         LinePlot(

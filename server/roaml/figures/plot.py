@@ -513,7 +513,7 @@ def _heat_map(plot: HeatMap) -> Drawing:
             box = Box(area.x + column * width, area.y + number * height, width, height)
             hint = plot.hints[line][column] if plot.hints else ""
             level = _level(value, least, greatest)
-            text = f"{value:.4g}" if not math.isnan(value) else "–"
+            text = _cell_text(value, width - 6) if not math.isnan(value) else "–"
             items: list[Item] = [Shape(box, Outline.RECTANGLE, "cell")]
             if shows_texts:
                 place = box.x + (width - text_width(text, SMALL)) / 2, box.y + height / 2 + 4
@@ -527,6 +527,12 @@ def _heat_map(plot: HeatMap) -> Drawing:
     groups += legend
     foot, bottom = _foot(plot.notes, left, bottom)
     return Drawing(Extent(area.right + 12, bottom), (*groups, *foot), {})
+
+
+def _cell_text(value: float, width: float) -> str:
+    """A number with as many of four digits as fit into a width, at least two."""
+    texts = [f"{value:.{digits}g}" for digits in (4, 3, 2)]
+    return next((text for text in texts if text_width(text, SMALL) <= width), texts[-1])
 
 
 def _heat_axes(plot: HeatMap, area: Box, height: float) -> Iterator[Item]:
