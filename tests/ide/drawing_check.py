@@ -42,12 +42,16 @@ def _areas(drawing: Drawing) -> Iterator[str]:
 
 def _texts(drawing: Drawing) -> Iterator[str]:
     texts = [(groups, item) for groups, item in drawing.walk() if isinstance(item, TextItem)]
+    solid = [item.box for _, item in drawing.walk() if isinstance(item, Shape) and item.role in SOLID]
     for groups, text in texts:
         if text.size < MIN_SIZE:
             yield f"small text: {text}"
         if not text.text.strip():
             yield f"a text without letters: {text}"
         around = [item for group in groups for item in group.items if isinstance(item, Shape)]
+        if groups[-1].role == "line-name":
+            yield from (f"a name of a line on a card: {text}" for card in solid if card.overlaps(text.box))
+            continue
         card = next((item for item in around if item.role in ("card", "label-card", "frame")), None)
         if card is None or not card.box.grown(-1).contains(text.box):
             yield f"a text leaves its card: {text}"

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 import random
 import re
 from collections.abc import Iterator
@@ -14,9 +15,12 @@ from ide_models import CORNERS, ROBOT, load, system_file
 
 from fixture import split_files
 from roaml.figures.drawing import TextItem
-from roaml.figures.layout import LayoutDirection
+from roaml.figures.geometry import Box, Point
+from roaml.figures.layout import LayoutDirection, Route
 from roaml.ide.diagrams import (
+    Detail,
     DetailKind,
+    DiagramEdge,
     DiagramKind,
     DiagramNode,
     DiagramNodeKind,
@@ -32,6 +36,7 @@ from roaml.ide.diagrams import (
     tree_picture,
     with_provided_interfaces,
 )
+from roaml.ide.diagrams.drawings.line_names import LineNames
 from roaml.ide.picture_edits import PictureAction
 from roaml.mocks.mock import read_mock
 from roaml.project.analysis import Analysis
@@ -628,6 +633,46 @@ def test_a_large_graph_has_fewer_cards(tmp_path: Path) -> None:
     assert len(through) == len(picture.edges) == 6
     for direction in LayoutDirection:
         assert problems(picture, draw(DiagramKind.ROS, picture, direction)) == []
+
+
+def test_interfaces_are_named_beside_lines_that_do_not_end_at_their_row() -> None:
+    kind, service = DiagramNodeKind.ROS_NODE, DiagramNodeKind.SERVICE
+    rows = [Detail(DetailKind.INTERFACE, f"/Server/{name}", service.value) for name in ("go", "halt", "reset")]
+    nodes = [DiagramNode(name, kind, name, (Detail(DetailKind.COUNT, "node"),)) for name in ("Client", "Middle")]
+    server = DiagramNode("Server", kind, "Server", (Detail(DetailKind.COUNT, "node"), *rows))
+    go, all_three = ("/Server/go",), ("/Server/go", "/Server/halt", "/Server/reset")
+    edges = [
+        DiagramEdge(source, target, EdgeKind.CALLS, labels, interface=service)
+        for source, target, labels in (
+            ("Client", "Middle", ("/other",)),
+            ("Middle", "Server", go),
+            ("Client", "Server", all_three),
+        )
+    ]
+    picture = Picture("main.xml", (*nodes, server), tuple(edges))
+    drawing = draw(DiagramKind.ROS, picture, LayoutDirection.RIGHT)
+    assert problems(picture, drawing) == []
+    texts = {item.text for groups, item in drawing.walk() if isinstance(item, TextItem) and groups[-1].edges == (2,)}
+    assert texts == {"go, halt +1"}
+    assert not any(group.role == "line-name" and group.edges == (1,) for group in drawing.groups)
+
+
+def test_names_beside_lines_cover_nothing() -> None:
+    """A name is above its line, below it if a card is there, and left out if there is no space."""
+    route = Route(((Point(0, 50), Point(200, 50)),))
+    above, below = Box(0, 20, 200, 25), Box(0, 55, 200, 25)
+    for solid, is_named in (([], True), ([above], True), ([below], True), ([above, below], False)):
+        text = LineNames(solid, [route], 200, 100).place("/scan", route)
+        assert (text is not None) == is_named
+        if text is not None:
+            assert (text.box.bottom < 50) == (above not in solid)
+            assert not any(box.overlaps(text.box) for box in solid)
+    names = LineNames([], [route], 200, 100)
+    places = [names.place("/scan", route) for _ in range(9)]
+    boxes = [text.box for text in places if text is not None]
+    assert 2 < len(boxes) < 9
+    assert not any(a.overlaps(b) for a, b in itertools.combinations(boxes, 2))
+    assert LineNames([], [route], 200, 100).place("n" * 60, route) is None
 
 
 def test_a_part_of_a_ros_graph_with_namespaces(tmp_path: Path) -> None:

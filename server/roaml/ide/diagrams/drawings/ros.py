@@ -2,24 +2,29 @@
 """The drawing of a ROS graph: nodes and plugins, the interfaces between them, and plain events.
 
 The color of a line shows whether it represents a topic, a service, an action, or plain events. Its arrow points to the
-receiver. A namespace is a frame around what is in it; a collapsed one is a card.
+receiver. A namespace is a frame around what is in it; a collapsed one is a card. If interfaces are rows of cards, their
+names are also beside the lines, where there is space, except those of lines that end at their row.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from roaml.figures.drawing import Drawing, Group, Outline, Polyline, Shape, Tone
-from roaml.figures.geometry import Box
-from roaml.figures.layout import Boxes, LayoutDirection, Link, nested
+from roaml.figures.geometry import Box, Point
+from roaml.figures.layout import Boxes, Layout, LayoutDirection, Link, nested
 from roaml.ide.diagrams.diagram import DetailKind, DiagramEdge, DiagramNode, DiagramNodeKind, EdgeKind, Picture
 from roaml.ide.diagrams.drawings.cards import Card, Row, paragraph, title
 from roaml.ide.diagrams.drawings.changes import is_marked, kind_of, signed, tone_of
+from roaml.ide.diagrams.drawings.line_names import LineNames
 
 CARD_WIDTH = {LayoutDirection.RIGHT: 220.0, LayoutDirection.DOWN: 140.0}
 """The maximum widths of lines of text in cards, in pixels. They are smaller if nodes are drawn side by side."""
 LABEL_WIDTH = 150.0
 """The maximum width of lines of text in labels, in pixels."""
+MAX_NAMES = 2
+"""The maximum number of names beside a line."""
+_NEAR = 2.0
 _ASPECT = {LayoutDirection.RIGHT: 1.8, LayoutDirection.DOWN: 0.8}
 _CHANNELS: Mapping[DiagramNodeKind, Tone] = {
     DiagramNodeKind.TOPIC: Tone.TOPIC,
@@ -67,12 +72,52 @@ def draw_ros(picture: Picture, direction: LayoutDirection) -> Drawing:
         if label and route.label:
             shape = Shape(route.label, Outline.ROUNDED, "label-card")
             groups.append(Group("label", tone, (shape, *label.items(route.label))))
+    groups += _line_names(shown, layout, nodes, cards)
     groups += [
         _node(node, number, cards[node.id], layout.nodes[node.id])
         for number, node in enumerate(picture.nodes)
         if node.id not in framed
     ]
     return Drawing(layout.size, tuple(groups), {index[name]: box for name, box in layout.nodes.items()})
+
+
+def _line_names(
+    shown: Sequence[tuple[int, DiagramEdge]],
+    layout: Layout,
+    nodes: Mapping[str, DiagramNode],
+    cards: Mapping[str, Card],
+) -> Iterator[Group]:
+    """The names of the interfaces through which lines lead, beside the lines."""
+    # Of a frame, the size of its card is that of its heading.
+    solid = [Box(box.x, box.y, *cards[name].size) for name, box in layout.nodes.items()]
+    solid += [route.label for route in layout.routes if route.label]
+    places = LineNames(solid, layout.routes, *layout.size)
+    for (number, edge), route in zip(shown, layout.routes, strict=True):
+        ends = ((edge.source, route.parts[0][0]), (edge.target, route.parts[-1][-1]))
+        if edge.interface is None or any(_is_at_row(edge, nodes[n], cards[n], layout.nodes[n], p) for n, p in ends):
+            continue
+        text = places.place(_interfaces(edge, nodes[edge.source], nodes[edge.target]), route)
+        if text:
+            tone = _tone(edge, nodes[edge.source], nodes[edge.target])
+            yield Group("line-name", tone, (text,), edges=(number,))
+
+
+def _is_at_row(edge: DiagramEdge, node: DiagramNode, card: Card, box: Box, end: Point) -> bool:
+    """Whether a line ends at the row for its only interface."""
+    row = _row_of(edge, node, card)
+    return len(edge.labels) == 1 and row is not None and abs(box.y + box.height / 2 + row - end.y) < _NEAR
+
+
+def _interfaces(edge: DiagramEdge, source: DiagramNode, target: DiagramNode) -> str:
+    """The names of the interfaces of a line, without those of its nodes; at most `MAX_NAMES`."""
+    owners = {text for node in (source, target) for text in (node.label, *(detail.text for detail in node.details))}
+    names = []
+    for label in edge.labels:
+        owner, _, name = label.removeprefix("/").partition("/")
+        names.append(name if name and owner in owners else label)
+    names = list(dict.fromkeys(names))
+    more = f" +{len(names) - MAX_NAMES}" if len(names) > MAX_NAMES else ""
+    return ", ".join(names[:MAX_NAMES]) + more
 
 
 def _frame(node: DiagramNode, number: int, cards: Mapping[str, Card], places: Mapping[str, Box]) -> Group:
