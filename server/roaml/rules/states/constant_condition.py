@@ -105,7 +105,7 @@ def check_properties(file: LinkedFile) -> Iterator[Finding]:
                 if of_type is not None:
                     holds, message = of_type
                     # As a part, `x >= 0` states a range completely: `x >= 0 && x <= 9`.
-                    is_range = holds and node is not expression.tree and value in INTEGER_RANGES[type_.name]
+                    is_range = holds and node is not expression.tree and value in INTEGER_RANGES[str(type_)]
                     yield RULE.at(node.span, message, severity=Severity.INFORMATION if is_range else None)
                     continue
                 if known is None or known.value is not None:

@@ -22,7 +22,7 @@ _MAX_NODES = 20
 def check(context: TreeContext) -> Iterator[Finding]:
     for tree in context.file.trees:
         for node in nodes(tree):
-            if len(node.children) > _MIN_ALIKE:
+            if len(node.children) > 1:
                 yield from _odd_branch(context, node.children)
 
 
@@ -38,12 +38,34 @@ def _odd_branch(context: TreeContext, branches: Sequence[TreeNode]) -> Iterator[
         by_shape: dict[tuple[str, ...], list[TreeNode]] = defaultdict(list)
         for branch in alike:
             by_shape[_shape(branch)].append(branch)
+        if len(alike) == 2 and len(by_shape) == 2 and _are_numbered(alike):
+            yield from _inverted_once(context, alike)
         most = max(by_shape.values(), key=len)
         if len(most) >= _MIN_ALIKE and len(alike) == len(most) + 1:
             (odd,) = (branch for branch in alike if branch not in most)
             is_end = odd in (alike[0], alike[-1])
             if _are_alike([*most, odd]) and not (is_end and _delays(odd) != _delays(most[0])):
                 yield from _compare(context, odd, most[0])
+
+
+def _are_numbered(branches: Sequence[TreeNode]) -> bool:
+    """Whether the names of all leaves of two branches differ only in a number: `IsDone1`, `Visit1` and `IsDone2`,
+    `Visit2`."""
+    first, second = ([node.name.value for node in _inside(b) if not node.children and node.name] for b in branches)
+    leaves = sum(not node.children for node in _inside(branches[0]))
+    different = [difference(a, b) for a, b in zip(first, second, strict=False)]
+    return leaves == len(first) == len(second) and all(
+        words is not None and all(word.isdigit() for word in words) for words in different
+    )
+
+
+def _inverted_once(context: TreeContext, branches: Sequence[TreeNode]) -> Iterator[Finding]:
+    """Report the `Inverter` that one of two numbered branches lacks."""
+    first, second = branches
+    for odd, usual in ((first, second), (second, first)):
+        names = [node.type_name for node in _inside(usual)]
+        if sorted(names) == sorted([*(node.type_name for node in _inside(odd)), "Inverter"]):
+            yield from _compare(context, odd, usual)
 
 
 def _delays(branch: TreeNode) -> int:
@@ -72,7 +94,7 @@ def _compare(context: TreeContext, odd: TreeNode, usual: TreeNode) -> Iterator[F
         ((odd, usual),) = different
     name, other = odd.type_name, usual.type_name
     if len(usual.children) == 1 and _shape(usual.children[0]) == _shape(odd):
-        message = f"`{name}` has no `{other}` here, as in all similar branches; add it"
+        message = f"`{name}` has no `{other}` here, unlike the similar branches; add it"
         fixes = () if usual.element.attributes or not usual.compact else (_within(context, odd, other),)
     elif len(odd.children) == 1 and _shape(odd.children[0]) == _shape(usual):
         message = f"only this branch has a `{name}` here; all similar branches have none"

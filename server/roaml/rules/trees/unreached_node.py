@@ -21,6 +21,8 @@ def check(context: TreeContext) -> Iterator[Finding]:
     for _, node in forest.own_nodes:
         if node.plugin is not None and forest.known_node(node) is CPP.nodes.get(node.plugin.value):
             yield from _of_switch(node)
+        if node.plugin is not None and node.plugin.value == _RECOVERY and forest.known_node(node) is not None:
+            yield from _of_recovery(node)
     possible = statuses_of(forest)
     for tree in context.file.trees:
         for root in tree.roots:
@@ -28,6 +30,20 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 message = f"this node is never ticked: `{before.type_name}` before it never returns {needed}"
                 related = [Related(before.element.name_span, f"never returns {needed}")]
                 yield RULE.at(node.element.name_span, message, related=related, tags=(Tag.UNNECESSARY,))
+
+
+_RECOVERY = "RecoveryNode"
+
+
+def _of_recovery(node: TreeNode) -> Iterator[Finding]:
+    """Report the recovery of a node that never tries again (docs/spec/nodes.md#control)."""
+    for setting in node.ports:
+        is_zero = setting.attribute.name == "number_of_retries" and setting.value.value.strip() == "0"
+        if is_zero and len(node.children) == 2:
+            message = "with 0 retries, the second child, which is the recovery, is never ticked"
+            yield RULE.at(
+                setting.value.span, message, related=[Related(node.children[1].element.name_span, "never ticked")]
+            )
 
 
 def _of_switch(node: TreeNode) -> Iterator[Finding]:
