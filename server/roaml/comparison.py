@@ -45,6 +45,21 @@ def read_comparison(text: str) -> Comparison | None:
     return None if match is None or math.isnan(number) else Comparison(_SPELLINGS[match[1]], number)
 
 
+def effect_on_probabilities(comparison: Comparison) -> str:
+    """What every probability does with an expectation: "always met" or "never met"; "" if it depends on the
+    probability."""
+    number, is_equality = comparison.number, comparison.relation == "=="
+    if is_equality:
+        return "" if 0 <= number <= 1 else "never met"
+    is_lower = comparison.relation in (">=", ">")
+    is_strict = comparison.relation in (">", "<")
+    beyond_all = number - 1 if is_lower else -number  # 0 at the last probability that can meet it
+    beneath_all = -number if is_lower else number - 1
+    if beyond_all > 0 or (beyond_all == 0 and is_strict):
+        return "never met"
+    return "always met" if beneath_all > 0 or (beneath_all == 0 and not is_strict) else ""
+
+
 def as_written(value: float) -> str:
     """A number that a user has written, with all of its digits."""
     text = f"{value:g}"

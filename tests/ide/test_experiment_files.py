@@ -82,6 +82,12 @@ def test_a_right_file_has_no_findings(folder: Path) -> None:
         ('"main.xml"', '"mian.xml"', '"mian.xml"', "there is no file `mian.xml`; paths are relative to the folder"),
         ('model = "main.xml"\n', "", "p", "the file names no model; add `model ="),
         (ASKED, 'find = "capasity"\n' + MEETS, '"capasity"', "has no values to try; add it to `set`; did you"),
+        (
+            ASKED,
+            'find = "capacity"\n' + MEETS.replace("0.99", "99"),
+            '"all_delivered >= 99"',
+            "`all_delivered` is a probability, which is from 0 to 1, so this is never met; change it",
+        ),
         (ASKED, 'find = "capacity"\n', "find", "`find` needs `meets`, such as"),
         (ASKED, MEETS, "meets", "`meets` needs `find`, the parameter"),
         ("scheduler", f'find = "capacity"\n{MEETS}scheduler', "property", "computes the property in `meets`; remove"),

@@ -13,12 +13,13 @@ import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any
 
+from roaml.comparison import Comparison, effect_on_probabilities
 from roaml.diagnostics import Finding, Fix
 from roaml.disk import UnreadableReason
 from roaml.model.config_files import CONFIG_FILE, CONFIG_FILES, PROJECT_FILE
 from roaml.project.files import MAX_CHARACTERS, DiskFiles
 from roaml.project.settings import Folder, SettingProblem, Settings, folders_above, folders_in, settings_from
-from roaml.record import Record, replace
+from roaml.record import Record, field, replace
 from roaml.regex import regex
 from roaml.suggest import close_names, did_you_mean
 from roaml.text import SourceFile, Span, TextEdit
@@ -33,12 +34,14 @@ class Configuration(Record, frozen=True):
         findings: the errors that do not depend on the disk.
         folders: the folders that the file names, with their positions.
         expected: the names of the properties whose results are expected, with their positions.
+        expectations: these names -> the expectations.
     """
 
     table: Mapping[str, Any] | None
     findings: tuple[Finding, ...] = ()
     folders: tuple[tuple[Span, Folder], ...] = ()
     expected: tuple[tuple[Span, str], ...] = ()
+    expectations: Mapping[str, Comparison] = field(default_factory=dict)
 
 
 def read_configuration(source: SourceFile) -> Configuration:
@@ -73,6 +76,7 @@ def read_configuration(source: SourceFile) -> Configuration:
         findings,
         tuple((_span(source, known, (*prefix, *f.path)), f) for f in folders),
         tuple((span, name) for name, span in expected.items() if span is not None),
+        settings.expectations,
     )
 
 
@@ -88,6 +92,16 @@ def unknown_expectations(source: SourceFile, configuration: Configuration, names
         if close:
             message = f"no system has a property `{name}`, so nothing is expected{did_you_mean(close)}"
             yield Finding("unknown-expectation", span, message, fixes=_renamed(source, span, close))
+
+
+def vacuous_expectations(configuration: Configuration, probabilities: Collection[str]) -> Iterator[Finding]:
+    """A finding for each expectation of a probability that all probabilities meet, or none does."""
+    for span, name in configuration.expected:
+        comparison = configuration.expectations.get(name)
+        effect = effect_on_probabilities(comparison) if comparison is not None and name in probabilities else ""
+        if effect:
+            message = f"every probability is from 0 to 1, so this expectation is {effect}; change it"
+            yield Finding("vacuous-expectation", span, message)
 
 
 _PARAMETER = regex(r"\$\([^)]*\)")

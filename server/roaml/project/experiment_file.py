@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 from typing import Any
 
+from roaml.comparison import effect_on_probabilities, read_comparison
 from roaml.diagnostics import Finding, Fix
 from roaml.exact_number import exact_fraction
 from roaml.jani.property_text import is_property_text
@@ -24,6 +25,7 @@ from roaml.text import SourceFile, Span, TextEdit
 from roaml.toml import Path, Places, TomlError, loads, places
 
 MODEL, SET, UNIT, PROPERTY, FIND, MEETS, RESUME = "model", "set", "unit", "property", "find", "meets", "resume"
+_ASKED = regex(r"\s*(\S+)\s*([<>=≤≥].*)")
 _MODEL = regex(r"^[ \t]*model[ \t]*=[ \t]*([\"'])([^\"'\n]+)\1", re.MULTILINE)
 
 
@@ -116,12 +118,14 @@ class AskedModel(Record, frozen=True):
     """The names that an experiment with a system can use: its parameters and properties.
 
     Attributes:
+        probabilities: the properties whose results are probabilities.
         bounds: parameter of the system -> its least and its greatest value, included; `None` if there is none.
     """
 
     parameters: tuple[str, ...]
     properties: tuple[str, ...]
     bounds: Mapping[str, tuple[Fraction | None, Fraction | None]] = field(default_factory=dict)
+    probabilities: frozenset[str] = frozenset()
 
 
 def key_name(written: str) -> str:
@@ -226,6 +230,14 @@ class _Reader:
                 close = close_names(name, swept)
                 text = f"`{name}` is not a parameter of this experiment{did_you_mean(close)}"
                 yield self._at(span, path, text, close)
+        meets = table.get(MEETS)
+        asked = _ASKED.fullmatch(meets) if isinstance(meets, str) else None
+        comparison = read_comparison(asked[2]) if asked is not None and asked[1] in names.probabilities else None
+        if comparison is not None and (effect := effect_on_probabilities(comparison)):
+            text = (
+                f"`{asked[1] if asked else ''}` is a probability, which is from 0 to 1, so this is {effect}; change it"
+            )
+            yield self._at(None, (MEETS,), text)
         find = table.get(FIND)
         if isinstance(find, str) and find not in swept:
             close = close_names(find, swept)

@@ -130,6 +130,7 @@ class Analysis:
     def _open_systems(self, systems: Systems, machines: Machines, gaps: Gaps, linking: Linking) -> None:
         self.system_paths = systems.paths
         self.property_names = systems.property_names
+        self.probabilities = systems.probabilities
         self.listed = systems.listed
         self.kind_in = systems.kind_in
         self.tree_paths = systems.tree_paths
@@ -166,9 +167,10 @@ def _asked(systems: Systems, expanded: Callable[[str], Expanded[Analysis] | None
         return None
     made = expanded(model)
     if made is None:
-        return AskedModel((), systems.property_names(model))
+        return AskedModel((), systems.property_names(model), {}, systems.probabilities(model))
     bounds = {parameter.name.value: bounds_of(parameter) for parameter in made.expansion.declared}
-    return AskedModel(tuple(sorted(made.expansion.settable)), made.analysis.property_names(model), bounds)
+    parameters, analysis = tuple(sorted(made.expansion.settable)), made.analysis
+    return AskedModel(parameters, analysis.property_names(model), bounds, analysis.probabilities(model))
 
 
 def _analysed(registry: Registry, overrides: Overrides, trees: TreeSettings, made: ExpandedFiles) -> Expanded[Analysis]:

@@ -38,7 +38,7 @@ from roaml.project.analysis.symbols import symbol_name
 from roaml.project.analysis.systems import Systems
 from roaml.project.analysis.tree_files import TreeFiles
 from roaml.project.analysis.values import ReachedValues
-from roaml.project.configuration import missing_folders, unknown_expectations
+from roaml.project.configuration import missing_folders, unknown_expectations, vacuous_expectations
 from roaml.project.files import MAX_CHARACTERS
 from roaml.project.paths import folder_of, slashed
 from roaml.project.ros_types import Interfaces
@@ -414,7 +414,11 @@ class _Reader:
             return ()
         names = self.rooms.systems.property_names_below(folder_of(self.path)) if configuration.expected else ()
         unknown = unknown_expectations(self.source, configuration, names)
-        return (*configuration.findings, *missing_folders(configuration), *unknown)
+        probabilities = (
+            self.rooms.systems.probabilities_below(folder_of(self.path)) if configuration.expected else frozenset()
+        )
+        vacuous = vacuous_expectations(configuration, probabilities)
+        return (*configuration.findings, *missing_folders(configuration), *unknown, *vacuous)
 
     def _grammar(self) -> Grammar | None:
         if self.kind is FileKind.MACHINE:

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 
 from roaml.disk import UnreadableReason
+from roaml.jani.properties import Filter, Probability
 from roaml.model.expand import ListedTree, TreeFileOutline
 from roaml.model.kinds import EXTENSIONS, FileKind
 from roaml.model.system_file import ListedFile, SystemInput, SystemSection, required_kind
@@ -167,6 +168,33 @@ class Systems:
                 and (before := self._sources.property_file(listed.path)) is not None
             ):
                 yield from ((written.id.value, file) for written in before.properties if written.id is not None)
+
+    def probabilities(self, system: str) -> frozenset[str]:
+        """The names of the properties of a system whose results are probabilities."""
+        kinds: dict[str, bool] = {}
+        for listed in self.listed(system):
+            if not listed.usable:
+                continue
+            if listed.required_kind is FileKind.PROPERTIES:
+                for property_ in self._sources.properties(listed.path)[0]:
+                    expression = property_.expression
+                    inner = expression.values if isinstance(expression, Filter) else expression
+                    kinds[property_.name] = isinstance(inner, Probability) and kinds.get(property_.name, True)
+            elif (
+                listed.required_kind is FileKind.XML_PROPERTIES
+                and (file := self._sources.property_file(listed.path)) is not None
+            ):
+                for written in file.properties:
+                    if written.id is not None:
+                        kinds.setdefault(written.id.value, True)
+        return frozenset(name for name, is_probability in kinds.items() if is_probability)
+
+    def probabilities_below(self, folder: str) -> frozenset[str]:
+        """The names of the properties in a folder whose results are probabilities in all systems that have them."""
+        inside = [system for system in self.paths if is_below(system, folder)]
+        of_systems = [(self.probabilities(system), self.property_names(system)) for system in inside]
+        others = {name for known, names in of_systems for name in names if name not in known}
+        return frozenset().union(*(known for known, _ in of_systems)) - others
 
     def property_names_below(self, folder: str) -> frozenset[str]:
         """The names of the properties of all systems in a folder."""
