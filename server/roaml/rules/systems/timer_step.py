@@ -59,6 +59,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
             words = words_of(place) if place is not None else []
             unit = _unit(words) if _SETTINGS.isdisjoint(words) else None
             if name in rates and place is not None and unit is not None and isinstance(statement.value, Expression):
+                if _is_at_some_ticks(context, chart, name, statement, place):
+                    continue
                 steps.setdefault(name, []).append(_Step(place, statement.value.span, amount * unit))
         for name, of_timer in steps.items():
             yield from _findings(name, *rates[name], of_timer)
@@ -124,6 +126,26 @@ def _steps(chart: Chart, fixed: Mapping[str, PortRead | Fraction]) -> Iterator[t
                     step = _step(statement.value.tree, place_of(statement.location.tree), fixed)
                     if step is not None and step > 0:
                         yield handler.handle.value, statement, step
+
+
+def _is_at_some_ticks(context: MachineContext, chart: Chart, timer: str, statement: Assign, place: str) -> bool:
+    """Whether an assignment is executed only at some ticks of a timer: in a handler or branch whose condition reads
+    another variable that ticks of this timer assign, such as their number."""
+    counted = {
+        name
+        for state in chart.states
+        for handler in state.handlers
+        if handler.trigger is ProtocolPart.TICK and handler.handle is not None and handler.handle.value == timer
+        for target in handler.targets
+        for s in statements(target.body)
+        if isinstance(s, Assign) and s.location is not None and (name := place_of(s.location.tree)) is not None
+    } - {place}
+    own = next((v.place for v in context.typed.values if v.value is statement.value), None)
+    if own is None:
+        return False
+    conditions = [condition for condition, _ in own.branch_conditions or ()]
+    conditions += [own.handler.cond] if own.handler is not None and own.handler.cond is not None else []
+    return any(place_of(node) in counted for condition in conditions for node in walk(condition.tree))
 
 
 def _step(tree: Expr, place: str | None, fixed: Mapping[str, PortRead | Fraction]) -> Fraction | None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from roaml.diagnostics import Finding, Related, Severity
@@ -28,6 +29,9 @@ _RECEIVED = (ProtocolPart.MESSAGE, ProtocolPart.REQUEST, ProtocolPart.GOAL)
 
 _PREVIOUS = ("previous", "prev", "last", "old")
 """The first word of a variable that should keep the last value of another one."""
+
+_VALUE_NAMES = frozenset(("default", "empty", "false", "initial", "nil", "none", "nothing", "null", "off", "zero"))
+"""Words in the names of constants that are 0, false or empty."""
 
 _SENT = (ValueUse.FIELD, ValueUse.PARAMETER)
 
@@ -73,6 +77,8 @@ def _constant(
     elif statements:
         message = f"`{name}` is always {shown}, because all assignments assign its initial value; assign other values"
         yield RULE.at(data.id.span, message)
+    elif not _VALUE_NAMES.isdisjoint(words_of(name)) or _is_reset_value(context, chart, name):
+        return  # a named constant
     else:
         unread = next(_unread(context, chart, name), None)
         if unread is not None:
@@ -81,6 +87,26 @@ def _constant(
         elif _is_counted(context, chart, name):
             message = f"`{name}` is always {shown}, because nothing assigns it, although a condition limits it"
             yield RULE.at(data.id.span, f"{message} and it is sent; assign the values that it should get")
+
+
+def _is_reset_value(context: MachineContext, chart: Chart, name: str) -> bool:
+    """Whether a variable is used like a constant: other variables, which also get other values, are set to it, and else
+    it is only compared."""
+    reset = [
+        s.location.text.strip()
+        for s in chart.statements
+        if isinstance(s, Assign) and s.location is not None and isinstance(s.value, Expression)
+        if isinstance(s.value.tree, Name) and s.value.tree.name == name
+    ]
+    assigned = Counter(s.location.text.strip() for s in chart.statements if isinstance(s, Assign) and s.location)
+    if not reset or any(assigned[place] == reset.count(place) for place in reset):
+        return False
+    return all(
+        v.use in CONDITIONS or (v.use is ValueUse.ASSIGNED and isinstance(v.value.tree, Name))
+        for v in context.typed.values
+        if v.place.chart is chart and isinstance(v.value, Expression) and v.use is not ValueUse.LOCATION
+        if name in _variables(v.value)
+    )
 
 
 def _is_counted(context: MachineContext, chart: Chart, name: str) -> bool:
