@@ -150,9 +150,11 @@ def _run_tree(
     from roaml.experiments.exact_trees import NotMeasuredError, measure_exactly  # noqa: PLC0415
     from roaml.verification.tree_outcome import (  # noqa: PLC0415 - systems start faster without it
         TRACES,
+        affordable_traces,
         measure,
     )
 
+    has_default = limits.max_traces is None
     if limits.method is EstimationMethod.ADAPTIVE:  # the number is fixed, because all measurements use the same traces
         epsilon = WIDTH_OF_TREES if limits.epsilon == Options().epsilon else limits.epsilon
         limits = replace(limits, method=EstimationMethod.FIXED, max_traces=limits.max_traces or TRACES, epsilon=epsilon)
@@ -174,6 +176,8 @@ def _run_tree(
                 except NotMeasuredError as error:
                     outcome = str(error)
             is_exact = not isinstance(outcome, str)
+            if has_default and not is_exact:
+                limits = replace(limits, max_traces=affordable_traces(tree.mocked, tree.target, limits))
             status.stage("compiling")
             names = options.property or [SUCCEEDS]
             verifier = api.verifier(

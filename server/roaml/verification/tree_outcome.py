@@ -43,6 +43,12 @@ from roaml.verification.target import VerificationTarget
 
 TRACES = 1000
 """The default number of traces."""
+LEAST_TRACES = 100
+"""The default number of traces of a tree whose runs are long, and hence take more than `MAX_STEPS` steps in all."""
+MAX_STEPS = 30_000_000
+_PILOTS = 5
+"""How many further traces determine how long runs are. They are not part of the measurements, so that the number of
+traces does not depend on these."""
 QUANTILES = (0.5, 0.9, 0.99)
 COUNTERS = ("recoveries", "failed_attempts")
 SUCCESS, FAILURE, RUNNING, SKIPPED, HELD = 1, 2, 3, 4, 5
@@ -171,6 +177,15 @@ def measure(mocked: MockedTree, target: VerificationTarget, options: Options) ->
     return _Measuring(mocked, target, options).run()
 
 
+def affordable_traces(mocked: MockedTree, target: VerificationTarget, options: Options) -> int:
+    """The default number of traces for a tree, which is smaller if its runs are long.
+
+    Raises:
+        ValueError: see `measure`.
+    """
+    return _Measuring(mocked, target, options).affordable()
+
+
 class _Measuring:
     def __init__(self, mocked: MockedTree, target: VerificationTarget, options: Options) -> None:
         self.mocked, self.target, self.options = mocked, target, options
@@ -229,6 +244,11 @@ class _Measuring:
             influences=self.influences(leaves, scores, [answer == SUCCESS for answer in answers]),
             shortest=None if shortest is None else shortest[0],
         )
+
+    def affordable(self) -> int:
+        """The default number of traces, which is smaller if runs are long."""
+        steps = max(1, sum(self.trace(TRACES + pilot)[1] for pilot in range(_PILOTS)) // _PILOTS)
+        return min(TRACES, max(LEAST_TRACES, MAX_STEPS // steps))
 
     def trace(self, number: int) -> tuple[int, int, bool, bool]:
         """The result of a trace: the status that the tree returned last (0 if it has not ended), the number of steps,
