@@ -6,13 +6,15 @@ from __future__ import annotations
 from roaml.record import Record
 
 NANOSECONDS = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}
-"""Unit of time -> its length in ns, the longest first."""
+"""Unit of time in models -> its length in ns, the longest first."""
+UNITS = {"h": 3600 * 10**9, "min": 60 * 10**9, **NANOSECONDS}
+"""Unit of time in texts of users -> its length in ns."""
 ANY, INSTANT = "any", "instant"
 REACTION_TIME = "a reaction time must be `any`, `instant`, or a duration such as `20 ms`"
 
 
 def duration(text: str) -> int | None:
-    """The duration in `text`, in ns; `None` if `text` is not a duration above 0, such as `100 s` or `250ms`."""
+    """The duration in `text`, in ns; `None` if `text` is not a duration above 0, such as `100 s` or `5min`."""
     return _nanoseconds(text) or None
 
 
@@ -87,7 +89,7 @@ def _nanoseconds(text: str) -> int | None:
     number = text.strip().rstrip("abcdefghijklmnopqrstuvwxyz")
     unit = text.strip().removeprefix(number)
     value = integer(number.strip())
-    return value * NANOSECONDS[unit] if value is not None and unit in NANOSECONDS else None
+    return value * UNITS[unit] if value is not None and unit in UNITS else None
 
 
 def integer(text: str) -> int | None:

@@ -216,7 +216,7 @@ def test_parameters(command: Command, robot: Path) -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (("--max-time", "5"), "a time must be a whole number and s, ms, us or ns"),
+        (("--max-time", "5"), "a time must be a whole number and h, min, s, ms, us or ns"),
         (("--max-time", "0 s"), "a time must be"),
         (("--max-array-size", "0"), "a whole number of at least 1"),
         (("--indent", "-1"), "from 0 to 16"),

@@ -16,7 +16,7 @@ def time_of(text: str) -> int:
     """
     value = duration(text)
     if value is None:
-        raise argparse.ArgumentTypeError("a time must be a whole number and s, ms, us or ns, such as '100 s'")
+        raise argparse.ArgumentTypeError("a time must be a whole number and h, min, s, ms, us or ns, such as '100 s'")
     return value
 
 

@@ -75,7 +75,9 @@ def as_text(
         and not estimated.answer.question.asks_for_extreme_state
     ]
     unexpected = _without_expectation(results) if is_whole or any(result.verdicts for result in results) else []
-    note = scheduler_report.note(unknown, knows_reactions=any(result.conditional for result in results))
+    opened = {r.name for r in results if r.answer is not None and activity_report.open_at_end(r.answer.tally)}
+    knows_reactions = any(result.conditional for result in results)
+    note = scheduler_report.note(unknown, opened=opened, knows_reactions=knows_reactions)
     return "".join(f"{line}\n" for line in (*blocks, *unexpected, *met_only_uniformly(results), *note))
 
 
@@ -450,6 +452,7 @@ def row(result: Result) -> dict[str, Any]:
             "expected": verdict.expectation.text,
             "met": verdict.is_met,
             "certain": verdict.is_certain,
+            **({"open": True} if verdict.is_open else {}),
             "under_uniform_choices_only": verdict.is_uniform,
             **({"uniform": str(verdict.policy)} if verdict.is_uniform else {}),
             **({"not_met": verdict.under} if verdict.under else {}),
@@ -489,7 +492,9 @@ def _growing_rows(growing: Sequence[GrowingVariable]) -> list[dict[str, Any]]:
 def _verdict(result: Result) -> str:
     if not result.has_answer:
         return "no answer"
-    return NO_EXPECTATION if result.has_no_expectation else "met" if result.is_met else "not met"
+    if result.has_no_expectation:
+        return NO_EXPECTATION
+    return "met" if result.is_met else "undecided" if result.is_open else "not met"
 
 
 def warning(result: Result) -> str:

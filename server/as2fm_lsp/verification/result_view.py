@@ -27,7 +27,8 @@ class ResultMark(Enum):
     Attributes:
         UNIFORM: the expectation is met under uniform choices only, which a warning reports.
         OPEN: no expectation.
-        UNDECIDED: neither an expectation nor a value for all schedulers.
+        UNDECIDED: neither an expectation nor a value for all schedulers, or an expectation that undecided traces leave
+            open.
         DOUBTFUL: traces got stuck.
     """
 
@@ -52,6 +53,8 @@ SYMBOLS = {
 def mark_of(result: Result) -> ResultMark:
     if result.stuck:
         return ResultMark.DOUBTFUL
+    if result.is_open:
+        return ResultMark.UNDECIDED
     if missed(result):
         return ResultMark.FAILED
     if any(verdict.is_warned_about for verdict in result.verdicts):

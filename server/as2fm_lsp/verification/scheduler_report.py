@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any
 
 from roaml.smc.choices import Choices, Extreme, ExtremeMethod
@@ -103,17 +103,30 @@ def warning(question: Question, choices: Choices | None) -> str:
     return text.removeprefix("warning: ") if text.startswith("warning: ") else ""
 
 
-def note(entries: Sequence[tuple[Question, Choices]], *, knows_reactions: bool = False) -> list[str]:
+def note(
+    entries: Sequence[tuple[Question, Choices]], *, opened: Collection[str] = (), knows_reactions: bool = False
+) -> list[str]:
     """A note about properties whose minimum or maximum may differ from their values, in one line for each reason, and
     what to do. Properties whose schedulers are known to have different values have a warning instead of a line.
 
     Args:
         entries: the properties whose minimum or maximum is not known, with what is known about other schedulers;
             without entries, there are no lines.
+        opened: the names of those for which all states give no value either, because the time ends before a deadline.
         knows_reactions: whether values for another reaction time are shown.
     """
     if not entries:
         return []
+    lines = []
+    if unclear := [question.name for question, choices in entries if question.name in opened and not choices.differ]:
+        why = "the time ends before a deadline in some traces, and --exhaustive does not decide these either"
+        lines.append(f"note: the minimum or maximum of {_listed(unclear)} over all schedulers is not known ({why})")
+    entries = [(question, choices) for question, choices in entries if question.name not in opened]
+    return lines + (_note_of_others(entries, knows_reactions=knows_reactions) if entries else [])
+
+
+def _note_of_others(entries: Sequence[tuple[Question, Choices]], *, knows_reactions: bool) -> list[str]:
+    """The lines of `note` about properties for which all states may give a value."""
     names: dict[tuple[str, str], list[str]] = {}
     tried: dict[tuple[str, str], int] = {}
     explored: dict[tuple[str, str], int] = {}

@@ -28,6 +28,10 @@ class NoValueError(Exception):
     reason."""
 
 
+class OpenDeadlineError(NoValueError):
+    """Raised if the time ends before a deadline of the property in some traces."""
+
+
 class GoalValues(Record, frozen=True):
     """The values that a property asks for, enclosed by bounds.
 
@@ -75,9 +79,9 @@ class _Question:
         if any(bound == AT_END for bound in self.goal.lower):
             _, share = self.solver(MAXIMUM).probability(UNKNOWN, codes.OPEN, NOTHING)
             if share > _OPEN_SHARE:
-                raise NoValueError(
-                    "the time ends (`max_time`) before a deadline of the property; the probability of this is up to "
-                    f"{share:.6g}"
+                raise OpenDeadlineError(
+                    f"in traces with a probability of up to {share:.6g}, the time ends (`max_time`) before a deadline "
+                    "of the property"
                 )
         minimum, maximum = self.bounds(MINIMUM), self.bounds(MAXIMUM)
         return GoalValues(minimum, maximum, self.uniform(), self.is_precise)

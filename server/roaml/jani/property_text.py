@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from typing import Any, TypeAlias
 
+from roaml.durations import UNITS
 from roaml.jani.selection import PropertyError
 from roaml.record import Record, replace
 from roaml.regex import regex
@@ -35,7 +36,6 @@ _HEAD = regex(r"(?P<kind>[PR])(?P<extreme>min|max)?")
 _FUNCTIONS = {
     "min": "min", "max": "max", "mod": "%", "pow": "pow", "log": "log", "floor": "floor", "ceil": "ceil",
 }  # fmt: skip
-_UNITS_NS = {"ns": 1, "us": 10**3, "ms": 10**6, "s": 10**9, "min": 60 * 10**9, "h": 3600 * 10**9}
 _TIME = "time"
 """The reward that is the time of the model, in s."""
 _GIVEN = "||"
@@ -335,8 +335,8 @@ class _Parser:
 
     def unit(self) -> int:
         """The unit of a bound on time in ns; 0 if the bound is one of steps."""
-        unit = self.takes(*_UNITS_NS)
-        return _UNITS_NS.get(unit, 0)
+        unit = self.takes(*UNITS)
+        return UNITS.get(unit, 0)
 
     def within(self, bound: _Bound) -> Json:
         """The condition that the time of the model is within a bound."""

@@ -542,7 +542,8 @@ class _Linker:
                 self.report(ProblemKind.BEYOND_END, written.span, message)
                 return
             if 0 < number * unit < step:
-                message = f"this is shorter than a step of the clock, {_duration(step)}, so it means the same time only"
+                meaning = "the next step" if written is interval.after else "the same time only"
+                message = f"this is shorter than a step of the clock, {_duration(step)}, so it means {meaning}"
                 self.report(ProblemKind.SHORT, written.span, message)
                 return
 

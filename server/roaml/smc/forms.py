@@ -53,7 +53,8 @@ COMPARISONS = frozenset(
 JOINED = frozenset((BinaryOperator.AND, BinaryOperator.OR, BinaryOperator.IMPLIES))
 """The operators that join path formulas."""
 TIME_BOUNDS = (
-    "bounds on time are not supported, because a model has only steps and no time (compare `sec` of the clock instead)"
+    "bounds on time are supported only in nested formulas, because the time of a system is a variable: "
+    "compare the fields of `topic_clock_msg` with the time instead"
 )
 NO_TIME = "no time passes in this kind of model, so rewards can only be accumulated on `steps` or `exit`"
 _ONE_STATE = (FilterFunction.VALUES, FilterFunction.MIN, FilterFunction.MAX, FilterFunction.SUM, FilterFunction.AVG)

@@ -16,7 +16,7 @@ from roaml.explicit.space import (
     explore,
     search_tables,
 )
-from roaml.explicit.values import GoalValues, NoValueError, values_of
+from roaml.explicit.values import GoalValues, NoValueError, OpenDeadlineError, values_of
 from roaml.record import replace
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import NOT, CompiledProperty, Question
@@ -25,6 +25,7 @@ from roaml.smc.program import AT_END, FALSE, TRUE
 from roaml.smc.statistics import Bounds
 from roaml.verification.conditional import of_condition, parts_of, quotient
 from roaml.verification.expectations import Expectation, Verdict, holds_exactly
+from roaml.verification.headline import LONGER_TIME
 from roaml.verification.number_text import distinct
 from roaml.verification.results import Exact, Proof, ShortestTrace, is_close
 from roaml.verification.schedulers import extreme_of, is_minimised
@@ -183,6 +184,8 @@ def values_from(space: Space, limits: StateLimits) -> Exact:
         raise FaultError(f"{fault.message} (in a reachable state)", fault.origin, code=fault.code)
     try:
         values = values_of(space, work=limits.work)
+    except OpenDeadlineError as error:
+        raise UndecidedError(f"{error}; {LONGER_TIME}") from None
     except NoValueError as error:
         raise UndecidedError(f"{error}; {_ESTIMATE}") from None
     uniform = values.uniform

@@ -4,8 +4,9 @@
 - The estimate decides, not its interval: no number of traces could ever show that a probability is 1. If the interval
   contains both values that satisfy the expectation and others, this is only reported (`Verdict.is_certain`).
 - An exact value is compared with its bounds (`holds_exactly`).
-- A bound on a probability treats undecided traces as if each had the unfavourable result; `==` means at most epsilon
-  away from an estimate.
+- `==` means at most epsilon away from an estimate.
+- Undecided traces can have any result: an expectation is met if it is met whatever they have, and open if it is met
+  only with some of these results.
 - A decision of a sequential test about the same number takes precedence.
 """
 
@@ -55,10 +56,12 @@ class Verdict(Record, frozen=True):
 
     Attributes:
         is_certain: whether the verdict is the same for the whole interval.
+        is_open: whether the expectation is not met, but could be, depending on the traces that are undecided.
         is_uniform: whether the expectation is met under uniform choices and not known to be met under all schedulers.
             `policy` then decides `is_met`.
         uniform_only: what is known about the minimum or maximum if `is_uniform`, as a phrase for users; "" for nothing.
-        under: a phrase that follows `NOT MET`, such as `under uniform choices` or `so far`; "" if there is none.
+        under: a phrase that follows `NOT MET` or `undecided`, such as `under uniform choices` or `so far`; "" if there
+            is none.
         by: a phrase that follows `met` and names the bound that decided, if the minimum and the maximum differ; "" if
             there is none.
         policy: what an expectation is worth that is met under uniform choices only.
@@ -70,6 +73,7 @@ class Verdict(Record, frozen=True):
     expectation: Expectation
     is_met: bool
     is_certain: bool
+    is_open: bool = False
     is_uniform: bool = False
     under: str = ""
     by: str = ""
@@ -89,6 +93,8 @@ class Verdict(Record, frozen=True):
             return f"met by the {which}; another one may miss it"
         if self.is_met:
             return f"met {self.by}".rstrip()
+        if self.is_open:
+            return f"undecided {self.under}".rstrip() + ", because it depends on the undecided traces"
         return f"NOT MET {self.under}".rstrip()
 
     @property
@@ -115,7 +121,7 @@ class Verdict(Record, frozen=True):
         Args:
             epsilon: the difference that `==` allows.
         """
-        if self.is_certain:
+        if self.is_certain or self.is_open:
             return ""
         if self.unanimous_text:
             assert self.unanimous is not None
@@ -182,23 +188,23 @@ def check_expectation(expectation: Expectation, answer: Answer) -> Verdict:
     lower, upper = answer.bounds
     if answer.question.is_reward and _is_open(threshold, answer.bounds):
         return Verdict(expectation, False, False)
+    least = greatest = answer.value
+    if tally.undecided and not answer.question.is_reward:
+        least, greatest = tally.successes / tally.traces, (tally.successes + tally.undecided) / tally.traces
     if threshold.relation is BinaryOperator.EQUAL:
         width = answer.options.epsilon + 1e-12
-        near = abs(answer.value - threshold.number) <= width
-        least, greatest = threshold.number - width, threshold.number + width
-        is_certain = least <= lower and upper <= greatest if near else upper < least or greatest < lower
-        return Verdict(expectation, near, is_certain)
-    if answer.question.is_reward:
-        value = answer.value
-    elif threshold.is_lower:
-        value = tally.successes / tally.traces
-    else:
-        value = (tally.successes + tally.undecided) / tally.traces
+        low, high = threshold.number - width, threshold.number + width
+        near = low <= least and greatest <= high
+        is_open = not near and least <= high and low <= greatest and least < greatest
+        is_certain = low <= lower and upper <= high if near else upper < low or high < lower
+        return Verdict(expectation, near, is_certain, is_open)
+    value, other = (least, greatest) if threshold.is_lower else (greatest, least)
     met = threshold.met(value)
     unanimous = None
     if met and not answer.question.is_reward and value == threshold.number and value in (0, 1):
         unanimous = tally.traces, lower if threshold.is_lower else upper
-    return Verdict(expectation, met, threshold.met(lower) is threshold.met(upper), unanimous=unanimous)
+    is_certain, is_open = threshold.met(lower) is threshold.met(upper), not met and threshold.met(other)
+    return Verdict(expectation, met, is_certain, is_open, unanimous=unanimous)
 
 
 def holds_exactly(threshold: Threshold, bounds: Bounds, value: float, *, side: int = 0) -> bool:

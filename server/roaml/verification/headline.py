@@ -33,6 +33,8 @@ _EXTREME_STATES = {
     InitialFold.MAXIMUM: "maximum over the initial states",
 }
 """The values for which a property asks that names an extreme over the initial states itself."""
+LONGER_TIME = "raise max_time, which does not help where what starts the deadline keeps happening"
+"""The remedy for traces that the time ends before a deadline, as far as there is one."""
 _SIGNS = (("at most", "≤"), ("at least", "≥"), ("less than", "<"), ("greater than", ">"))
 
 
@@ -205,7 +207,7 @@ def _undecided(answer: Answer) -> str:
         parts.append(f"{_these(cut, answer)} cut after {steps}: raise max-steps, or explore all states")
     if open_:
         these = _these(open_, answer)
-        parts.append(f"{these} too short, because the time ended before a deadline: raise max_time")
+        parts.append(f"{these} too short, because the time ended before a deadline: {LONGER_TIME}")
     return "; ".join(parts)
 
 

@@ -523,3 +523,8 @@ class Result(Record, frozen=True):
     def is_met(self) -> bool:
         """Whether there is an answer, and every expectation holds."""
         return self.has_answer and all(verdict.is_met for verdict in self.verdicts)
+
+    @property
+    def is_open(self) -> bool:
+        """Whether no expectation is missed, and some depend on traces that are undecided."""
+        return any(verdict.is_open for verdict in self.verdicts) and all(v.is_met or v.is_open for v in self.verdicts)

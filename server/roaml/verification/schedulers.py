@@ -33,10 +33,10 @@ def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | No
     threshold = verdict.expectation.threshold
     is_minimum = is_minimised(answer.question)
     extreme = choices.minimum if is_minimum else choices.maximum
-    missed = replace(verdict, is_met=False, is_certain=True, under=_missed_by(answer.question, extreme))
+    missed = replace(verdict, is_met=False, is_certain=True, is_open=False, under=_missed_by(answer.question, extreme))
     if extreme is not None and extreme.is_exact:
         met = holds_exactly(threshold, extreme.bounds, extreme.value)
-        return replace(verdict, is_met=True, is_certain=True, under="") if met else missed
+        return replace(verdict, is_met=True, is_certain=True, is_open=False, under="") if met else missed
     if answer.question.has_opposite_extremes:
         return replace(verdict, is_uniform=verdict.is_met)
     if threshold.relation is BinaryOperator.EQUAL:
@@ -54,7 +54,7 @@ def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | No
             verdict, is_uniform=verdict.is_met, uniform_only=_doubtful_by(threshold, answer.question, extreme)
         )
     if extreme is not None and threshold.met(extreme.bounds.upper if is_minimum else extreme.bounds.lower):
-        return replace(verdict, is_met=True, is_certain=True, under="")
+        return replace(verdict, is_met=True, is_certain=True, is_open=False, under="")
     return verdict
 
 

@@ -120,7 +120,7 @@ def attempt(
             if error.states > explored:
                 explored, limit = error.states, error.limit
         except UndecidedError as error:
-            reason, is_cut = str(error), False
+            reason, is_cut, explored, limit = str(error), False, 0, ""  # there were not too many states
         except FaultError:
             return Attempt(None, cost)
         if search is not None:
