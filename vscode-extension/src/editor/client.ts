@@ -12,6 +12,7 @@ import {
     type LanguageClientOptions,
 } from "vscode-languageclient/node";
 import { SHOW_FIRST_ERROR, TRANSLATE, VERIFY, type Translated } from "../protocol";
+import { handshake } from "../server/handshake";
 import type { Server } from "../server/server";
 import type { Exit, Session } from "../server/supervisor";
 import { safeFolder, safeVariables } from "../server/surroundings";
@@ -84,19 +85,7 @@ export async function connect(server: Server, log: vscode.LogOutputChannel, list
         },
         options(log, listener),
     );
-    try {
-        await Promise.race([
-            client.start(),
-            ended.then((exit) => {
-                throw new Error(
-                    exit.detail.trim() || `it ended with status ${exit.status ?? exit.signal ?? "unknown"}`,
-                );
-            }),
-        ]);
-    } catch (error) {
-        started.kill();
-        throw error;
-    }
+    await handshake(client, { ended, kill: () => started.kill() });
     return {
         client,
         ended,
