@@ -97,7 +97,7 @@ export function compatibility(stage: Stage): void {
         async (window) => {
             await window.openFile("tree.xml");
             await window.running();
-            await window.notification(path.join("dist", "schemas", "catalog.xml")).waitFor();
+            await window.notified(path.join("dist", "schemas", "catalog.xml"));
             await window.run("View: Focus Problems");
             const rows = window.page.locator(".markers-panel .monaco-list-row");
             await rows.filter({ hasText: "XML extension: not well-formed" }).first().waitFor();
@@ -117,7 +117,7 @@ export function compatibility(stage: Stage): void {
         await window.openFile("battery.ascxml");
         await window.squiggles.first().waitFor();
         await window.run("AS2FM: Show Versions");
-        await window.notification("from the Python environment").waitFor();
+        await window.notified("from the Python environment");
     });
 
     stage.test("the last server is started before the search ends", withPython, async (window) => {
@@ -128,7 +128,7 @@ export function compatibility(stage: Stage): void {
         await Promise.all([window.page.waitForEvent("load"), window.run("Developer: Reload Window")]);
         await window.squiggles.first().waitFor();
         await window.run("AS2FM: Show Versions");
-        await window.notification("from the Python environment").waitFor();
+        await window.notified("from the Python environment");
         // The Python extension now reports its interpreter, which is another one.
         write(path.join(window.folder, ".python"), "");
         fs.rmSync(starts);

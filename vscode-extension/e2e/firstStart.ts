@@ -8,11 +8,10 @@ export function firstStart(stage: Stage): void {
 
     stage.test("one click installs the server, and the error is shown", sample, async (window) => {
         await window.openFile("battery.ascxml");
-        const offer = window.notification("is not installed yet");
-        await offer.waitFor();
+        await window.notified("is not installed yet");
         await window.statusItem("AS2FM: not installed").waitFor();
         await window.screenshot("first-start");
-        await offer.getByRole("button", { name: "Install" }).click();
+        await window.acceptInstallation();
         await window.running(INSTALLATION_TIMEOUT_MS);
         await window.squiggles.first().waitFor();
         await window.becomes(() => window.squiggles.count(), 1);

@@ -24,7 +24,7 @@ const probe = fakeExtension("as2fm-lsp", "probe", SHOWS_AT_ONCE, ["workspaceCont
 const bare = await Workbench.start({ bare: true, extensions: [probe] });
 const workbench = await Workbench.start();
 const first = await workbench.open(sample());
-await first.notification("is not installed yet").getByRole("button", { name: "Install" }).click();
+await first.acceptInstallation();
 await first.firstProblem.waitFor({ timeout: 120_000 });
 await workbench.forget();
 

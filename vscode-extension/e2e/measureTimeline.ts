@@ -6,7 +6,6 @@
  */
 
 import type { Frame } from "playwright-core";
-import { VERSION } from "./support/paths";
 import { MEND, sample } from "./support/stage";
 import { Workbench } from "./support/workbench";
 
@@ -24,10 +23,7 @@ const workbench = await Workbench.start();
 const window = await workbench.open(sample(LONG));
 const { page } = window;
 await window.openFile("main.xml");
-const offer = window.notification("is not installed yet").getByRole("button", { name: "Install" });
-const running = window.statusItem(`AS2FM: ${VERSION}`);
-await offer.or(running).first().waitFor();
-if (await offer.isVisible()) await offer.click();
+await window.acceptInstallation();
 await window.running();
 await window.openFile("main.xml"); // the notification has taken the focus
 await window.repeat(() => window.press("F5"), page.locator(".debug-toolbar"));

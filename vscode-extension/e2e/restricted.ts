@@ -63,7 +63,7 @@ export function restricted(stage: Stage): void {
         await window.openFile("battery.ascxml");
         await window.until(() => fs.existsSync(path.join(window.folder, "started")));
         // The program is not a language server. A message states this, and what to do.
-        await window.notification("did not start").waitFor();
+        await window.notified("did not start: it ended with status 0");
     });
 }
 

@@ -14,7 +14,7 @@ export function serverLifeCycle(stage: Stage): void {
         await window.squiggles.first().waitFor();
         const before = await onlyServer(window, stage.workbench.home);
         process.kill(before, "SIGKILL");
-        await window.notification("ended unexpectedly and was restarted").waitFor();
+        await window.notified("ended unexpectedly and was restarted");
         await window.screenshot("restarted");
         assert.notEqual(await onlyServer(window, stage.workbench.home), before);
         // The new server has the open documents.
@@ -26,7 +26,7 @@ export function serverLifeCycle(stage: Stage): void {
         await window.running();
         await window.squiggles.first().waitFor();
         await window.run("AS2FM: Show Versions");
-        await window.notification(`as2fm-lsp ${VERSION}`).waitFor();
+        await window.notified(`as2fm-lsp ${VERSION}`);
         const before = await onlyServer(window, stage.workbench.home);
         await window.run("AS2FM: Restart Language Server");
         await window.until(() => servers(stage.workbench.home).some((pid) => pid !== before));

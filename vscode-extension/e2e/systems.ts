@@ -29,7 +29,7 @@ export function systems(stage: Stage): void {
             await window.running();
             await window.run("AS2FM: Translate to JANI");
             await window.page.locator('.tab[data-resource-name="main (laid out).jani"]').waitFor();
-            await window.notification("Wrote main.jani").waitFor();
+            await window.notified("Wrote main.jani");
             const text = fs.readFileSync(path.join(window.folder, "main.jani"), "utf8");
             assert.ok((JSON.parse(text) as { automata: unknown[] }).automata.length > 5);
             assert.equal(text.trim().split("\n").length, 1);
@@ -71,7 +71,7 @@ export function systems(stage: Stage): void {
         await window.openFile("main.xml");
         await window.running();
         await window.run("AS2FM: Translate to JANI");
-        await window.notification("main.xml has 1 error and was not translated.").waitFor();
+        await window.notified("main.xml has 1 error and was not translated.");
         await window.page.locator('.tab.active[data-resource-name="battery.ascxml"]').waitFor();
         await window.statusItem(`Ln ${window.placeIn("nodes/battery.ascxml", "levle")[0]}, Col`).waitFor();
         assert.ok(!fs.existsSync(path.join(window.folder, "main.jani")));
@@ -90,7 +90,7 @@ export function systems(stage: Stage): void {
         await window.repeat(() => lens.click(), broken);
         const [line] = window.placeIn("nodes/battery.ascxml", "levle");
         await window.statusItem(`Ln ${line}, Col`).waitFor();
-        await window.notification(`battery.ascxml:${line}: there is no variable`).waitFor();
+        await window.notified(`battery.ascxml:${line}: there is no variable`);
         await window.openFile("properties.jani");
         await window.page
             .locator(".codelens-decoration a", { hasText: "1 error in main.xml: cannot be verified" })

@@ -62,7 +62,7 @@ export function walkthroughPictures(stage: Stage): void {
             await window.run("AS2FM: Translate to JANI");
             await page.locator('.tab[data-resource-name="main (laid out).jani"]').waitFor();
             await page.locator(".view-line", { hasText: '"jani-version"' }).waitFor();
-            await window.notification("Wrote main.jani").waitFor();
+            await window.notified("Wrote main.jani");
             await window.run("Notifications: Clear All Notifications");
             await window.clickTab("main (laid out).jani");
             await window.run("Explorer: Focus on Outline View");

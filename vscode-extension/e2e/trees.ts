@@ -116,7 +116,7 @@ export function loneTrees(stage: Stage): void {
         await window.openFile("fetch.xml");
         await window.running();
         await window.page.keyboard.press("F5");
-        await window.notification("is not a probability from 0 to 1").waitFor();
+        await window.notified("is not a probability from 0 to 1");
         await window.page.locator(".monaco-dialog-box").waitFor({ state: "detached" });
     });
 }

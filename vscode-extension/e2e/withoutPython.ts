@@ -46,9 +46,9 @@ async function install(
     try {
         const window = await workbench.open(sample());
         await window.openFile("battery.ascxml");
-        await window.notification("is not installed yet").getByRole("button", { name: "Install" }).click();
+        await window.acceptInstallation();
         await check(async (text, name) => {
-            await window.notification(text).waitFor({ timeout: INSTALLATION_TIMEOUT_MS });
+            await window.notified(text, INSTALLATION_TIMEOUT_MS);
             await window.screenshot(name);
         });
     } finally {

@@ -75,9 +75,9 @@ export class Stage {
         await this.start({});
         const window = await this.workbench.open(sample());
         await window.openFile("battery.ascxml");
-        const offer = window.notification("is not installed yet").getByRole("button", { name: "Install" });
-        await offer.or(window.squiggles).first().waitFor();
-        if (await offer.isVisible()) await offer.click();
+        const missing = window.statusItem("AS2FM: not installed");
+        await missing.or(window.squiggles).first().waitFor();
+        if (await missing.isVisible()) await window.acceptInstallation();
         await window.running(INSTALLATION_TIMEOUT_MS);
         await kernel(this.workbench.home);
         await this.workbench.leave();

@@ -23,15 +23,18 @@ export class Window {
         this.page.setDefaultTimeout(timeout);
     }
 
-    /** Opens a file by its name, as with Ctrl+P. */
+    /**
+     * Opens the file of the folder that has a name, as with Ctrl+P. The whole path is entered, because the search for a
+     * name depends on lists of files that VS Code makes in the background and keeps.
+     */
     async openFile(name: string): Promise<void> {
         const { page } = this;
         const base = path.basename(name);
-        // The list shows the files of the moment at which it opens. A file that was written just now may be missing.
+        const file = path.join(this.folder, await this.until(() => onlyFile(this.folder, name)));
         const tab = page.locator(`.tab.active[data-resource-name="${base}"]`).first();
         const focused = this.focusedEditor.locator(".view-line").first();
         await this.until(async () => {
-            await this.quickOpen("Control+P", name, `.quick-input-list .focused[aria-label*="${base}"]`);
+            await this.quickOpen("Control+P", file, `.quick-input-list .focused[aria-label*="${base}"]`);
             return (await this.enter()) && (await isShown(tab)) && (await isShown(focused));
         });
     }
@@ -58,28 +61,35 @@ export class Window {
 
     /** Enters a text, or accepts the suggested one, in the quick input that asks a question. */
     async answer(question: string, text?: string): Promise<void> {
-        await this.question(question).waitFor();
+        const asked = this.question(question);
+        await asked.waitFor();
         const input = this.page.locator(".quick-input-widget input[type=text]").first();
-        if (text !== undefined) await input.fill(text);
-        await input.focus(); // a picture may have taken it back
-        await this.quickInputFocus.first().waitFor();
-        await this.page.keyboard.press("Enter");
+        await this.until(async () => {
+            if (!(await asked.isVisible())) return true;
+            if (text !== undefined) await input.fill(text);
+            await input.focus(); // a picture may have taken it back
+            return (await this.pressEnter()) && (await isShown(asked, REPETITION_MS, "hidden"));
+        });
     }
 
     private get quickInputFocus(): Locator {
         return this.page.locator(".quick-input-widget :focus");
     }
 
+    /** Presses Enter in the quick input. Resolves to whether it has closed or shows the next question. */
+    private async enter(): Promise<boolean> {
+        const input = this.page.locator(".quick-input-widget input[type=text]").first();
+        const text = await input.inputValue();
+        return (await this.pressEnter()) && (!(await input.isVisible()) || (await input.inputValue()) !== text);
+    }
+
     /**
      * Presses Enter if the quick input has the focus; otherwise the key would change the text of an editor. Resolves to
-     * whether the quick input has taken the key. It takes none if another view gets the focus just before, or while its
-     * list is filled again.
+     * whether the quick input has received the key. It receives none if another view gets the focus just before.
      */
-    private async enter(): Promise<boolean> {
+    private async pressEnter(): Promise<boolean> {
         const { page } = this;
         if (!(await this.quickInputFocus.first().isVisible())) return false;
-        const input = page.locator(".quick-input-widget input[type=text]").first();
-        const text = await input.inputValue();
         const key = await page.evaluateHandle(() => {
             const key = { isReceived: false };
             const receive = ({ target }: Event) => {
@@ -89,10 +99,8 @@ export class Window {
             return key;
         });
         await page.keyboard.press("Enter");
-        const isReloaded = () => true; // the key is unknown after a command that reloads the window
-        if (!(await key.evaluate(({ isReceived }) => isReceived).catch(isReloaded))) return false;
-        // It closes, or shows the next question.
-        return !(await input.isVisible()) || (await input.inputValue()) !== text;
+        // The key is unknown after a command that reloads the window.
+        return await key.evaluate(({ isReceived }) => isReceived).catch(() => true);
     }
 
     /** Repeats an action that has no effect when it is lost, and the same effect when it is done twice, until its
@@ -124,7 +132,7 @@ export class Window {
                     () => false,
                 );
             if (isAnswered && (await shown.first().isVisible())) return true;
-            await page.keyboard.press("Escape");
+            await this.closeQuickInput();
             return false;
         });
     }
@@ -134,8 +142,13 @@ export class Window {
         await this.quickOpen("F1", `>${text}`, `.quick-input-list .focused[aria-label^="${text}"]`);
         const rows = this.page.locator(".quick-input-list .monaco-list-row");
         const labels = await rows.evaluateAll((rows) => rows.map((row) => row.getAttribute("aria-label") ?? ""));
-        await this.page.keyboard.press("Escape");
+        await this.closeQuickInput();
         return labels;
+    }
+
+    /** Closes the quick input if it is open; otherwise the key would hide notifications. */
+    private async closeQuickInput(): Promise<void> {
+        if (await this.page.locator(".quick-input-widget").isVisible()) await this.page.keyboard.press("Escape");
     }
 
     /** Moves the caret to a line and column, counted from 1. */
@@ -178,7 +191,7 @@ export class Window {
             return (await tabs.count()) === 0;
         });
         if (await page.locator(".part.panel .composite.panel").isVisible()) await this.run("View: Hide Panel");
-        if (await this.notification("").first().isVisible()) await this.run("Notifications: Clear All Notifications");
+        await this.run("Notifications: Clear All Notifications"); // also those that are not visible any more
     }
 
     async save(): Promise<void> {
@@ -233,6 +246,29 @@ export class Window {
 
     notification(text: string): Locator {
         return this.page.locator(".notification-list-item", { hasText: text });
+    }
+
+    /**
+     * Waits for a notification. One that nobody has read in time, or that was hidden by a key, is looked for in the
+     * notification center, which stays open.
+     */
+    async notified(text: string, timeout = this.timeout): Promise<Locator> {
+        const notification = this.notification(text).first();
+        const center = this.page.locator(".notifications-center.visible");
+        const end = Date.now() + timeout;
+        while (!(await isShown(notification))) {
+            if (Date.now() > end) throw new Error(`no notification says: ${text}`);
+            if (!(await center.isVisible())) await this.run("Notifications: Show Notifications");
+        }
+        return notification;
+    }
+
+    /** Accepts the offer to install the language server. */
+    async acceptInstallation(): Promise<void> {
+        const offer = await this.notified("is not installed yet");
+        const install = offer.getByRole("button", { name: "Install" });
+        await this.repeat(() => offer.click(), install); // in the notification center, the button is hidden at first
+        await install.click();
     }
 
     /** Waits until the language server runs. */
@@ -330,12 +366,25 @@ const INTERVAL_MS = 50;
 /** The time after which an action is repeated if its result is not visible, in ms. */
 const REPETITION_MS = 20_000;
 
-/** Whether an element becomes visible before the action that shows it should be repeated. */
-function isShown(element: Locator): Promise<boolean> {
-    return element.waitFor({ timeout: REPETITION_MS }).then(
+/** Whether an element becomes visible, or hidden, within a time in ms; by default, before the action is repeated. */
+export function isShown(
+    element: Locator,
+    timeout = REPETITION_MS,
+    state: "visible" | "hidden" = "visible",
+): Promise<boolean> {
+    return element.waitFor({ timeout, state }).then(
         () => true,
         () => false,
     );
+}
+
+/** The path of a file in a folder, or of the only one with a name in its folders; undefined if there is none yet. */
+function onlyFile(folder: string, name: string): string | undefined {
+    const files = fs.readdirSync(folder, { recursive: true, encoding: "utf8" });
+    if (files.includes(name)) return name;
+    const found = files.filter((file) => file.endsWith(`${path.sep}${name}`));
+    if (found.length > 1) throw new Error(`${name} is ambiguous: ${found.join(", ")}`);
+    return found[0];
 }
 
 /** A text with the spaces that the editor draws. */

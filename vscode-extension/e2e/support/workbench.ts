@@ -8,10 +8,13 @@ import * as os from "node:os";
 import * as path from "node:path";
 import { chromium, type BrowserContext, type Page } from "playwright-core";
 import { EXTENSION, ROOT } from "./paths";
-import { TIMEOUT_MS, Window } from "./window";
+import { isShown, TIMEOUT_MS, Window } from "./window";
 
 const VSCODE = path.join(ROOT, ".cache/workbench/node_modules/code-server/lib/vscode");
 const MAIN = path.join(VSCODE, "out/server-main.js");
+
+/** The time in ms in which a window usually shows the folders of a workspace. */
+const READING_MS = 5000;
 
 export interface Options {
     /** The home folder; a new one if not given. That of an earlier workbench contains what it has installed. */
@@ -99,6 +102,7 @@ export class Workbench {
         const isFile = folder.endsWith(".code-workspace");
         await this.page.goto(`${this.address}/?${isFile ? "workspace" : "folder"}=${folder}`);
         await this.page.locator(".monaco-workbench").waitFor();
+        if (isFile) await readWorkspace(this.page, folder);
         return new Window(this.page, isFile ? path.dirname(folder) : folder);
     }
 
@@ -141,6 +145,19 @@ export class Workbench {
             await ended;
             clearTimeout(timer);
         }
+    }
+}
+
+/**
+ * Waits until a window shows the folders of a workspace. VS Code 1.100 shows none if it has read the file before it has
+ * created its workspace. It reads the file again when it is written.
+ */
+async function readWorkspace(page: Page, file: string): Promise<void> {
+    const folder = page.locator('.explorer-folders-view [role="treeitem"]').first();
+    const end = Date.now() + TIMEOUT_MS;
+    while (!(await isShown(folder, READING_MS))) {
+        if (Date.now() > end) throw new Error(`the window shows no folder of ${file}`);
+        fs.writeFileSync(file, fs.readFileSync(file));
     }
 }
 
