@@ -20,8 +20,8 @@ from roaml.verification.small import choices_of
     ("tosses", "shown"),
     [
         (0, "p: = 1 for all"),
-        (1, "p: less than 1 by at most 1e-10 for all"),
-        (3, "p: less than 1 by at most 2e-16 for all"),
+        (1, "p: almost 1 (fails with a probability of at most 1e-10) for all"),
+        (3, "p: almost 1 (fails with a probability of at most 2e-16) for all"),
     ],
 )
 def test_a_failing_trace_excludes_1(tosses: int, shown: str) -> None:
@@ -44,6 +44,14 @@ def choice_of(least: float, greatest: float) -> Exact:
     (result,) = api.verify(model(written), exact_if_small=True)
     assert result.exact is not None
     return result.exact
+
+
+def test_a_failing_trace_of_some_schedulers_excludes_1() -> None:
+    exact = choice_of(1 - 1e-10, 1)
+    (first, *_) = exact_report.lines("p", exact, 0.0)
+    assert first.startswith("p: 1 or almost 1 (fails with a probability of at most 1e-10) for all schedulers, exact")
+    (uniform, *_) = exact_report.lines("p", exact, 0.0, only_uniform=True)
+    assert uniform == first
 
 
 def test_close_extremes_are_not_the_same_for_all_schedulers() -> None:

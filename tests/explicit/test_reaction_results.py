@@ -165,15 +165,21 @@ def test_values_for_instant_reactions_bound_those_of_all_schedulers() -> None:
     assert claim_for_all(Question("p", "Pmin", False, None, ()), nothing) == "minimum not known"
 
 
-@pytest.mark.parametrize(("value", "words"), [(0.872, ", at most 0.872"), (1 - 2**-20, ", less than 1"), (1.0, "")])
-def test_a_bound_is_true_after_rounding(value: float, words: str) -> None:
+@pytest.mark.parametrize(
+    ("value", "least", "greatest"),
+    [
+        (0.872, "between 0 and 0.872, not known more closely", "between 0.128 and 1, not known more closely"),
+        (1 - 2**-20, "less than 1, not known more closely", "greater than 0, not known more closely"),
+        (1.0, "not known", "not known"),
+    ],
+)
+def test_a_bound_is_true_after_rounding(value: float, least: str, greatest: str) -> None:
     known = Extreme(value, Bounds(value, value), ExtremeMethod.REACTIONS)
     question = Question("p", "Pmin", False, None, ())
-    assert claim_for_all(question, Choices("", known, None)) == f"minimum not known{words}"
+    assert claim_for_all(question, Choices("", known, None)) == f"minimum {least}"
     opposite = Extreme(1 - value, Bounds(1 - value, 1 - value), ExtremeMethod.REACTIONS)
-    words = words.replace("at most 0.872", "at least 0.128").replace("less than 1", "greater than 0")
     question = Question("p", "Pmax", False, None, ())
-    assert claim_for_all(question, Choices("", None, opposite)) == f"maximum not known{words}"
+    assert claim_for_all(question, Choices("", None, opposite)) == f"maximum {greatest}"
 
 
 def test_requested_traces_are_not_extended_by_a_search(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

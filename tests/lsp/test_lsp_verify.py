@@ -130,7 +130,7 @@ async def test_lens_and_hint_show_the_result_until_it_is_stale(robot: Path) -> N
         assert await hints(client, properties) == []
         await verify(client, main, [PLACED], {**QUICK, "expectations": {PLACED: ">= 0.95"}})
         (known,) = (title for title in await lenses(client, properties) if " · " in title)
-        assert known.startswith("Verify · minimum not known, ≤ 0.")
+        assert known.startswith("Verify · minimum ≤ 0.")
         assert known.endswith("], not ≥ 0.95")
         assert {"Show counterexample", "Debug counterexample"} <= set(await lenses(client, properties))
         ((text, position),) = await hints(client, properties)

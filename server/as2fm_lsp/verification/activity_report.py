@@ -34,7 +34,7 @@ def remarks(answer: Answer, *, are_examples: bool = False) -> list[str]:
             lines.append(f"the value is that of the traces that satisfy the assumption: {share}")
     if is_untested(answer):
         lines.append(f"warning: {warning(answer)}")
-    else:
+    elif tally.undecided < tally.traces:
         if tally.closed:
             lines.append(f"{_NOT_OPENED} in {_share(tally.closed, tally.traces)}: {_UNTESTED}")
         if tally.idle:
@@ -56,8 +56,9 @@ def remarks(answer: Answer, *, are_examples: bool = False) -> list[str]:
 
 
 def is_untested(answer: Answer) -> bool:
-    """Whether the property holds vacuously in all traces."""
-    return 0 < answer.tally.traces == answer.tally.closed + answer.tally.idle
+    """Whether the property holds vacuously in all traces. If all are undecided, it holds in none."""
+    tally = answer.tally
+    return tally.undecided < tally.traces == tally.closed + tally.idle
 
 
 def open_at_end(tally: Tally) -> int:

@@ -51,9 +51,8 @@ def lines(
     end = f"{states}{' after reductions' if exact.is_reduced else ''}, {seconds:.1f} s"
     quality = "exact" if exact.is_precise else "not exact, because the bounds no longer converge"
     shown: list[str] = []
-    if exact.agrees:
-        value = _below_one(exact) or f"= {_number(exact.minimum)}"
-        shown.append(f"{name}: {value} for all schedulers, {quality}, {end}")
+    if one_value := _one_value(exact):
+        shown.append(f"{name}: {one_value} for all schedulers, {quality}, {end}")
     elif only_uniform and exact.uniform is not None:
         if _is_enclosed(exact):
             value, quality = f"between {' and '.join(_distinct(exact))}", f"the {quality} minimum and maximum"
@@ -103,8 +102,8 @@ def short(exact: Exact, question: Question) -> str:
     """
     states = "1 state" if exact.states == 1 else f"{exact.states:,} states"
     end = f"{states}{' after reductions' if exact.is_reduced else ''}"
-    if exact.agrees:
-        return f"{_below_one(exact) or f'= {_number(exact.minimum)}'} for all schedulers, exact, {end}"
+    if one_value := _one_value(exact):
+        return f"{one_value} for all schedulers, exact, {end}"
     return f"{_extremes(exact, question)}, exact, {end}"
 
 
@@ -184,6 +183,14 @@ def estimate_row(computed: Computed) -> dict[str, Any]:
     }
 
 
+def _one_value(exact: Exact) -> str:
+    """The words for the value of all schedulers, also if all are close to 1; "" if they have different values."""
+    almost = _below_one(exact)
+    if exact.agrees:
+        return almost or f"= {_number(exact.minimum)}"
+    return f"1 or {almost}" if almost and _number(exact.maximum) == "1" else ""
+
+
 def _below_one(exact: Exact) -> str:
     """The words for a minimum that would be shown as 1 although a trace fails; "" for all other values."""
     fails = exact.shortest(FALSE)
@@ -192,7 +199,9 @@ def _below_one(exact: Exact) -> str:
     is_shown_as_one = f"{exact.minimum.upper:.7g}" == "1" == f"{exact.least:.7g}"
     if not is_shown_as_one:
         return ""
-    return f"less than 1 by at most {_upwards(1 - exact.minimum.lower)}" if exact.minimum.lower < 1 else "less than 1"
+    if exact.minimum.lower == 1:
+        return "almost 1 (fails, but too rarely to compute how often)"
+    return f"almost 1 (fails with a probability of at most {_upwards(1 - exact.minimum.lower)})"
 
 
 def _upwards(value: float) -> str:

@@ -58,8 +58,9 @@ def below_headline(question: Question, choices: Choices | None) -> str:
         return ""
     if not bound_text(question, known):
         return remark(question, choices)
-    by = known.scheduler if known.method is ExtremeMethod.SAMPLING else "machines that react at once"
-    return f"warning: schedulers have different values; the bound is that of {by}"
+    other = "greater" if is_minimised(question) else "smaller"
+    where = f"with {known.scheduler}" if known.method is ExtremeMethod.SAMPLING else "if machines react at once"
+    return f"warning: the order of steps matters; the {extreme_of(question)} is not {other} than the value {where}"
 
 
 def _known(question: Question, extreme: Extreme) -> str:

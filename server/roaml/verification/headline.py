@@ -35,15 +35,16 @@ _EXTREME_STATES = {
 """The values for which a property asks that names an extreme over the initial states itself."""
 LONGER_TIME = "raise max_time, which does not help where what starts the deadline keeps happening"
 """The remedy for traces that the time ends before a deadline, as far as there is one."""
-_SIGNS = (("at most", "≤"), ("at least", "≥"), ("less than", "<"), ("greater than", ">"))
+_SIGNS = {"at most": "≤", "at least": "≥", "less than": "<", "greater than": ">"}
+NOT_CLOSER = "not known more closely"
 
 
 class Headline(Record, frozen=True):
     """The words for a result.
 
     Attributes:
-        claim: what is known for all schedulers, such as `minimum not known, at most 0.17`; "" if the property asks only
-            for uniform choices, or all schedulers agree.
+        claim: what is known for all schedulers, such as `minimum between 0 and 0.17, not known more closely`; "" if the
+            property asks only for uniform choices, or all schedulers agree.
         estimate: the estimate from traces with uniform choices; "" if there is none.
         short: a short form of both, for editors; "" if there is no result.
     """
@@ -112,31 +113,44 @@ def of_answer(answer: Answer, choices: Choices | None = None) -> Headline:
     if not claim or (_is_open(answer) and claim.endswith(NOT_KNOWN)):
         # Nothing is known: once is enough.
         return Headline("", estimate, short)
-    brief = claim
-    for words, sign in _SIGNS:
-        brief = brief.replace(f", {words} ", f", {sign} ")
-    return Headline(claim, estimate, f"{brief}; uniform {short}")
+    known = _asked_extreme_of(answer.question, choices)
+    if not answer.question.asks_for_extreme_state and (bound := bound_text(answer.question, known)):
+        words, _, value = bound.rpartition(" ")
+        return Headline(claim, estimate, f"{extreme_of(answer.question)} {_SIGNS[words]} {value}; uniform {short}")
+    return Headline(claim, estimate, f"{claim}; uniform {short}")
 
 
 def claim_for_all(question: Question, choices: Choices | None) -> str:
     """What is known about the minimum or maximum that a property asks for, if it may differ from the value under
     uniform choices; otherwise ""."""
     if question.asks_for_extreme_state:
-        known = None if choices is None else choices.minimum if is_minimised(question) else choices.maximum
+        known = _asked_extreme_of(question, choices)
         extreme = _EXTREME_STATES.get(question.fold, f"{extreme_of(question)} over the initial states")
         return (
             f"{extreme} {number(known.value)}, exact"
             if known is not None and known.is_exact
             else f"{extreme} {NOT_KNOWN}"
         )
-    not_known = f"{extreme_of(question)} {NOT_KNOWN}"
     if choices is None or choices.agreement:
         return ""
-    known = choices.minimum if is_minimised(question) else choices.maximum
+    known = _asked_extreme_of(question, choices)
     if known is not None and known.is_exact:
         return f"{extreme_of(question)} {number(known.value)}, exact"
     bound = bound_text(question, known)
-    return f"{not_known}, {bound}" if bound else not_known
+    if not bound:
+        return f"{extreme_of(question)} {NOT_KNOWN}"
+    # A range cannot be taken for a second estimate.
+    words, _, value = bound.rpartition(" ")
+    if words in ("at most", "at least"):
+        bound = f"between 0 and {value}" if words == "at most" else f"between {value} and 1"
+    return f"{extreme_of(question)} {bound}, {NOT_CLOSER}"
+
+
+def _asked_extreme_of(question: Question, choices: Choices | None) -> Extreme | None:
+    """What is known about the minimum or maximum that a property asks for."""
+    if choices is None:
+        return None
+    return choices.minimum if is_minimised(question) else choices.maximum
 
 
 def bound_text(question: Question, known: Extreme | None) -> str:
