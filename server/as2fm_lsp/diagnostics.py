@@ -5,6 +5,7 @@
   first, then all other files.
 - The diagnostics of a long machine are first provisional (`roaml.project.provisional`). The complete check follows when
   the user pauses; its results are those of the command line.
+- The states that a system can reach are explored last, while the user is idle (`roaml.project.exploration`).
 - Messages of the client take precedence: the work yields to them, and its results so far are kept.
 - A file is published only when its diagnostics differ from those that the client already has.
 """
@@ -101,6 +102,7 @@ class Diagnostics:
         self._all_waiting = False
         self.finished()
         await asyncio.sleep(IDLE_DELAY_S)
+        await self._explore()
         await self._prepare()
 
     def _send_provisional(self) -> bool:
@@ -127,6 +129,19 @@ class Diagnostics:
                 await self._interruptible(partial(uses, analysis, path, system))
         await self._let_messages_by()
         gc.collect(1)
+
+    async def _explore(self) -> None:
+        """Add the findings that follow from the reachable states of the systems."""
+        moment = self.session.moment()
+        has_more = False
+        for path in await self._interruptible(moment.files):
+            before = await self._interruptible(partial(self.of, moment, path))
+            diagnostics = await self._interruptible(partial(self.of, moment, path, explores=True))
+            has_more |= diagnostics != before
+            if self.pushes:
+                self._send(path, diagnostics, moment.versions.get(path))
+        if has_more and not self.pushes:
+            self._client.refresh_diagnostics()
 
     async def _check_all(self) -> None:
         started = time.monotonic()
@@ -188,9 +203,13 @@ class Diagnostics:
 
     # ------------------------------------------------------------------ pull
 
-    def of(self, moment: Moment, path: str) -> list[types.Diagnostic]:
-        """The diagnostics of a file, in the protocol's types; empty if the file does not exist."""
-        diagnostics = moment.snapshot(path).checker.diagnostics(path)
+    def of(self, moment: Moment, path: str, *, explores: bool = False) -> list[types.Diagnostic]:
+        """The diagnostics of a file, in the protocol's types; empty if the file does not exist.
+
+        Args:
+            explores: see `RuleRunner.diagnostics`.
+        """
+        diagnostics = moment.snapshot(path).checker.diagnostics(path, explores=explores)
         return [self.session.convert.diagnostic(d, d.source) for d in diagnostics if d.source is not None]
 
     def document_report(

@@ -73,6 +73,23 @@ def test_together_with_dead_variables() -> None:
     assert sum(smaller) > len(smaller) / 2
 
 
+def test_reduced_spaces_take_the_same_ways() -> None:
+    """The check of systems relies on this (`roaml.project.exploration`)."""
+    smaller: list[bool] = []
+
+    @given(st.one_of(networks(), messages()))
+    @settings(max_examples=examples(300), deadline=None)
+    def run(written: Json) -> None:
+        spaces = both(*question_of(written, is_stuck=True))
+        if spaces is not None and all(space.problem is None for space in spaces):
+            whole, reduced = (bytes(memoryview(space.search.taken)) for space in spaces)
+            assert reduced == whole
+            smaller.append(is_smaller(*spaces))
+
+    run()
+    assert sum(smaller) > len(smaller) / 2
+
+
 def test_reduced_spaces_have_the_same_faults() -> None:
     faulty: list[bool] = []
 

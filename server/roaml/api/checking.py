@@ -92,7 +92,7 @@ def check(
     workspace, checked = _workspace(named, settings, texts)
     snapshot = workspace.snapshot()
     files = _files(named, snapshot, checked)
-    diagnostics = tuple(d for path in files for d in snapshot.checker.diagnostics(path))
+    diagnostics = tuple(d for path in files for d in snapshot.checker.diagnostics(path, explores=True))
     return CheckResult(diagnostics, files, problems, snapshot)
 
 

@@ -42,6 +42,7 @@ cdef class StateSearch(PackedStates):
     cdef public int[::1] parent, code
     cdef public unsigned char[::1] label
     cdef unsigned char[::1] is_partial
+    cdef public unsigned char[::1] taken
     cdef public double[::1] reals
     cdef i64 code_room, reals_room
     cdef public i64 code_end, expanded, problem, transitions

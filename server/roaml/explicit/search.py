@@ -91,6 +91,7 @@ class StateSearch(PackedStates):
             remembered is not followed again.
         circled: the number of these steps on paths that were ended because they may form a cycle.
         is_partial: for each state, whether choices were left out.
+        taken: for each way of an edge of the program, whether a step has taken it.
     """
 
     def __init__(
@@ -133,6 +134,7 @@ class StateSearch(PackedStates):
             for way in range(self.kernel.way_start[edge], self.kernel.way_start[edge + 1]):
                 self.chance[way] = self.kernel.way_sum[way] - before
                 before = self.kernel.way_sum[way]
+        self.taken = flat("B", ways + 1)
         slots = self.kernel.instances + 1
         self.edges = array("i", [0] * (len(self.kernel.guard) + 1))
         self.edge_from = array("i", [0] * (slots + 1))
@@ -1084,6 +1086,7 @@ class StateSearch(PackedStates):
         for j in range(count):
             self.kernel.part_slot[j] = self.slots[j]
             self.kernel.part_way[j] = self.ways[j]
+            self.taken[self.ways[j]] = 1
         self.kernel.parts = count
         self.kernel.reward = 0.0
         self.kernel._execute_ways(vector)
@@ -1194,6 +1197,7 @@ class StateSearch(PackedStates):
                 return 0
             self.kernel.part_slot[count] = slot
             self.kernel.part_way[count] = way
+            self.taken[way] = 1
             count += 1
         self.kernel.parts = count
         self.kernel.vector = vector

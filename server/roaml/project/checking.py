@@ -24,6 +24,7 @@ from roaml.json_syntax.brackets import deep_recursion
 from roaml.model.kinds import FileKind
 from roaml.model.machine import Dialect
 from roaml.model.property_links import LinkedFile
+from roaml.project import exploration
 from roaml.project.analysis import Analysis, Expanded
 from roaml.project.analysis.subjects import CheckedFile, Contexts, FileInSystem, Inspection
 from roaml.project.edits import laid_out
@@ -76,19 +77,33 @@ class RuleRunner:
     def __init__(self, analysis: Analysis, settings: Settings) -> None:
         self.analysis = analysis
         self.settings = settings
+        self._contents: dict[str, object] = {}
         self._inspection = Inspection(settings.limits, functools.partial(_found, analysis.memo))
 
-    def diagnostics(self, path: str) -> tuple[Diagnostic, ...]:
-        """The diagnostics of a file, sorted by position; empty if the file cannot be read."""
+    def diagnostics(self, path: str, *, explores: bool = False) -> tuple[Diagnostic, ...]:
+        """The diagnostics of a file, sorted by position; empty if the file cannot be read.
+
+        Args:
+            explores: whether the reachable states of its systems are explored. Otherwise the findings that need them
+                are contained if the systems have been explored as they are.
+        """
         file = self.checked_file(path)
         if file is None:
             return ()
         known = [self._findings(subject) for subject in file.subjects]
         findings = dict.fromkeys(finding for of_system in known for finding in of_system if self._is_selected(finding))
+        systems = dict.fromkeys(subject.system_path for subject in file.subjects)
+        explored = [self._explored(system, explores=explores) for system in systems if system is not None]
+        reached = _in_all(path, explored)
+        known.append(reached)
+        blamed = {f.span for f in findings if self._severity(f) >= Severity.WARNING}
+        findings.update(dict.fromkeys(f for f in reached if f.span not in blamed and self._is_selected(f)))
         hidden = suppressions(file.document) if file.document is not None else ()
         linked = [subject.system for subject in file.subjects]
         if hidden and all(system is not None and system.complete for system in linked):
-            unused = self._unused(file.source, [finding for of_system in known for finding in of_system], hidden)
+            of_all = [finding for of_system in known for finding in of_system]
+            unexplored = exploration.CODES if None in explored else frozenset[str]()
+            unused = self._unused(file.source, of_all, hidden, unexplored)
             findings.update(dict.fromkeys(finding for finding in unused if self._is_selected(finding)))
         published = [(file.source, finding, self._severity(finding)) for finding in _visible(findings, hidden)]
         return tuple(sorted(self._published(published), key=order))
@@ -110,11 +125,39 @@ class RuleRunner:
                 source=source,
             )
 
+    def _explored(self, system: str, *, explores: bool) -> Mapping[str, tuple[Finding, ...]] | None:
+        """Path of a file -> the findings in it that follow from the reachable states of a system; `None` if the states
+        are not known."""
+        settings = self.settings
+        if settings.ignore >= exploration.CODES or (settings.select and not exploration.CODES & settings.select):
+            return {}
+        memo = self.analysis.memo
+        if system not in self._contents:
+            self._contents[system] = exploration.content_of(self.analysis, system)
+        content = self._contents[system]
+        if explores:
+            return memo.get("exploration", system, content, lambda: self._explore(system))
+        known: Mapping[str, tuple[Finding, ...]] | None = memo.known("exploration", system, content)
+        return known
+
+    def _explore(self, system: str) -> Mapping[str, tuple[Finding, ...]] | None:
+        if self.errors(system):
+            return None
+        try:
+            return exploration.findings_of(self.analysis, system)
+        except Exception as error:  # an internal error must not stop the rules
+            _log_exception(error, "%s cannot be explored", system)
+            return {system: (internal_error("the exploration of this system", error),)}
+
     def _unused(
-        self, source: SourceFile, findings: Iterable[Finding], hidden: Iterable[Suppression]
+        self,
+        source: SourceFile,
+        findings: Iterable[Finding],
+        hidden: Iterable[Suppression],
+        unknown: frozenset[str],
     ) -> Iterator[Finding]:
         """The findings about unused suppression comments in a file of complete systems. There are none for a file that
-        has syntax errors, because other findings may be missing."""
+        has syntax errors, because other findings may be missing, nor about comments with the codes `unknown`."""
         if any(finding.code in _FORM for finding in findings):
             return
         around = covering(hidden)
@@ -125,6 +168,8 @@ class RuleRunner:
                     used.setdefault((suppression.span, suppression.codes), set()).add(finding.code)
         for suppression in itertools.islice(hidden, MAX_FINDINGS):
             key = (suppression.span, suppression.codes)
+            if unknown and (suppression.codes is None or unknown.intersection(suppression.codes)):
+                continue
             if suppression.codes is None or unused_suppression.RULE.code not in suppression.codes:
                 codes = None if suppression.codes is None else sorted(suppression.codes)
                 yield from unused_suppression.finding(
@@ -258,6 +303,13 @@ class RuleRunner:
                 facts=finding.facts,
                 source=source,
             )
+
+
+def _in_all(path: str, explored: Iterable[Mapping[str, tuple[Finding, ...]] | None]) -> tuple[Finding, ...]:
+    """The findings in a file that follow from the reachable states of all its systems whose states are known: another
+    system may reach what one does not."""
+    known = [found.get(path, ()) for found in explored if found is not None]
+    return tuple(finding for finding in known[0] if all(finding in other for other in known)) if known else ()
 
 
 def _related(

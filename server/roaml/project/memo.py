@@ -41,6 +41,11 @@ class Memo:
         self._slots[slot] = (key, result)
         return result
 
+    def known(self, computation: str, subject: Hashable, key: Hashable) -> Any:
+        """The stored result of `computation` for `subject` if it has the key; otherwise `None`."""
+        known = self._slots.get((computation, subject))
+        return known[1] if known is not None and known[0] == key else None
+
     def inner(self, name: str) -> Memo:
         """The cache named `name` inside of this cache, for the analysis of other texts under the same paths."""
         if name not in self._inner:

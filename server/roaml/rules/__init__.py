@@ -191,6 +191,7 @@ from roaml.rules.trees import (
     missing_port,
     mixed_entries,
     never_succeeds,
+    never_ticked,
     node_configuration,
     node_kind,
     node_model,

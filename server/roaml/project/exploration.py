@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a check finds in the states that a whole system can reach.
+
+A system without errors is translated and explored within limits, which are numbers of parts, states and steps, and not
+times, so the findings do not depend on the speed of the machine. Nothing is reported about a system that is too large.
+The search leaves out the order of independent steps: each step of a machine that is possible in the system also occurs
+in the reduced search (docs/spec/reductions.md).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from roaml.diagnostics import Finding, Related
+from roaml.interruption import checkpoint
+from roaml.libraries.programs.statuses import FAILURE, RUNNING, SUCCESS
+from roaml.model.expand import Instance, NodeSource, node_at
+from roaml.model.node_effects import statuses
+from roaml.model.size import Size
+from roaml.model.system import System
+from roaml.model.tree import TreeNode
+from roaml.project.analysis import Analysis
+from roaml.project.translation import network_of
+from roaml.record import Record
+from roaml.rules.trees import never_ticked
+from roaml.scxml.names import TreeEventKind, read_tree_event, received_by
+from roaml.text import Location
+
+if TYPE_CHECKING:
+    from roaml.jani.model import Model
+    from roaml.smc.model import ModelChecker
+
+CODES = frozenset((never_ticked.RULE.code,))
+"""The codes of the rules that need an exploration."""
+MAX_PARTS = 10_000
+"""The maximum number of parts of a translation that is explored (`roaml.model.size.Size.parts`)."""
+MAX_STATES, MAX_STEPS, MAX_BYTES = 30_000, 300_000, 1 << 28
+"""The limits of one exploration. A typical one that reaches them takes 0.2 s."""
+
+
+class Reached(Record, frozen=True):
+    """What the steps in all reachable states are.
+
+    Attributes:
+        events: the events that an automaton can receive -> whether it receives them in some state.
+        is_instant: whether this is only known if machines react at once.
+    """
+
+    events: Mapping[str, bool]
+    is_instant: bool
+
+
+def findings_of(analysis: Analysis, path: str) -> Mapping[str, tuple[Finding, ...]] | None:
+    """Path of a file -> the findings in it, for a system without errors; `None` if the system is too large to be
+    explored."""
+    expanded = analysis.expanded(path)
+    plain = analysis if expanded is None else expanded.analysis
+    system, size = plain.system(path), plain.size_of_translation(path)
+    if system is None or size is None or not system.instances:
+        return {}
+    if _parts(size) > MAX_PARTS:
+        return None
+    reached = _explored(plain, path)
+    if reached is None:
+        return None
+    found: dict[str, list[Finding]] = {}
+    for place, finding in _never_ticked(plain, system, reached):
+        if expanded is None:
+            found.setdefault(place, []).append(finding)
+        else:
+            source = expanded.location(Location(place, finding.span)).path
+            found.setdefault(source, []).append(expanded.finding(place, finding))
+    return {place: tuple(dict.fromkeys(findings)) for place, findings in found.items()}
+
+
+def content_of(analysis: Analysis, path: str) -> object:
+    """What the findings of a system depend on, as a value that is compared."""
+    expanded = analysis.expanded(path)
+    data = () if expanded is None else expanded.expansion.data
+    files = dict.fromkeys((*analysis.files_of(path), *analysis.interface_files_of(path)))
+    return tuple(map(analysis.source, files)), data
+
+
+def _parts(size: Size) -> int:
+    return sum(share.count for share in size.parts)
+
+
+def _explored(analysis: Analysis, path: str) -> Reached | None:
+    """All reachable states of a system, with its own reaction time; if there are too many, with machines that react at
+    once."""
+    from roaml.durations import AT_ONCE  # noqa: PLC0415 - the model checker is imported only if a system is explored
+    from roaml.jani.reaction import ReactionError, reacting  # noqa: PLC0415
+    from roaml.to_jani import translate  # noqa: PLC0415
+
+    model = translate(network_of(analysis, path), (), ())
+    checkpoint()
+    events = _received(model)
+    metadata = model.metadata
+    if events is None and metadata is not None and metadata.clock is not None and metadata.reaction_time.is_any:
+        try:
+            events = _received(reacting(model, AT_ONCE))
+        except ReactionError:
+            return None
+        return None if events is None else Reached(events, is_instant=True)
+    return None if events is None else Reached(events, is_instant=False)
+
+
+def _received(model: Model) -> Mapping[str, bool] | None:
+    """The events that automata can receive -> whether they do; `None` if there are too many states, or if an undefined
+    operation is executed, behind which no states are known."""
+    from roaml.explicit.independence import can_be_reduced  # noqa: PLC0415
+    from roaml.explicit.space import LimitError, StateLimits, explore  # noqa: PLC0415
+    from roaml.smc.fault import FaultError  # noqa: PLC0415
+    from roaml.smc.model import ModelChecker  # noqa: PLC0415
+    from roaml.views.ends import marks  # noqa: PLC0415
+
+    limits = StateLimits(states=MAX_STATES, bytes=MAX_BYTES, combinations=4_096, transitions=MAX_STEPS)
+    try:
+        checker = ModelChecker(model, (), marks(model))
+        is_reduced = can_be_reduced(checker.program, checker.stuck.goal)
+        space = explore(checker, checker.stuck, limits, lambda _: checkpoint(), is_reduced=is_reduced)
+    except (FaultError, LimitError):
+        return None
+    return None if space.problem is not None else _events(checker, bytes(memoryview(space.search.taken)))
+
+
+def _events(checker: ModelChecker, taken: bytes) -> Mapping[str, bool]:
+    events: dict[str, bool] = {}
+    for way, (edge, _) in enumerate(checker.legend.ways):
+        event = received_by(edge.action or "")
+        if event:
+            events[event] = events.get(event, False) or taken[way] != 0
+    return events
+
+
+def _never_ticked(analysis: Analysis, system: System, reached: Reached) -> Iterator[tuple[str, Finding]]:
+    """The paths of files, and findings about nodes in them that are never ticked although their parents are. A place
+    that several instances share is reported if none of them is ticked."""
+    by_number = {instance.number: instance for instance in system.instances}
+    ticked = {number for number, is_ticked in _ticks(reached).items() if is_ticked}
+    known = _ticks(reached).keys()
+    places = {instance.source for instance in system.instances if instance.number in ticked}
+    for instance in system.instances:
+        before = _before(instance, by_number)
+        if before is None or instance.source in places or before.number not in ticked or instance.number not in known:
+            continue
+        parent = by_number[before.parent] if before.parent is not None else None
+        needed = never_ticked.needed(parent.plugin) if parent is not None else None
+        if needed is None or not all(
+            _decides(system, leaf, is_condition=needed is never_ticked.FAILS) for leaf in _leaves(before, by_number)
+        ):
+            continue
+        node, earlier = _written(analysis, instance.source), _written(analysis, before.source)
+        if node is None or earlier is None:
+            continue
+        # A finding refers to places in its own file; the root of another tree may be in another file.
+        is_beside = instance.source.path == before.source.path
+        related = [Related(earlier.element.name_span, f"never returns {needed}")] if is_beside else []
+        yield instance.source.path, never_ticked.finding(node, earlier, needed, related, reached.is_instant)
+
+
+def _written(analysis: Analysis, source: NodeSource) -> TreeNode | None:
+    file = analysis.tree(source.path)
+    return None if file is None else node_at(file, source)
+
+
+def _ticks(reached: Reached) -> Mapping[int, bool]:
+    """The numbers of the nodes of the tree -> whether they are ticked."""
+    ticks: dict[int, bool] = {}
+    for event, is_received in reached.events.items():
+        tree = read_tree_event(event)
+        if tree is not None and tree.kind is TreeEventKind.TICK:
+            ticks[tree.number] = ticks.get(tree.number, False) or is_received
+    return ticks
+
+
+def _before(instance: Instance, by_number: Mapping[int, Instance]) -> Instance | None:
+    """The sibling before a node."""
+    if instance.parent is None:
+        return None
+    siblings = by_number[instance.parent].children
+    index = siblings.index(instance.number)
+    return by_number[siblings[index - 1]] if index > 0 else None
+
+
+def _leaves(instance: Instance, by_number: Mapping[int, Instance]) -> Iterator[Instance]:
+    for child in instance.children:
+        yield from _leaves(by_number[child], by_number)
+    if not instance.children:
+        yield instance
+
+
+def _decides(system: System, leaf: Instance, *, is_condition: bool) -> bool:
+    """Whether a leaf is written so that it may succeed or fail. One that cannot is a simplification of a node that can
+    do both. An action that never fails is usual, too: its server represents an environment without failures."""
+    possible = statuses(system, leaf)
+    return possible.issuperset((SUCCESS, FAILURE)) and not (is_condition and RUNNING in possible)

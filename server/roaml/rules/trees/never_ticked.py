@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The rule `never-ticked`, which never_ticked.md describes. `roaml.project.exploration` reports it,
+because it needs all reachable states of a system."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from roaml.diagnostics import Finding, Related, Severity
+from roaml.model.tree import TreeNode
+from roaml.rules.rule import Rule
+
+SUCCEEDS, FAILS = "SUCCESS", "FAILURE"
+_NEEDED = {
+    "Sequence": SUCCEEDS,
+    "AsyncSequence": SUCCEEDS,
+    "ReactiveSequence": SUCCEEDS,
+    "SequenceWithMemory": SUCCEEDS,
+    "Fallback": FAILS,
+    "AsyncFallback": FAILS,
+    "ReactiveFallback": FAILS,
+}
+
+
+def needed(plugin: str) -> str | None:
+    """The status of a child after which a node ticks the next one; `None` if this depends on more than the status."""
+    return _NEEDED.get(plugin)
+
+
+def finding(node: TreeNode, before: TreeNode, status: str, related: Iterable[Related], is_instant: bool) -> Finding:
+    """The finding that a node is never ticked, because the sibling before it never returns a status.
+
+    Args:
+        is_instant: whether this is only known if all machines react at once.
+    """
+    assumed = " if all machines react at once" if is_instant else ""
+    name = before.name.value if before.name is not None else before.type_name
+    message = (
+        f"no run of this system ticks this node{assumed}: `{name}` before it never returns {status}; check what "
+        "decides this status, when it is ticked, and whether an `Inverter` is missing or superfluous"
+    )
+    return RULE.at(node.element.name_span, message, related=related)
+
+
+RULE = Rule("never-ticked", Severity.WARNING, "No run of the system ticks a node of its tree.", whole=True)
