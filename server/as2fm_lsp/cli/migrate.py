@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`as2fm-lsp migrate PATH...`: migrate systems of an older dialect to the current one."""
+"""`as2fm-lsp migrate PATH...`: migrate systems of an older dialect and trees of an older version."""
 
 from __future__ import annotations
 
@@ -20,8 +20,9 @@ EXAMPLES = """\
 examples:
   as2fm-lsp migrate old_models --diff      show what would change
   as2fm-lsp migrate old_models/main.xml    change the files of a system
+  as2fm-lsp migrate trees/dock.xml         change a tree for version 3 of BehaviorTree.CPP
 
-exit status with --diff: 0 nothing to migrate, 1 something to migrate, 2 usage error
+exit status with --diff and --check: 0 nothing to migrate, 1 something to migrate, 2 usage error
 """
 
 
@@ -35,6 +36,9 @@ def run(arguments: Sequence[str]) -> int:
         return _fail(_shared(error))
     if options.diff:
         print_text("".join(_diff(migration) for migration in migrations))
+        return FOUND if migrations else CLEAN
+    if options.check:
+        print_text("".join(f"would migrate {shown_path(migration.path)}\n" for migration in migrations))
         return FOUND if migrations else CLEAN
     for migration in migrations:
         if migration.new_path != migration.path and os.path.exists(migration.new_path):
@@ -54,11 +58,13 @@ def run(arguments: Sequence[str]) -> int:
 def parser() -> ArgumentParser:
     result = ArgumentParser(
         prog="as2fm-lsp migrate",
-        description="Migrate systems of an older dialect to the current one. Comments and layout are kept.",
+        description="Migrate systems of an older dialect to the current one, and trees of version 3 of "
+        "BehaviorTree.CPP to version 4. Comments and layout are kept.",
         epilog=EXAMPLES,
     )
-    result.add_argument("paths", nargs="+", metavar="PATH", help="system files, or folders with systems")
+    result.add_argument("paths", nargs="+", metavar="PATH", help="system files, trees, or folders with these")
     result.add_argument("--diff", action="store_true", help="show the changes and write nothing")
+    result.add_argument("--check", action="store_true", help="name the files that would change and write nothing")
     result.add_argument(
         "--with-related",
         action="store_true",

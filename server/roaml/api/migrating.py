@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Migration of systems to the current dialect."""
+"""Migration of systems to the current dialect, and of trees to the current version."""
 
 from __future__ import annotations
 
@@ -8,10 +8,12 @@ from collections.abc import Iterable, Mapping
 
 from roaml.api.checking import check
 from roaml.api.jani_files import PathError
+from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.project.configuration import find_settings
 from roaml.project.migrate import Migration
 from roaml.project.migrate import migrate as _migrate
+from roaml.project.paths import is_below
 from roaml.project.settings import Settings, enclosing_root
 from roaml.project.workspace import Snapshot, Workspace
 from roaml.record import replace
@@ -39,10 +41,11 @@ def migrate(
     *,
     with_related: bool = False,
 ) -> tuple[Migration, ...]:
-    """The changes that migrate systems to the current dialect. Nothing is written.
+    """The changes that migrate systems to the current dialect, and trees from version 3 of BehaviorTree.CPP to version
+    4. Nothing is written.
 
     Args:
-        paths: system files, or folders that are searched for them.
+        paths: system files and trees, or folders that are searched for systems and for trees that belong to none.
         ros_paths: folders with ROS interface packages, in addition to the configured ones.
         settings: used instead of the configuration found around the first path.
         with_related: whether to also migrate the systems that would break because they share a file with a migrated
@@ -59,19 +62,26 @@ def migrate(
     # Findings that the user has switched off are needed for the migration as well.
     settings = replace(settings, select=frozenset(), ignore=frozenset())
     result = check(paths, ros_paths, settings)
-    systems = result.snapshot.analysis.system_paths
-    for path in paths:
-        if not os.path.isdir(path) and path not in systems:
-            raise PathError(f"{path}: not a system file; only systems can be migrated, so name the system file")
+    analysis = result.snapshot.analysis
+    named = {path for path in paths if not os.path.isdir(path)}
+    trees = [
+        path
+        for path in result.files
+        if analysis.kind(path) is FileKind.TREE and (path in named or not analysis.memberships.get(path))
+    ]
+    systems = _systems(paths, result.snapshot)
+    for path in named:
+        if path not in systems and path not in trees:
+            raise PathError(f"{path}: neither a system file nor a tree; name one of these")
 
     def snapshot_of(texts: Mapping[str, str]) -> Snapshot:
-        return check(systems, ros_paths, settings, texts).snapshot
+        return check([*systems, *trees], ros_paths, settings, texts).snapshot
 
-    migrations = _migrate(systems, snapshot_of) if systems else ()
+    migrations = _migrate(systems, trees, snapshot_of) if systems or trees else ()
     for migration in migrations:
         if result.source(migration.path).undecodable is not None:
             raise PathError(f"{migration.path}: not valid UTF-8; fix the encoding")
-    around = _around(systems, result.snapshot.analysis, settings) if migrations else None
+    around = _around(systems, trees, analysis, settings) if migrations else None
     shared = {} if around is None else _broken(migrations, frozenset(systems), around)
     if not shared:
         return migrations
@@ -79,6 +89,14 @@ def migrate(
     if not with_related:
         raise error
     return migrate([*paths, *error.systems], ros_paths, settings, with_related=True)
+
+
+def _systems(paths: Iterable[str], snapshot: Snapshot) -> tuple[str, ...]:
+    """The named systems, and those in named folders. A snapshot also contains the systems around a named tree."""
+    named = {path for path in paths if not os.path.isdir(path)}
+    folders = [path for path in paths if os.path.isdir(path)]
+    known = snapshot.analysis.system_paths
+    return tuple(path for path in known if path in named or any(is_below(path, folder) for folder in folders))
 
 
 def _broken(migrations: Iterable[Migration], migrated: frozenset[str], around: Snapshot) -> dict[str, tuple[str, ...]]:
@@ -96,10 +114,11 @@ def _broken(migrations: Iterable[Migration], migrated: frozenset[str], around: S
     return shared
 
 
-def _around(systems: Iterable[str], analysis: Analysis, settings: Settings) -> Snapshot:
-    """A snapshot of the files in the configured roots and in the repositories of `systems`. For a system outside of a
-    repository, the innermost folder that contains all its files is used instead."""
+def _around(systems: Iterable[str], trees: Iterable[str], analysis: Analysis, settings: Settings) -> Snapshot:
+    """A snapshot of the files in the configured roots and in the repositories of `systems` and `trees`. For a system
+    outside of a repository, the innermost folder with all its files is used instead; for a tree, its folder."""
     roots = dict.fromkeys(settings.roots)
+    roots |= dict.fromkeys(enclosing_root(path) or os.path.dirname(path) for path in trees)
     for system in systems:
         folders = {os.path.dirname(path) for path in analysis.files_of(system)}
         roots[enclosing_root(system) or os.path.commonpath(folders)] = None

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Migrates a system from an older dialect to the current one (docs/spec/files.md#dialects).
+"""Migrates a system from an older dialect to the current one (docs/spec/files.md#dialects), and trees without a
+system from version 3 of BehaviorTree.CPP to version 4.
 
 - The fixes of the rules are applied until there are none left. So a migration changes only what the rules report, and
   keeps comments and layout.
@@ -30,7 +31,9 @@ CODES = frozenset(
         "removed-bt-event",
     )
 )
-"""The rules whose fixes are part of a migration."""
+"""The rules whose fixes are part of the migration of a system."""
+TREE_CODES = frozenset(("tree-format",))
+"""The rules whose fixes are the migration of a tree."""
 
 _OLD_EXTENSION, _EXTENSION = ".scxml", ".ascxml"
 
@@ -46,21 +49,27 @@ class Migration(Record, frozen=True):
     data: bytes
 
 
-def migrate(systems: Iterable[str], snapshot_of: Callable[[Mapping[str, str]], Snapshot]) -> tuple[Migration, ...]:
-    """The migrations of the files of `systems`. Unchanged files are left out.
+def migrate(
+    systems: Iterable[str], trees: Iterable[str], snapshot_of: Callable[[Mapping[str, str]], Snapshot]
+) -> tuple[Migration, ...]:
+    """The migrations of `trees` and of the files of `systems`. Unchanged files are left out.
 
     Args:
         systems: the paths of the system files.
-        snapshot_of: returns a snapshot of the systems in which some files have other texts: path -> text.
+        trees: the paths of trees.
+        snapshot_of: returns a snapshot of both in which some files have other texts: path -> text.
     """
     systems = tuple(systems)
     first = snapshot_of({}).analysis
-    files = dict.fromkeys(path for system in systems for path in first.files_of(system) if first.source(path))
+    codes = {path: CODES for system in systems for path in first.files_of(system) if first.source(path)}
+    for path in trees:
+        codes[path] = codes.get(path, frozenset()) | TREE_CODES
+    files = list(codes)
     before = {path: _source(first, path) for path in files}
     texts: dict[str, str] = {path: _with_current_root(first, path) for path in files}
     for _ in range(MAX_PASSES):
         snapshot = snapshot_of(texts)
-        changed = {path: _fixed(snapshot, path) for path in files}
+        changed = {path: _fixed(snapshot, path, codes[path]) for path in files}
         if changed == texts:
             break
         texts = changed
@@ -96,13 +105,13 @@ def _with_current_root(analysis: Analysis, path: str) -> str:
     return apply_edits(text, tuple(TextEdit(span, "ascxml") for span in spans))
 
 
-def _fixed(snapshot: Snapshot, path: str) -> str:
+def _fixed(snapshot: Snapshot, path: str, codes: frozenset[str]) -> str:
     """The text after the first fix of each finding of the migration. Overlapping fixes are applied in the next pass."""
-    return apply_edits(_text(snapshot.analysis, path), fix_edits(snapshot, path, _step))
 
+    def step(diagnostic: Diagnostic) -> Fix | None:
+        return diagnostic.fixes[0] if diagnostic.code in codes and diagnostic.fixes else None
 
-def _step(diagnostic: Diagnostic) -> Fix | None:
-    return diagnostic.fixes[0] if diagnostic.code in CODES and diagnostic.fixes else None
+    return apply_edits(_text(snapshot.analysis, path), fix_edits(snapshot, path, step))
 
 
 def _current_name(analysis: Analysis, path: str) -> str:
