@@ -55,8 +55,12 @@ EVENTS = {
     PortKind.NODE: (ObservedPart.TICK, ObservedPart.RESPONSE, ObservedPart.HALT),
 }
 """Kind of port -> the values of its attribute `event`."""
-_OF_CLIENTS = (ObservedPart.REQUEST, ObservedPart.GOAL_REQUEST, ObservedPart.CANCEL_REQUEST)
-"""The events of services and actions that clients send."""
+_PARTS_OF_CLIENTS = {
+    ObservedPart.REQUEST: ProtocolPart.REQUEST,
+    ObservedPart.GOAL_REQUEST: ProtocolPart.GOAL,
+    ObservedPart.CANCEL_REQUEST: ProtocolPart.CANCEL,
+}
+"""The events of services and actions that clients send, with what a client sends in them."""
 _SENDING = {
     ObservedPart.PUBLISH: "publishes on",
     ObservedPart.REQUEST: "calls",
@@ -273,7 +277,7 @@ class PortLinker:
                 for sender in senders:
                     yield PortEvent(name, sender.automaton.name)
             return
-        chooser = port.origin if event in _OF_CLIENTS else port.target
+        chooser = port.origin if event in _PARTS_OF_CLIENTS else port.target
         clients = self._chosen(chooser, channel.users, "is a client of", channel)
         stem = f"{'srv' if port.kind is PortKind.SERVICE else 'action'}_{sanitise(channel.name)}"
         for client in clients:
@@ -318,11 +322,13 @@ class PortLinker:
     def _warn_of_clients(self, port: Port, channel: Channel, event: ObservedPart) -> None:
         """Warn if there are several clients to choose from."""
         assert port.name is not None
-        if len(channel.users) < 2:
+        part = _PARTS_OF_CLIENTS.get(event)
+        clients = [client for client in channel.users if part is None or part in client.use.sends]
+        if len(clients) < 2:
             return
-        names = ", ".join(f"`{client.automaton.name}`" for client in channel.users)
-        attribute = "origin" if event in _OF_CLIENTS else "target"
-        number = len(channel.users)
+        names = ", ".join(f"`{client.automaton.name}`" for client in clients)
+        attribute = "origin" if event in _PARTS_OF_CLIENTS else "target"
+        number = len(clients)
         message = f"the port listens to {number} clients: {names}; AS2FM uses only one; set `{attribute}` to select one"
         self.report(ProblemKind.SEVERAL_CLIENTS, port.name.span, message)
 
