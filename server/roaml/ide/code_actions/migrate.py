@@ -32,7 +32,7 @@ def _convert(snapshot: Snapshot, path: str) -> WorkspaceEdit:
     for system in systems:
         for file in analysis.files_of(system):
             systems += [owner for owner in analysis.memberships.get(file, ()) if owner not in systems]
-    migrated = migrate(systems, snapshot.with_texts)
+    migrated = migrate(systems, (), snapshot.with_texts)
     return WorkspaceEdit(
         {file.path: edits for file in migrated if (edits := text_edits(file.before, file.after))},
         renamed={file.path: file.new_path for file in migrated if file.new_path != file.path},
