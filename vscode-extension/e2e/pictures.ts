@@ -241,10 +241,7 @@ export function pictures(stage: Stage): void {
         for (const format of ["SVG", "PNG", "PDF"]) {
             await picture.getByRole("button", { name: `Save as ${format}` }).click();
             const file = path.join(window.folder, `main.ros.${format.toLowerCase()}`);
-            const input = window.page.locator(".quick-input-widget:visible input[type=text]").first();
-            await window.until(async () => (await input.inputValue()) === file);
-            await window.press("Enter");
-            await window.until(() => fs.existsSync(file) && fs.statSync(file).size > 0);
+            await window.saveAs(file);
         }
         const svg = fs.readFileSync(path.join(window.folder, "main.ros.svg"), "utf8");
         assert.match(svg, /^<svg xmlns="http:\/\/www.w3.org\/2000\/svg"/);

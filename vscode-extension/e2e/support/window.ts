@@ -61,15 +61,29 @@ export class Window {
 
     /** Enters a text, or accepts the suggested one, in the quick input that asks a question. */
     async answer(question: string, text?: string): Promise<void> {
-        const asked = this.question(question);
-        await asked.waitFor();
-        const input = this.page.locator(".quick-input-widget input[type=text]").first();
+        await this.accept(this.question(question), text);
+    }
+
+    /** Presses Enter in the quick input until something in it is not visible any more. */
+    async accept(shown: Locator, text?: string): Promise<void> {
+        await shown.first().waitFor();
         await this.until(async () => {
-            if (!(await asked.isVisible())) return true;
-            if (text !== undefined) await input.fill(text);
-            await input.focus(); // a picture may have taken it back
-            return (await this.pressEnter()) && (await isShown(asked, REPETITION_MS, "hidden"));
+            if (!(await shown.first().isVisible())) return true;
+            if (text !== undefined) await this.quickInput.fill(text);
+            await this.quickInput.focus(); // a picture may have taken it back
+            return (await this.pressEnter()) && (await isShown(shown.first(), REPETITION_MS, "hidden"));
         });
+    }
+
+    /** Saves a file where a dialog proposes it, or elsewhere, and waits until it has a content. */
+    async saveAs(proposed: string, file = proposed): Promise<void> {
+        await this.until(async () => (await this.quickInput.inputValue()) === proposed);
+        await this.accept(this.page.locator(".quick-input-widget"), file);
+        await this.until(() => fs.existsSync(file) && fs.statSync(file).size > 0);
+    }
+
+    private get quickInput(): Locator {
+        return this.page.locator(".quick-input-widget input[type=text]").first();
     }
 
     private get quickInputFocus(): Locator {
@@ -78,7 +92,7 @@ export class Window {
 
     /** Presses Enter in the quick input. Resolves to whether it has closed or shows the next question. */
     private async enter(): Promise<boolean> {
-        const input = this.page.locator(".quick-input-widget input[type=text]").first();
+        const input = this.quickInput;
         const text = await input.inputValue();
         return (await this.pressEnter()) && (!(await input.isVisible()) || (await input.inputValue()) !== text);
     }
