@@ -45,7 +45,9 @@ export class ExitChips {
         this.boxes = new Map(drawing.nodes.map((node) => [node.index, node]));
         const index = new Map(picture.nodes.map(({ id }, number) => [id, number]));
         const links =
-            picture.kind === "tree" ? [] : scene.root.querySelectorAll<SVGGElement>(":scope > .link[data-edges]");
+            picture.kind === "tree"
+                ? []
+                : scene.root.querySelectorAll<SVGGElement>(":scope > :is(.link, .edge)[data-edges]");
         this.lines = [...links].flatMap((group) => {
             const edge = Number(group.dataset["edges"]?.split(" ")[0]);
             const { source = "", target = "" } = picture.edges[edge] ?? {};

@@ -459,7 +459,7 @@ export class PictureView {
     private showSurroundings(): void {
         const { picture, scene, here, selected } = this;
         if (!picture || !scene || picture.kind === "tree") return;
-        const hasMany = scene.root.querySelectorAll(":scope > .link").length >= MANY_LINES;
+        const hasMany = scene.root.querySelectorAll(":scope > :is(.link, .edge)").length >= MANY_LINES;
         const node = selected >= 0 || here === null ? selected : this.nodeOf(here);
         markEdges(scene, this.pointed ?? edgesOf(picture, hasMany ? node : -1));
     }

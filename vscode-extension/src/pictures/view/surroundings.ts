@@ -33,5 +33,5 @@ export function markEdges({ root, edges }: Scene, { leaving, entering }: NodeEdg
     const marked = [leaving, entering].map((own) => own.flatMap((edge) => edges.get(edge) ?? []));
     for (const [index, groups] of marked.entries())
         for (const group of groups) group.closest(".scene > *")?.classList.add(MARKS[index] ?? "leaves");
-    root.classList.toggle("near", root.querySelector(":scope > .link:is(.leaves, .enters)") !== null);
+    root.classList.toggle("near", root.querySelector(":scope > :is(.link, .edge):is(.leaves, .enters)") !== null);
 }
