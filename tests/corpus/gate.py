@@ -13,6 +13,10 @@ and two steps of the clock. What is too large for it, or is refused by Storm, is
 models within 10 minutes and 16 GB for each property, and 300 networks:
 
   run.py --step storm --storm-seconds 600 --storm-memory 16 --max-states 5000000 --networks 300 --resume FILE
+
+This writes a page of the documentation from such files:
+
+  run.py --page docs/spec/storm.md --resume FILE --resume FILE
 """
 
 from __future__ import annotations
@@ -21,7 +25,7 @@ import argparse
 import itertools
 import json
 import os
-import re
+import resource
 import shutil
 import subprocess
 import sys
@@ -40,6 +44,7 @@ import prefork
 from both_kernels import difference
 from corpus.forest import grow
 from corpus.generated import generate
+from corpus.judgements import COLUMNS, DIFFERENT, EQUAL, REFUSED, TOO_LARGE, Judgement, page, read
 from corpus.parts import PARTS, compose
 from corpus.robots import Make
 from roaml import api
@@ -92,9 +97,7 @@ class System:
         values: the known values of properties.
         mistakes: the places at which a check must report errors; a system with errors is only checked and drawn.
         is_large: whether its traces are cut early and few states are explored.
-        judged: how often Storm agrees (`equal`), does not (`different`), reaches a limit (`too large`), or gives no
-            answer (`refused`).
-        left_out: what was not compared, and why.
+        judged: the comparisons with Storm.
         seconds: step -> its elapsed time in s.
     """
 
@@ -109,8 +112,7 @@ class System:
     ) -> None:
         self.name, self.main, self.values, self.mistakes = name, main, values or {}, mistakes
         self.is_large = is_large
-        self.judged: Counter[str] = Counter()
-        self.left_out: list[str] = []
+        self.judged: list[Judgement] = []
         self.seconds: dict[str, float] = {}
 
     @property
@@ -147,14 +149,14 @@ class System:
         return api.load(str(self.main), self.paths[1:], overrides=api.Overrides(reaction_time=time))
 
     @cached_property
-    def times(self) -> list[ReactionTime]:
-        """`any`, `instant`, and one and two steps of the clock; `any` alone if the system has no clock."""
+    def times(self) -> dict[str, ReactionTime]:
+        """Column of the page -> the reaction time; `any` alone if the system has no clock."""
         subject = self.subject(ANY_TIME)
         model = subject if isinstance(subject, api.Model) else api.to_jani(subject, [])
         if model.metadata is None or model.metadata.clock is None:
-            return [ANY_TIME]
+            return {COLUMNS[0]: ANY_TIME}
         step = model.metadata.clock.step
-        return [ANY_TIME, ReactionTime(2 * step), ReactionTime(step), AT_ONCE]
+        return dict(zip(COLUMNS, (ANY_TIME, ReactionTime(2 * step), ReactionTime(step), AT_ONCE), strict=True))
 
 
 class LoneTree(System):
@@ -172,9 +174,9 @@ class RandomNetwork(System):
         return reacting(self.model, time)
 
     @cached_property
-    def times(self) -> list[ReactionTime]:
+    def times(self) -> dict[str, ReactionTime]:
         """Durations only if guards read only variables of their automaton, as in systems."""
-        return super().times if self.is_local else [ANY_TIME, AT_ONCE]
+        return super().times if self.is_local else {COLUMNS[0]: ANY_TIME, COLUMNS[-1]: AT_ONCE}
 
 
 def networks(count: int) -> Iterator[RandomNetwork]:
@@ -364,11 +366,12 @@ def storm(system: System) -> Iterator[str]:
     for name in system.names:
         before: tuple[float, float] | None = None
         is_searched = True
-        for reaction in system.times:
+        for column, reaction in system.times.items():
             if not is_searched and reaction != AT_ONCE:
-                system.judged["too large"] += 1  # each state with the counters that a duration needs
+                # Each state with the counters that a duration needs.
+                system.judged.append(Judgement(name, column, TOO_LARGE, f"more than {JUDGE[0].states:,}, as before"))
                 continue
-            found, values = _judged(system, name, reaction)
+            found, values = _judged(system, name, column, reaction)
             is_searched = values is not None
             yield from (f"{name}, reaction time {reaction.text}: {problem}" for problem in found)
             if before and values and (values[0] < before[0] - TOLERANCE or values[1] > before[1] + TOLERANCE):
@@ -380,40 +383,59 @@ class JudgeLimits(NamedTuple):
     """Limits of the step `storm` for one property and reaction time: CPU time of Storm in s, memory in GB, and states
     of the search."""
 
-    seconds: int = 5
-    memory: int = 4
+    seconds: int = 10
+    memory: int = 6
     states: int = 20_000
 
+    @property
+    def text(self) -> str:
+        """As a sentence of the page."""
+        return (
+            f"Limits for each property and reaction time: {self.states:,} states of the search, {self.seconds} s of "
+            f"CPU time, and {self.memory} GB for Storm."
+        )
 
-def _judged(system: System, name: str, time: ReactionTime) -> tuple[list[str], tuple[float, float] | None]:
+
+def _judged(system: System, name: str, column: str, time: ReactionTime) -> tuple[list[str], tuple[float, float] | None]:
     """The differences, and the minimum and maximum of the search, if it has an answer."""
     from storm import RefusedError, StormLimits, TooLargeError, exact_within  # noqa: PLC0415 - imports Storm
     from three_answers import answers  # noqa: PLC0415
 
-    limits, verdict = JUDGE[0], "equal"
+    limits, verdict, reason = JUDGE[0], EQUAL, ""
+    before = after = _of_children()
 
     def storms_answer(model: api.Model, property_: str) -> Exact | None:
-        nonlocal verdict
+        nonlocal verdict, reason, before, after
+        before = _of_children()
         try:
             return exact_within(model, property_, StormLimits(limits.seconds, limits.memory << 30))
-        except TooLargeError:
-            verdict = f"too large for Storm ({limits.seconds} s, {limits.memory} GB)"
+        except TooLargeError as error:
+            verdict, reason = TOO_LARGE, f"Storm: more than {limits.memory} GB"
+            if error.is_time:
+                reason = f"Storm: more than {limits.seconds} s"
         except RefusedError as error:
-            verdict = f"refused: {error}"
+            verdict, reason = REFUSED, f"Storm: {error}"
+        finally:
+            after = _of_children()
         return None
 
     answer = answers(system.subject(time), name, limits.states, storms_answer)
     found = list(answer.differences())
     if found:
-        verdict = "different"
+        verdict, reason = DIFFERENT, "; ".join(found)
     elif answer.undecided.startswith("stopped"):
-        verdict = f"too large: {answer.undecided}"
+        verdict, reason = TOO_LARGE, answer.undecided
     elif answer.storm is not None and answer.searched is None:
-        verdict = f"refused: no values: {answer.undecided}"
-    system.judged[re.split(r" for|:", verdict)[0]] += 1
-    if verdict not in ("equal", "different"):
-        system.left_out.append(f"{name}, reaction time {time.text}: {verdict}")
+        verdict, reason = REFUSED, answer.undecided
+    spent = round(after - before, 2)
+    system.judged.append(Judgement(name, column, verdict, reason, answer.searched_states, answer.states, spent))
     return found, answer.searched
+
+
+def _of_children() -> float:
+    """The CPU time in s of all processes that this one has started and that have ended."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
 Step = Callable[[System], Iterator[str]]
@@ -457,7 +479,9 @@ def main() -> int:
     parser.add_argument("--only", default="", metavar="TEXT", help="only systems whose name contains this")
     parser.add_argument("--step", action="append", choices=list(STEPS), help="only this step; may be repeated")
     parser.add_argument("--plain", action="store_true", help="with the compiled modules as plain Python")
-    parser.add_argument("--resume", type=Path, metavar="FILE", help="leave out systems that passed before; record more")
+    parser.add_argument("--resume", type=Path, action="append", metavar="FILE",
+                        help="leave out systems that passed before; record more in the last file")  # fmt: skip
+    parser.add_argument("--page", type=Path, metavar="FILE", help="write what --resume recorded of Storm as Markdown")
     parser.add_argument("--networks", type=int, default=0, metavar="N", help="also N random networks, for step storm")
     default = JudgeLimits()
     parser.add_argument("--storm-seconds", type=int, default=default.seconds, metavar="N", help="CPU time of Storm")
@@ -467,33 +491,36 @@ def main() -> int:
     if options.plain and not IS_PLAIN:
         return _run_plain()
     JUDGE[0] = JudgeLimits(options.storm_seconds, options.storm_memory, options.max_states)
+    if options.page:
+        options.page.write_text(page(read(options.resume), JUDGE[0].text), encoding="utf-8")
+        return 0
     steps = {name: step for name, step in STEPS.items() if not options.step or name in options.step}
     with tempfile.TemporaryDirectory() as folder:
         chosen = itertools.chain(systems(Path(folder), {1: 1, 2: 2, 3: 3, 4: 30, 5: 60}), networks(options.networks))
-        return _run([system for system in chosen if options.only in system.name], steps, options.resume)
+        return _run([system for system in chosen if options.only in system.name], steps, options.resume or [])
 
 
-def _run(chosen: list[System], steps: Mapping[str, Step], record: Path | None) -> int:
+def _run(chosen: list[System], steps: Mapping[str, Step], records: list[Path]) -> int:
     """Print what fails; return the exit status."""
-    lines = record.read_text(encoding="utf-8").splitlines() if record and record.exists() else []
+    lines = [line for record in records if record.exists() for line in record.read_text(encoding="utf-8").splitlines()]
     passed = {(row["system"], tuple(row["steps"])): row for row in map(json.loads, lines) if not row["problems"]}
     failures, judged, begun = 0, Counter[str](), time.monotonic()
     for system in chosen:
         if row := passed.get((system.name, tuple(steps))):
-            judged.update(row["judged"])
+            judged.update(Judgement(*values).verdict for values in row["judged"])
             print(f"passed before: {system.name}", flush=True)
             continue
         since = time.monotonic()
         found = list(problems(system, steps))
         failures += len(found)
-        judged.update(system.judged)
+        judged.update(judgement.verdict for judgement in system.judged)
         print(f"{'FAILED' if found else 'passed'} {system.name} ({time.monotonic() - since:.1f} s)", flush=True)
-        for text in (*found, *(f"left out: {text}" for text in system.left_out)):
+        for text in (*found, *(f"left out: {row}" for row in system.judged if row.verdict in (TOO_LARGE, REFUSED))):
             print(f"  {text}", flush=True)
         row = {"system": system.name, "steps": list(steps), "problems": found, "judged": system.judged}
-        if record:
-            with record.open("a", encoding="utf-8") as file:
-                file.write(json.dumps({**row, "left out": system.left_out, "seconds": system.seconds}) + "\n")
+        if records:
+            with records[-1].open("a", encoding="utf-8") as file:
+                file.write(json.dumps({**row, "seconds": system.seconds}) + "\n")
     counts = ", ".join(f"{count} {verdict}" for verdict, count in sorted(judged.items()))
     print(
         f"{len(chosen)} systems, {failures} problems, {time.monotonic() - begun:.0f} s; Storm: {counts or 'not asked'}"

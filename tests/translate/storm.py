@@ -39,7 +39,15 @@ class StormLimits(NamedTuple):
 
 
 class TooLargeError(Exception):
-    """Storm has reached a limit."""
+    """Storm has reached a limit.
+
+    Attributes:
+        is_time: whether it is the CPU time, not the memory.
+    """
+
+    def __init__(self, *, is_time: bool) -> None:
+        super().__init__("CPU time" if is_time else "memory")
+        self.is_time = is_time
 
 
 class RefusedError(Exception):
@@ -63,11 +71,12 @@ def exact_within(model: Model, name: str, limits: StormLimits) -> Exact:
     os.close(writing)
     with os.fdopen(reading, encoding="utf-8", errors="replace") as answer:
         text = answer.read()
-    status = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
+    _, waited, usage = os.wait4(process, 0)
+    status = os.waitstatus_to_exitcode(waited)
     if status == REFUSED:
         raise RefusedError(text)
     if status < 0 or status == MEMORY_USED_UP:
-        raise TooLargeError
+        raise TooLargeError(is_time=usage.ru_utime + usage.ru_stime >= limits.seconds - 1)
     if status:
         raise AssertionError(text)
     return Exact(*json.loads(text))

@@ -22,6 +22,7 @@ class Answers:
     Attributes:
         storm: minimum and maximum; `None` if there are too many states.
         states: of Storm's model.
+        searched_states: of the search; 0 if it does not end.
         searched: minimum and maximum; `None` if the search does not answer, for the reason `undecided`.
         uniform: the value under uniform choices, if the search computed it.
         bounds: of the estimate; 0 and 1 if there are too many states.
@@ -30,6 +31,7 @@ class Answers:
 
     storm: tuple[float, float] | None
     states: int
+    searched_states: int
     searched: tuple[float, float] | None
     uniform: float | None
     undecided: str
@@ -69,7 +71,7 @@ def answers(
     result = verifier.exhaustive(verifier.checker.compiled_properties[0], api.StateLimits(max_states))
     undecided = result.outcome.reason if isinstance(result.outcome, api.Undecided) else ""
     if undecided.startswith("stopped"):
-        return Answers(None, 0, None, None, undecided, api.Bounds(0.0, 1.0), 0)
+        return Answers(None, 0, 0, None, None, undecided, api.Bounds(0.0, 1.0), 0)
     (sampled,) = api.verify(source, [name], SAMPLING, only_uniform=True)
     assert sampled.answer is not None, sampled.outcome
     exact = result.exact
@@ -77,6 +79,7 @@ def answers(
     return Answers(
         None if storm is None else (storm.least, storm.greatest),
         0 if storm is None else storm.states,
+        0 if exact is None else exact.states,
         None if exact is None else (exact.minimum.lower, exact.maximum.upper),
         None if exact is None or exact.uniform is None else exact.uniform.lower,
         undecided,
