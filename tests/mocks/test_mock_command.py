@@ -241,6 +241,12 @@ def test_a_tree_that_cannot_succeed(tmp_path: Path, capsys: pytest.CaptureFixtur
     assert "not ended" not in text
 
 
+def test_one_attempt_is_singular(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tree(tmp_path, "<RetryUntilSuccessful num_attempts='1'><Drive/></RetryUntilSuccessful>")
+    run(["verify", path, "--mock", "Drive: 0 in 1 s"])
+    assert "on average: 1 failed attempt of RetryUntilSuccessful (" in capsys.readouterr().out
+
+
 def test_means_of_equal_values(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Traces that agree say nothing about other traces, but a time and a number of attempts are never negative."""
     twice = "<RetryUntilSuccessful num_attempts='2'><Drive/></RetryUntilSuccessful>"

@@ -26,6 +26,8 @@ from roaml.views.turns import Turn, turns
 
 MAX_LEAVES, MAX_COUNTERS = 2, 2
 """The numbers of influences, and of recoveries and failed attempts, that a report states unless it is whole."""
+_ONE = dict(zip(COUNTERS, ("recovery", "failed attempt"), strict=True))
+"""Counter -> its name after the number 1."""
 NEVER = 1e-9
 """The probability below which an exact report does not state that the tree may still run at the end of the time."""
 MIN_NORMAL_TRACES = 30
@@ -108,7 +110,7 @@ def _lines(mocked: MockedTree, outcome: TreeOutcome, place_of: PlaceOf, is_whole
         yield f"  time until success: {_time(outcome.time)}; {', '.join(_quantiles(outcome))}"
     shown = _shown([node for node, _, _ in outcome.counts], place_of)
     counts = [
-        f"{_count(value)} {counter.replace('_', ' ')} of {shown[node.number]}"
+        f"{_counted(value, counter)} of {shown[node.number]}"
         for node, counter, value in outcome.counts
         if value.value or is_whole
     ]
@@ -151,6 +153,12 @@ def _listed(title: str, parts: Sequence[str], most: int, is_whole: bool) -> Iter
         more = len(parts) - most
         end = f"; … {more} more (--verbose)" if more > 0 else ""
         yield f"  {title}: {'; '.join(parts[:most])}{end}"
+
+
+def _counted(value: Measured, counter: str) -> str:
+    """A number of events with its unit, such as `1 recovery`."""
+    count = _count(value)
+    return f"{count} {_ONE[counter] if count.split()[-1] == '1' else counter.replace('_', ' ')}"
 
 
 def _count(value: Measured) -> str:
