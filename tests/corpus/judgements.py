@@ -22,7 +22,7 @@ and the maximum that `verify --exhaustive` computes, those that [Storm](https://
 [translated JANI](jani.md), and an estimate from 200 traces, whose bounds must contain the value under uniform choices.
 It does so for four [reaction times](semantics.md#reaction-time): `any`, a duration of two steps of the clock, of one
 step, and `instant`. It also compares the reaction times with each other: a shorter one must not widen the range from
-minimum to maximum.
+minimum to maximum. Systems that are not listed were not compared.
 """
 
 
@@ -56,7 +56,12 @@ class Judgement(NamedTuple):
         searched = f"{self.searched:,}; " if self.searched else ""
         if self.verdict == EQUAL:
             return f"{searched}{self.storm:,}, {self.storm_s:.1f} s"
-        return searched + self.reason.replace("|", "\\|")
+        return searched + self.why
+
+    @property
+    def why(self) -> str:
+        """The reason without the advice for users, which follows a semicolon."""
+        return self.reason.partition(";")[0].replace("|", "\\|")
 
 
 def read(files: Iterable[Path]) -> list[tuple[str, Judgement]]:
@@ -86,7 +91,7 @@ def page(rows: Iterable[tuple[str, Judgement]], limits: str) -> str:
             systems.setdefault((system, judgement.name), {})[judgement.column] = judgement
     listed = [judgement for columns in systems.values() for judgement in columns.values()]
     parts = [TITLE, limits, "", "## Systems", "", *_counts(listed), "", *_list(systems)]
-    parts += ["", "## Random networks", "", *_counts(networks)]
+    parts += ["", "## Random networks", "", *_counts(networks), *_reasons(networks)]
     return "\n".join([*parts, ""])
 
 
@@ -100,9 +105,15 @@ def _counts(judgements: Iterable[Judgement]) -> Iterator[str]:
         yield f"| {column} | {' | '.join(str(counts[column, verdict]) for verdict in verdicts)} |"
 
 
+def _reasons(judgements: Iterable[Judgement]) -> Iterator[str]:
+    """How often there is no comparison for a reason."""
+    for reason, count in sorted(Counter(judgement.why for judgement in judgements if judgement.reason).items()):
+        yield f"\n{count} without a comparison: {reason}."
+
+
 def _list(systems: Mapping[tuple[str, str], Mapping[str, Judgement]]) -> Iterator[str]:
-    yield "Each cell has the states of the search with [reductions](reductions.md), then the states and the CPU time of"
-    yield "Storm, or the reason why there is no comparison."
+    yield "Each cell has the states of the search, which applies [reductions](reductions.md) where they help, then the"
+    yield "states and the CPU time of Storm, or the reason why there is no comparison."
     yield ""
     yield f"| system, property | {' | '.join(COLUMNS)} |"
     yield "| --- | --- | --- | --- | --- |"

@@ -22,7 +22,7 @@ def test_the_page_lists_systems_and_counts_networks(tmp_path: Path) -> None:
         Judgement("p", "any", EQUAL, searched=1_200, storm=3_400, storm_s=1.5),
         Judgement("p", "instant", TOO_LARGE, "Storm: more than 60 s", searched=7),
     )
-    record(file, "network 0", Judgement("q", "any", EQUAL))
+    record(file, "network 0", Judgement("q", "any", EQUAL), Judgement("q", "instant", TOO_LARGE, "stopped; raise it"))
     text = page(read([file]), "Limits.")
     assert "\nLimits.\n" in text
     assert "| robot, p | 1,200; 3,400, 1.5 s | no clock | no clock | 7; Storm: more than 60 s |" in text
@@ -31,6 +31,7 @@ def test_the_page_lists_systems_and_counts_networks(tmp_path: Path) -> None:
     assert "| any | 1 | 0 | 0 | 0 |" in systems
     assert "| instant | 0 | 0 | 1 | 0 |" in systems
     assert "| any | 1 | 0 | 0 | 0 |" in networks
+    assert "\n1 without a comparison: stopped.\n" in networks
 
 
 def test_a_later_judgement_replaces_an_earlier_one(tmp_path: Path) -> None:
