@@ -29,18 +29,18 @@ def compiled() -> Iterator[tuple[str, Compiled]]:
     """Name -> program and goal of the first property of each system, and of one property of each model."""
     for path in conformance.systems():
         checker = api.checker(api.to_jani(api.load(str(path), [str(conformance.INTERFACES)])))
-        yield conformance.label(path), _first(checker)
+        yield conformance.label(path), first(checker)
     for name, content in models().items() if FOLDER.is_dir() else ():
         value, _ = parse((FOLDER / f"{name}.jani").read_text(encoding="utf-8-sig"))
         model, _ = read_model(value, name)
         try:
             assert model is not None
-            yield name, _first(ModelChecker(model, [p for p in model.properties if p.name == asked(name, content)]))
+            yield name, first(ModelChecker(model, [p for p in model.properties if p.name == asked(name, content)]))
         except FaultError:
             continue
 
 
-def _first(checker: ModelChecker) -> Compiled:
+def first(checker: ModelChecker) -> Compiled:
     property_ = checker.compiled_properties[0]
     reduced = checker.reduced(property_)
     return reduced.compiled(reduced.compiled_properties[0])
