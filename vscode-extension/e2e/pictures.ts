@@ -59,6 +59,9 @@ export function pictures(stage: Stage): void {
         const picture = await window.picture();
         const machines = ["Battery", "Building", "BatteryAbove", "Charge", "Deliver"];
         await window.becomes(() => labels(picture), [...machines, "/battery", "/dock", "/parcels", "/hand_over"]);
+        // What is under the pointer, here where the last test clicked, would be highlighted.
+        await window.page.mouse.move(640, 17);
+        await picture.locator(".node").first().waitFor();
         await window.screenshot("ros-graph");
         await picture.locator("svg.picture").press("/");
         await window.type("hand");

@@ -1,12 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs the end-to-end tests with the packaged extension. An argument is a pattern for the names of tests.
 // `--measure` measures the start instead, `--measure timeline` the timeline of a long run; `--pictures` also renews the
-// pictures of the READMEs, of the documents and of the walkthrough.
+// pictures of the READMEs, of the documents and of the walkthrough, and without a pattern runs only the tests that take
+// these.
 import { execFileSync, spawnSync } from "node:child_process";
 import * as fs from "node:fs";
 import * as path from "node:path";
 import { fileURLToPath } from "node:url";
 import * as esbuild from "esbuild";
+
+/** Parts of the names of the tests that take the published pictures. */
+const PICTURED = [
+    "one click installs the server",
+    "a machine: its states",
+    "the behavior tree and its ports",
+    "the ROS graph: keyboard",
+    "plain SCXML beside",
+    "the Test Explorer runs",
+    "a counterexample leads",
+    "mocks are edited",
+    "F5 goes to the dropped block",
+    "the timeline shows the run",
+    "the walkthrough's pictures",
+];
 
 const here = fileURLToPath(new URL("..", import.meta.url));
 execFileSync("sh", [path.join(here, "e2e/workbench/setup.sh")], { stdio: "inherit" });
@@ -36,15 +52,19 @@ await esbuild.build({
 const file = path.join(out, measures ? `${measure}.mjs` : "all.test.mjs");
 const options = measures ? [] : ["--test", "--test-reporter=spec"];
 const names = measures ? [] : [first, ...others].filter((name) => name !== undefined && !name.startsWith("--"));
-const patterns = names.map((name) => `--test-name-pattern=${name}`);
-const env = first === "--pictures" ? { ...process.env, AS2FM_PICTURES: "yes" } : process.env;
+const pictures = first === "--pictures";
+const patterns = (pictures && names.length === 0 ? PICTURED : names).map((name) => `--test-name-pattern=${name}`);
+const env = pictures ? { ...process.env, AS2FM_PICTURES: "yes" } : process.env;
 const done = spawnSync(process.execPath, [...options, ...patterns, file], { stdio: "inherit", env });
-if (done.status === 0 && first === "--pictures") {
+if (done.status === 0 && pictures) {
     for (const folder of ["screenshots", "walkthrough", "../docs/pictures"]) {
         for (const name of fs.readdirSync(path.join(here, folder))) {
             const renewed = path.join(output, name);
             // With a pattern, only some pictures are taken.
             if (fs.existsSync(renewed)) fs.copyFileSync(renewed, path.join(here, folder, name));
+            else if (names.length === 0 && name.endsWith(".png")) {
+                throw new Error(`no test took ${folder}/${name}: add its test to PICTURED`);
+            }
         }
     }
 }
