@@ -9,7 +9,7 @@ from roaml.diagnostics import Finding, Fix, Severity
 from roaml.edit.elements import after
 from roaml.language import HL_SCXML
 from roaml.model.behavior.explore import Behavior, BehaviorStep
-from roaml.model.behavior.phases import OWED, Phase, Subject
+from roaml.model.behavior.phases import OWED, Phase, ProtocolEvent, Subject
 from roaml.model.machine import Handler, RosSend, State
 from roaml.model.value_types import GOAL_STATUSES, find_handle
 from roaml.model.values.analyse import RESULT_CODE, DataChannel
@@ -19,9 +19,10 @@ from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support import misspelled
 from roaml.rules.support.answers import behaviors
 
+_CANCELED = 5
 _HANDLERS = {
     4: "ros_action_handle_success_result",
-    5: "ros_action_handle_canceled_result",
+    _CANCELED: "ros_action_handle_canceled_result",
     6: "ros_action_handle_aborted_result",
 }
 """The code of a result -> the element that handles it (docs/spec/ros.md#action-client)."""
@@ -48,13 +49,49 @@ def _results(context: MachineContext, behavior: Behavior, state: State) -> Itera
         if not any(_has_effect(state, handler) for handler in handlers):
             continue  # the state expects results of earlier goals, and discards them on purpose
         for code in sorted(code for code in sent.only if isinstance(code, int) and code not in handled):
-            if code in _HANDLERS and not _is_reported(context, name, code):
+            if (
+                code in _HANDLERS
+                and not _is_reported(context, name, code)
+                and _may_arrive(context, behavior, state, name, code)
+            ):
                 message = (
                     f"a result with the code {code} ({GOAL_STATUSES[code]}), which the server sends, is discarded in "
                     f"this state, so the machine waits for ever; add a `<{_HANDLERS[code]}>`"
                 )
                 assert state.id is not None
                 yield RULE.at(state.id.span, message, *_fixes(context, handlers, code))
+
+
+def _may_arrive(context: MachineContext, behavior: Behavior, state: State, name: str, code: int) -> bool:
+    """Whether a result with a code can arrive in a state. That of a canceled goal follows a request to cancel it."""
+    if code != _CANCELED or any(
+        isinstance(statement, RosSend)
+        and statement.part is ProtocolPart.CANCEL
+        and statement.handle is not None
+        and statement.handle.value == name
+        for chart in context.machine.charts
+        for statement in (chart.executed if chart is not behavior.chart else ())
+    ):
+        return True
+    return state.id is not None and state.id.value in _canceling(behavior, name)
+
+
+def _canceling(behavior: Behavior, name: str) -> set[str]:
+    """The names of the states in which a goal that the machine has asked to cancel may still be active."""
+
+    def is_awaited(number: int) -> bool:
+        subjects = (Subject.OUTCOME, Subject.DECISION)
+        return any(behavior.configurations[number].phase(subject, name) is not None for subject in subjects)
+
+    cancel, outgoing = ProtocolEvent(ProtocolPart.CANCEL, name), behavior.outgoing()
+    reached: set[int] = set()
+    new = [step.target for step in behavior.steps if cancel in step.sent]
+    while new:
+        number = new.pop()
+        if number not in reached and is_awaited(number):
+            reached.add(number)
+            new += [step.target for step in outgoing[number]]
+    return {behavior.configurations[number].state for number in reached}
 
 
 def _unhandled(context: MachineContext, behavior: Behavior) -> Iterator[Finding]:
@@ -100,7 +137,7 @@ def _exchanged(context: MachineContext, behavior: Behavior) -> Iterator[Finding]
 
 def _is_reported(context: MachineContext, name: str, code: int) -> bool:
     """Whether unhandled-canceled-result reports that no state handles a result; it concerns canceled goals only."""
-    if code != 5:
+    if code != _CANCELED:
         return False
     return not any(
         handler.trigger is ProtocolPart.RESULT and handler.type.code == code
