@@ -3,16 +3,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import constant
 from roaml.expr.operators import Operator
 from roaml.expr.tree import ArrayLiteral, Binary, Call, Conditional, Expr, Member, Name, Number, ObjectLiteral, walk
 from roaml.expr.types import INTEGER_RANGES, Array, Scalar, ScalarKind, Struct, Type, is_kind, unwrap
-from roaml.model.machine import Assign, Handler, statements
+from roaml.model.machine import Assign, Handler, Statement, statements
 from roaml.model.syntax import Expression
-from roaml.model.value_types import TypedValue
+from roaml.model.value_types import TypedValue, ValueUse
 from roaml.model.values.analyse import ChartValues, analyse
 from roaml.model.values.arriving import arriving_by_type
 from roaml.model.values.domain import Origin, ValueSet, between, interval, meet
@@ -65,6 +65,8 @@ def _computed(context: MachineContext, value: TypedValue) -> Iterator[Finding]:
         if caused.high <= high if above else caused.low >= low:
             continue  # another assignment is the cause
         if low <= bound <= high or origin is Origin.ASSUMED or (origin is Origin.WIDENED and high > MAX_COUNTED):
+            continue
+        if origin is Origin.WIDENED and _is_limited_next(context, value, chart, above=above):
             continue
         if _is_limited(context, value, chart, above=above):
             continue
@@ -135,6 +137,51 @@ def _is_limited(context: MachineContext, value: TypedValue, chart: ChartValues, 
         if limit is not None and (interval(limit).high <= high if above else interval(limit).low >= low):
             return True
     return False
+
+
+def _is_limited_next(context: MachineContext, value: TypedValue, chart: ChartValues, *, above: bool) -> bool:
+    """Whether the state that follows an assignment has a transition without an event that is taken before the variable
+    leaves its range: its condition compares the variable with a value that fits, and it leaves the state or assigns the
+    variable."""
+    place, handler, type_ = value.place, value.place.handler, value.required
+    location = next(
+        (v.value.tree for v in context.typed.values if v.use is ValueUse.LOCATION and v.element is value.element), None
+    )
+    if handler is None or not isinstance(location, Name) or not isinstance(type_, Scalar):
+        return False
+    low, high = INTEGER_RANGES[type_.name]
+    limit = high if above else low
+    states = {state.id.value: state for state in place.chart.states if state.id is not None}
+    entered = [states.get(target.state.value) if target.state else None for target in handler.targets]
+    return bool(entered) and all(
+        state is not None
+        and state.id is not None
+        and any(
+            later.trigger is None and _leaves(chart, later, state.id.value, location.name, limit, above=above)
+            for later in state.handlers
+        )
+        for state in entered
+    )
+
+
+def _leaves(chart: ChartValues, later: Handler, state: str, name: str, limit: int, *, above: bool) -> bool:
+    """Whether a handler leaves a state, or assigns a variable, once the variable reaches a value within `limit`."""
+    stays = [target for target in later.targets if target.state is None or target.state.value == state]
+    if later.cond is None or not all(_assigns(target.body, name) for target in stays):
+        return False
+    comparison = later.cond.tree
+    smaller, greater = _sides(comparison)
+    if isinstance(comparison, Binary) and comparison.operator is Operator.EQUAL:
+        smaller, greater = (comparison.right, comparison.left) if above else (comparison.left, comparison.right)
+    same, other = (greater, smaller) if above else (smaller, greater)
+    values = chart.at(other) if other is not None else None
+    if not isinstance(same, Name) or same.name != name or values is None:
+        return False
+    return interval(values).high <= limit if above else interval(values).low >= limit
+
+
+def _assigns(body: Iterable[Statement], name: str) -> bool:
+    return any(isinstance(s, Assign) and s.location and place_of(s.location.tree) == name for s in statements(body))
 
 
 def _is_changed(value: TypedValue, handler: Handler) -> bool:
