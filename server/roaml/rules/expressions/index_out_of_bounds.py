@@ -18,6 +18,7 @@ from roaml.model.values.describe import described
 from roaml.model.values.domain import Origin, exactly, interval
 from roaml.model.values.evaluate import place_of
 from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.index_guards import counts_threads, ends_in_time, is_guarded, is_reset
 from roaml.rules.support.written import written
 from roaml.text import TextEdit
 
@@ -100,6 +101,16 @@ def _computed(context: MachineContext, place: ValuePlace, tree: Expr) -> Iterato
             always = bounds.low >= room or bounds.high < 0
             if origin is Origin.WIDENED and not always and ".length" in text:
                 continue  # a length is at most the size of its array
+            index = node.index if isinstance(node.index, Name) and not always else None
+            if index is not None and is_guarded(place.chart, chart, place, index, _holding(place), room):
+                continue
+            if (
+                index is not None
+                and number > 0
+                and origin is Origin.WIDENED
+                and counts_threads(place.chart, index.name)
+            ):
+                continue  # a thread is free only after it was started
             if origin is Origin.REACHED or always:
                 shown = number if math.isfinite(number) else bounds.low
                 message = f"`{text}` {'is' if always else 'can be'} {shown:g} here; {reason} {room - 1}"
@@ -209,7 +220,7 @@ def _append(context: MachineContext, value: TypedValue, tree: Expr) -> Iterator[
         return
     if _fits(context, value.place, tree.index, array.bound):
         return
-    if not (_has_room(context, value.place, tree.object, array.bound) or _set_before(context, value, tree.object)):
+    if not (_has_room(context, value.place, tree, array.bound) or _set_before(context, value, tree.object)):
         name = written(context, tree.object)
         yield RULE.at(
             tree.index.span,
@@ -275,8 +286,8 @@ def _type_of(context: MachineContext, place: ValuePlace, expr: Expr) -> Type:
     return infer(expr, variables.get)[0]
 
 
-def _has_room(context: MachineContext, place: ValuePlace, array: Expr, bound: int) -> bool:
-    """Whether a condition that holds at this place keeps the length of the array below `bound`."""
+def _holding(place: ValuePlace) -> list[tuple[Expression, bool]]:
+    """The conditions whose values are known at a place."""
     conditions = list(place.branch_conditions or ())
     if place.handler is not None and place.handler.cond is not None:
         conditions.append((place.handler.cond, True))
@@ -284,7 +295,15 @@ def _has_room(context: MachineContext, place: ValuePlace, array: Expr, bound: in
         group = _trigger(place.handler)
         earlier = place.state.handlers[: place.state.handlers.index(place.handler)]
         conditions += [(h.cond, False) for h in earlier if h.cond and _trigger(h) == group]
-    return any(_limits(context, place.chart, condition.tree, array, bound, holds) for condition, holds in conditions)
+    return conditions
+
+
+def _has_room(context: MachineContext, place: ValuePlace, append: Index, bound: int) -> bool:
+    """Whether a condition that holds at this place keeps the length of the array below `bound`."""
+    holding, array, values = _holding(place), append.object, context.values.charts.get(place.chart.scope)
+    if any(_limits(context, place.chart, condition.tree, array, bound, holds) for condition, holds in holding):
+        return True
+    return values is not None and ends_in_time(place.chart, values, place, append, holding, bound)
 
 
 def _trigger(handler: Handler) -> tuple[object, ...]:
@@ -316,13 +335,15 @@ def _limits(context: MachineContext, chart: Chart, expr: Expr, array: Expr, boun
 
 def _keeps_limit(context: MachineContext, chart: Chart, expr: Name, array: Expr, bound: int, holds: bool) -> bool:
     """Whether a Boolean variable keeps the result of a condition that limits the length of the array: each assignment
-    that can give it the value `holds` does. An array that has grown since then is not considered."""
+    that can give it the value `holds` does, or is beside one that sets the array. An array that has grown since then is
+    not considered."""
     kept = [
         statement.value.tree
         for statement in chart.statements
         if isinstance(statement, Assign) and statement.location and place_of(statement.location.tree) == expr.name
         if isinstance(statement.value, Expression)
         if not (isinstance(statement.value.tree, Boolean) and statement.value.tree.value is not holds)
+        if not (isinstance(statement.value.tree, Boolean) and is_reset(chart, statement, place_of(array) or ""))
     ]
     return bool(kept) and all(
         not isinstance(tree, Name) and _limits(context, chart, tree, array, bound, holds) for tree in kept

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Fix, Severity
 from roaml.expr.infer import constant
@@ -145,7 +145,12 @@ def _is_limited_next(context: MachineContext, value: TypedValue, chart: ChartVal
     variable."""
     place, handler, type_ = value.place, value.place.handler, value.required
     location = next(
-        (v.value.tree for v in context.typed.values if v.use is ValueUse.LOCATION and v.element is value.element), None
+        (
+            v.value.tree
+            for v in context.typed.values
+            if v.use is ValueUse.LOCATION and v.element is value.element and isinstance(v.value, Expression)
+        ),
+        None,
     )
     if handler is None or not isinstance(location, Name) or not isinstance(type_, Scalar):
         return False
@@ -180,7 +185,7 @@ def _leaves(chart: ChartValues, later: Handler, state: str, name: str, limit: in
     return interval(values).high <= limit if above else interval(values).low >= limit
 
 
-def _assigns(body: Iterable[Statement], name: str) -> bool:
+def _assigns(body: tuple[Statement, ...], name: str) -> bool:
     return any(isinstance(s, Assign) and s.location and place_of(s.location.tree) == name for s in statements(body))
 
 
