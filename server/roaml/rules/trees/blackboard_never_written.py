@@ -9,6 +9,7 @@ from roaml.diagnostics import Finding, Related, Severity
 from roaml.forest.cpp_types import ANY
 from roaml.forest.entries import BoundUse, Entries, Use
 from roaml.forest.forest import Forest
+from roaml.libraries import library_node
 from roaml.model.expand import node_at
 from roaml.model.gaps import GapAct
 from roaml.model.tree import is_variable_name
@@ -73,7 +74,8 @@ def _names(entries: Entries, written: set[str]) -> Mapping[str, Mapping[str, str
 
 def _is_needed(forest: Forest, entries: Entries, uses: tuple[BoundUse, ...]) -> bool:
     """Whether a node needs that the entry is written, and no other finding can be the reason why it is not."""
-    if not any(bound.use.reads or _is_output(forest, bound.use) for bound in uses):
+    is_read = any(bound.use.reads or bound.use.remaps for bound in uses)
+    if not is_read and not any(_is_output(forest, bound.use) and not _is_of_library(bound.use) for bound in uses):
         return False
     if any(entries.is_intended(bound.use.tree, bound.use.name) for bound in uses):
         return False  # port-value reports the output port that should write the entry
@@ -99,6 +101,13 @@ def _is_output(forest: Forest, use: Use) -> bool:
         return False
     known = forest.known_node(use.node)
     port = known.port(use.port) if known is not None else None
+    return port is not None and port.direction is Direction.OUT
+
+
+def _is_of_library(use: Use) -> bool:
+    """Whether a library has a node with this output port. A plugin in its place may omit unread outputs."""
+    node = library_node(_name(use))
+    port = node.port(use.port) if node is not None else None
     return port is not None and port.direction is Direction.OUT
 
 
