@@ -78,3 +78,42 @@ def test_same_outcomes(files: dict[str, str]) -> None:
     except OverflowError:
         assume(False)
     assert {of_interpreter(network, now) for now in moments} == {of_model(explorer, network, s) for s in states}
+
+
+SHOP_SYSTEM = """
+<roaml>
+    <parameters><max_time value="1" unit="s" /></parameters>
+    <node_models><input type="node-ascxml" src="shop.ascxml" /></node_models>
+    <properties><input type="jani" src="properties.jani" /></properties>
+</roaml>
+"""
+SHOP = """
+<ascxml name="Shop" version="1.0" initial="open">
+    <datamodel>
+        <data id="part" type="int32" expr="4" />
+        <data id="stock" type="int32[4]" expr="[9, 9, 9, 9]" />
+    </datamodel>
+    <state id="open">
+        <transition cond="part &gt; 3" target="refused" />
+        <transition cond="stock[part] &lt; 3" target="sold_out" />
+        <transition target="sold" />
+    </state>
+    <state id="refused">
+        <onentry>
+            <if cond="part &gt; 3"><assign location="part" expr="5" /><elseif cond="stock[part] &lt; 3" />
+            <assign location="part" expr="6" /></if>
+        </onentry>
+    </state>
+    <state id="sold_out" />
+    <state id="sold" />
+</ascxml>
+"""
+
+
+def test_conditions_after_one_that_holds_are_not_evaluated() -> None:
+    """Those after `part > 3` would read an element outside of the array."""
+    files = {"main.xml": SHOP_SYSTEM, "shop.ascxml": SHOP, "properties.jani": '{"properties": []}'}
+    explorer = explore.Explorer(translate(lowered(files)))
+    reached = {(state.locations[0], explorer.locals(state, 0)["part"]) for state in explorer.reachable(LIMIT)}
+    assert ("refused", 5) in reached
+    assert {place for place, _ in reached}.isdisjoint({"sold", "sold_out"})

@@ -258,9 +258,12 @@ class _FlowBuilder:
 
 
 def _unless(cond: Expression | None, earlier: Iterable[Expression | None]) -> Expression | None:
-    """The condition that `cond` holds and none of the earlier conditions holds; `None` if it is always true."""
-    terms = [] if cond is None else [cond]
-    return all_of([*terms, *(negated(condition) for condition in earlier if condition is not None)])
+    """The condition that none of the earlier conditions holds and `cond` holds; `None` if it is always true.
+
+    The earlier conditions come first, because `cond` may have no value where one of them holds: in SCXML, the
+    conditions after the first one that holds are not evaluated."""
+    terms = [negated(condition) for condition in earlier if condition is not None]
+    return all_of(terms if cond is None else [*terms, cond])
 
 
 # --------------------------------------------------------------- random numbers
