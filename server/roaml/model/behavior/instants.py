@@ -17,6 +17,7 @@ from collections.abc import Callable, Iterator
 from roaml.model.behavior.explore import BehaviorStep
 from roaml.model.behavior.phases import DutyKind, ProtocolEvent
 from roaml.model.behavior.summary import START, ChartOutline, Needs, Promise
+from roaml.model.expand import Instance
 from roaml.model.gaps import Act, GapAct, InterfaceAct
 from roaml.model.system import CLOCK_TOPIC, Channel, ChannelEndpoint, System, SystemAutomaton
 from roaml.record import Record, field
@@ -219,11 +220,21 @@ class Instants(Record, eq=False, dict=True):
         return False
 
     def _kept(self, server: ChannelEndpoint, event: ProtocolEvent) -> Iterator[Promise]:
-        """The delayed answers of a server that the plugin may depend on. If the server has only one client, answers for
-        which the server is still busy with an earlier goal are left out."""
-        channel = self.system.channel(server.automaton, server.use)
-        alone = channel is not None and len(channel.users) == 1
-        return (promise for promise in promises(server, event) if not (alone and promise.busy))
+        """The delayed answers of a server that the plugin may depend on. Those for which the server is still busy with
+        an earlier goal are left out if this goal has ended when the plugin asks."""
+        for promise in promises(server, event):
+            if not any(self._has_ended(server, handle) for handle in promise.busy):
+                yield promise
+
+    def _has_ended(self, server: ChannelEndpoint, handle: str) -> bool:
+        """Whether the earlier goal of an action has ended when the server is asked: the only client of the action is
+        the one that asks, or a node that has ended when the plugin is ticked."""
+        uses = server.automaton.outline.interfaces
+        action = next((u for u in uses if u.handle == handle and u.kind is SymbolKind.ACTION_SERVER), None)
+        channel = self.system.channel(server.automaton, action) if action is not None else None
+        if action is None or channel is None or len(channel.users) != 1:
+            return False
+        return action == server.use or _ends_before(self.system, channel.users[0].automaton, self.plugin)
 
     def _takes_time(self, server: ChannelEndpoint, promise: Promise) -> bool:
         number = self.solver.number(server.automaton)
@@ -310,6 +321,29 @@ def _below(system: System, plugin: SystemAutomaton) -> Iterator[SystemAutomaton]
         if automaton is not None and automaton.instance is not None:
             yield automaton
             waiting += automaton.instance.children
+
+
+_ENDING = frozenset(["Sequence", "SequenceWithMemory", "SequenceStar", "Fallback"])
+"""The nodes that tick a child only after the one that they have ticked before has ended."""
+
+
+def _ends_before(system: System, earlier: SystemAutomaton, plugin: SystemAutomaton) -> bool:
+    """Whether a node of the tree has ended or is halted when `plugin` is ticked: both are below different children of a
+    node that continues only after a child has ended."""
+    above, own = _path(system, earlier), _path(system, plugin)
+    shared = [node for node in above if node in own]
+    return bool(shared) and shared[0] not in (above[0], own[0]) and shared[0].plugin in _ENDING
+
+
+def _path(system: System, automaton: SystemAutomaton) -> list[Instance]:
+    """The node of an automaton and all nodes above it, the root last."""
+    path: list[Instance] = []
+    found: SystemAutomaton | None = automaton
+    while found is not None and found.instance is not None:
+        path.append(found.instance)
+        parent = found.instance.parent
+        found = system.by_instance.get(parent) if parent is not None else None
+    return path
 
 
 # ------------------------------------------- while a machine stays in one state

@@ -66,7 +66,7 @@ class Promise(Record, frozen=True):
         scope: the scope of the chart that the state is in; it distinguishes the threads of a file.
         taken: whether the machine has received the request or goal; otherwise it must first reach a state that handles
             it.
-        busy: whether the machine still owes the result of an earlier goal in this state.
+        busy: the handles of the actions for which the machine still owes the result of an earlier goal in this state.
         needs: the events that must occur before the answer is sent, or before the request or goal is received.
     """
 
@@ -74,7 +74,7 @@ class Promise(Record, frozen=True):
     state: str
     scope: str
     taken: bool
-    busy: bool
+    busy: frozenset[str]
     needs: Needs
 
 
@@ -215,7 +215,8 @@ class _Summary:
 
     def _promise(self, duty: Duty, number: int, taken: bool, alternatives: tuple[int, ...]) -> Promise:
         configuration = self.behavior.configurations[number]
-        busy = not taken and configuration.phase(Subject.RESULT, duty.handle) is not None
+        owed = [handle for (subject, handle), _ in configuration.phases if subject is Subject.RESULT]
+        busy = frozenset[str]() if taken else frozenset(owed)
         scope = self.behavior.chart.scope
         return Promise(duty, configuration.state, scope, taken, busy, frozenset(map(self._set, alternatives)))
 
