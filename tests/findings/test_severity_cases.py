@@ -11,6 +11,7 @@ from checked import check_text
 from fixture import split_files
 from roaml import api
 from roaml.diagnostics import Severity
+from rule_files import cases_of_rules
 
 SYSTEM = """
 -- main.xml --
@@ -278,3 +279,17 @@ def test_unread_data_beside_data_that_another_handler_receives(
     read: str, more: str, expected: list[Severity], tmp_path: Path
 ) -> None:
     assert severities(tmp_path, TWINS.format(read, more), "unused-variable") == expected
+
+
+@pytest.mark.parametrize(
+    ("title", "severity"),
+    [
+        ("a number that no request has, beside a limit", Severity.WARNING),
+        ("a server that tests the range of what it receives, at information", Severity.INFORMATION),
+    ],
+)
+def test_protection_against_wrong_requests(title: str, severity: Severity, tmp_path: Path) -> None:
+    """A test of a range that all present clients keep to is no fault."""
+    [case] = [case for case in cases_of_rules() if (case.subject, case.title) == ("constant-condition", title)]
+    diagnostics, _ = check_text(tmp_path, case.text)
+    assert {d.severity for d in diagnostics if d.code == "constant-condition"} == {severity}

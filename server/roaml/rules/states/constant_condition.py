@@ -40,6 +40,7 @@ from roaml.rules.support.decided_values import decided_values
 from roaml.rules.support.entries import entries_of
 from roaml.rules.support.forest import trees_of
 from roaml.rules.support.jani_formulas import constant_comparisons
+from roaml.rules.support.ranges import always_within
 from roaml.rules.support.sent_values import never_handled, never_sent
 from roaml.script.tree import Comparison
 from roaml.script.tree import walk as walk_script
@@ -59,6 +60,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
         constant = {span: part for span, part in constant.items() if span in causes}
     for span, part in constant.items():
         yield _finding(at_step(context, span) or at_target(context, span) or part)
+    yield from map(_finding, always_within(context, constant.keys()))
     yield from map(_finding, never_sent(context, constant.keys()))
     yield from _beyond_type(context, constant.keys())
     yield from map(_finding, decided_values(context))
@@ -67,7 +69,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
 
 def _finding(part: ConstantPart) -> Finding:
     facts = ConstantCondition(part.is_true) if part.is_true is not None else None
-    return RULE.at(part.span, part.message, *part.fixes, related=part.related, facts=facts)
+    return RULE.at(part.span, part.message, *part.fixes, severity=part.severity, related=part.related, facts=facts)
 
 
 def _beyond_type(context: MachineContext, reported: Collection[Span]) -> Iterator[Finding]:

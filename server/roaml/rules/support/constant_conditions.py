@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
 
-from roaml.diagnostics import Fix, Related
+from roaml.diagnostics import Fix, Related, Severity
 from roaml.expr.tree import Expr, Member, Name, walk
 from roaml.model.behavior.explore import condition_facts
 from roaml.model.behavior.knowledge import NOTHING, ConditionFacts, variables_in
@@ -37,6 +37,7 @@ class ConstantPart(Record, frozen=True):
         span: the place to report.
         message: what it is, and why.
         is_true: the result, if other rules depend on it.
+        severity: the severity, if it is not that of the rule.
     """
 
     span: Span
@@ -44,6 +45,7 @@ class ConstantPart(Record, frozen=True):
     is_true: bool | None = None
     fixes: tuple[Fix, ...] = ()
     related: tuple[Related, ...] = ()
+    severity: Severity | None = None
 
 
 def constant_conditions(context: MachineContext, machine: MachineValues) -> dict[Span, ConstantPart]:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterator, Mapping
 
-from roaml.diagnostics import Fix
+from roaml.diagnostics import Fix, Severity
 from roaml.expr.operators import Operator, OperatorKind, UnaryOperator
 from roaml.expr.tree import Binary, Expr, Name, String, Unary, walk
 from roaml.interruption import checkpoint
@@ -22,6 +22,7 @@ from roaml.rules.rule import MachineContext, close_names
 from roaml.rules.support.compared_numbers import reached
 from roaml.rules.support.constant_conditions import ConstantPart
 from roaml.rules.support.message_constants import wrong_fields
+from roaml.rules.support.ranges import is_validation
 from roaml.rules.support.received_lengths import length_never_sent
 from roaml.text import Span, TextEdit
 
@@ -90,7 +91,7 @@ def _numbers_never_sent(context: MachineContext, reported: Collection[Span]) -> 
                 for field, other in ((node.left, node.right), (node.right, node.left)):
                     sent = _sent(context, value.place.handler, field, _FROM_SENDERS)
                     if sent is not None:
-                        yield from _compared_with_sent(context, chart, node, field, other, tree, sent)
+                        yield from _compared_with_sent(context, value.place, chart, node, field, other, tree, sent)
                         continue
                     chosen, limited = stored[value.place.chart.scope]
                     if (message := length_never_sent(chart, node, field, chosen)) is not None:
@@ -100,7 +101,7 @@ def _numbers_never_sent(context: MachineContext, reported: Collection[Span]) -> 
                     elif node.operator.kind is OperatorKind.ORDER and place_of(field) in limited:
                         known = chart.at(field)
                         if known is not None:
-                            yield from _compared_with_sent(context, chart, node, field, other, tree, known)
+                            yield from _compared_with_sent(context, value.place, chart, node, field, other, tree, known)
 
 
 def _is_reported_at_sender(context: MachineContext, number: object) -> bool:
@@ -113,6 +114,7 @@ def _is_reported_at_sender(context: MachineContext, number: object) -> bool:
 
 def _compared_with_sent(
     context: MachineContext,
+    place: ValuePlace,
     chart: ChartValues,
     node: Binary,
     field: Expr,
@@ -132,7 +134,9 @@ def _compared_with_sent(
     what = f"the values that machines send are {described(known)}"
     if result == FALSE:
         if not _is_reported_at_sender(context, number.value):
-            yield ConstantPart(node.span, f"this comparison is never true: {what}", is_true=False)
+            severity = Severity.INFORMATION if is_validation(tree, node, place.handler) else None
+            message = f"this comparison is never true: {what}"
+            yield ConstantPart(node.span, message, is_true=False, severity=severity)
     elif result == TRUE and node.operator is not Operator.NOT_EQUAL:
         conditions = chart.conditions.get(tree.span)
         if conditions is None or (node is tree and conditions.alone == TRUE):
