@@ -11,7 +11,10 @@ from command import Command
 
 import clock
 from as2fm_lsp.cli.main import COMMANDS, parser
+from fixture import write_files
+from roaml.project import exploration
 from roaml.rules import RULES
+from rule_files import examples
 
 FEW_TRACES = ("--max-traces", "5", "--method", "fixed", "--scheduler", "uniform")
 
@@ -43,6 +46,17 @@ def test_a_verbose_check_names_what_it_read(command: Command, tmp_path: Path) ->
     assert lines[0] == "settings: as2fm.toml"
     assert "checked clock.ascxml" in lines
     assert re.fullmatch(r"\d+ files in \d+\.\d\d s", lines[-1])
+
+
+def test_a_verbose_check_names_systems_that_are_too_large_to_be_explored(
+    command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write_files(tmp_path, examples("never-ticked", "Bad")[0].text)
+    main = str(tmp_path / "main.xml")
+    assert "too many states" not in command("check", main, "--verbose").err
+    monkeypatch.setattr(exploration, "MAX_STATES", 1)
+    assert "main.xml has too many states to be explored, so these" in command("check", main, "--verbose").err
+    assert "too many states" not in command("check", main, "--verbose", "--ignore", "never-ticked").err
 
 
 def test_a_quiet_verification_writes_values_verdicts_and_warnings(command: Command, tmp_path: Path) -> None:

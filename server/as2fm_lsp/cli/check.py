@@ -25,6 +25,7 @@ from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, OutputFiles, outputs_of
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.project.configuration import find_settings
+from roaml.project.exploration import CODES
 from roaml.project.settings import SEVERITIES, Settings, ament_prefixes
 from roaml.record import replace
 from roaml.rules import BY_CODE
@@ -143,10 +144,15 @@ def _reported(options: argparse.Namespace, result: api.CheckResult, outputs: Out
 
 
 def _write_details(result: api.CheckResult, settings: Settings, seconds: float) -> None:
-    """What `--verbose` shows: the settings, the checked files, and how long it took."""
+    """What `--verbose` shows: the settings, the checked files, the systems whose states were not explored, and how long
+    it took."""
     detail(f"settings: {shown_path(settings.origin) if settings.origin else 'the defaults'}")
     for path in result.files:
         detail(f"checked {shown_path(path)}")
+    for path in filter(result.files.__contains__, result.snapshot.analysis.system_paths):
+        if result.snapshot.checker.has_too_many_states(path):
+            codes = ", ".join(sorted(CODES))
+            detail(f"{shown_path(path)} has too many states to be explored, so these rules did not check it: {codes}")
     detail(f"{len(result.files)} files in {seconds:.2f} s")
 
 

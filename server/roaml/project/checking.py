@@ -140,6 +140,10 @@ class RuleRunner:
         known: Mapping[str, tuple[Finding, ...]] | None = memo.known("exploration", system, content)
         return known
 
+    def has_too_many_states(self, system: str) -> bool:
+        """Whether a system without errors is too large for the rules that need its reachable states."""
+        return not self.errors(system) and self._explored(system, explores=True) is None
+
     def _explore(self, system: str) -> Mapping[str, tuple[Finding, ...]] | None:
         if self.errors(system):
             return None

@@ -5,6 +5,9 @@ A system without errors is translated and explored within limits, which are numb
 times, so the findings do not depend on the speed of the machine. Nothing is reported about a system that is too large.
 The search leaves out the order of independent steps: each step of a machine that is possible in the system also occurs
 in the reduced search (docs/spec/reductions.md).
+
+Machines that react at once reach a part of the states, so what never happens with the reaction time `any` never happens
+then either. This smaller search comes first, and ends most checks: without a finding, or because it reaches a limit.
 """
 
 from __future__ import annotations
@@ -35,7 +38,7 @@ CODES = frozenset((never_ticked.RULE.code,))
 """The codes of the rules that need an exploration."""
 MAX_PARTS = 10_000
 """The maximum number of parts of a translation that is explored (`roaml.model.size.Size.parts`)."""
-MAX_STATES, MAX_STEPS, MAX_BYTES = 30_000, 300_000, 1 << 28
+MAX_STATES, MAX_STEPS, MAX_BYTES = 10_000, 300_000, 1 << 28
 """The limits of one exploration. A typical one that reaches them takes 0.2 s."""
 
 
@@ -61,11 +64,15 @@ def findings_of(analysis: Analysis, path: str) -> Mapping[str, tuple[Finding, ..
         return {}
     if _parts(size) > MAX_PARTS:
         return None
-    reached = _explored(plain, path)
-    if reached is None:
+    known: list[tuple[str, Finding]] | None = None
+    for reached in _explored(plain, path):
+        known = list(_never_ticked(plain, system, reached))
+        if not known:
+            break
+    if known is None:
         return None
     found: dict[str, list[Finding]] = {}
-    for place, finding in _never_ticked(plain, system, reached):
+    for place, finding in known:
         if expanded is None:
             found.setdefault(place, []).append(finding)
         else:
@@ -86,24 +93,27 @@ def _parts(size: Size) -> int:
     return sum(share.count for share in size.parts)
 
 
-def _explored(analysis: Analysis, path: str) -> Reached | None:
-    """All reachable states of a system, with its own reaction time; if there are too many, with machines that react at
-    once."""
+def _explored(analysis: Analysis, path: str) -> Iterator[Reached]:
+    """What a system reaches: first with machines that react at once, then with its own reaction time. The iterator ends
+    before a search that has too many states."""
     from roaml.durations import AT_ONCE  # noqa: PLC0415 - the model checker is imported only if a system is explored
     from roaml.jani.reaction import ReactionError, reacting  # noqa: PLC0415
     from roaml.to_jani import translate  # noqa: PLC0415
 
     model = translate(network_of(analysis, path), (), ())
     checkpoint()
-    events = _received(model)
     metadata = model.metadata
-    if events is None and metadata is not None and metadata.clock is not None and metadata.reaction_time.is_any:
+    if metadata is not None and metadata.clock is not None and metadata.reaction_time.is_any:
         try:
             events = _received(reacting(model, AT_ONCE))
         except ReactionError:
-            return None
-        return None if events is None else Reached(events, is_instant=True)
-    return None if events is None else Reached(events, is_instant=False)
+            return
+        if events is None:
+            return
+        yield Reached(events, is_instant=True)
+    events = _received(model)
+    if events is not None:
+        yield Reached(events, is_instant=False)
 
 
 def _received(model: Model) -> Mapping[str, bool] | None:

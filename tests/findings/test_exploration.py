@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How many states a check explores, and what it says about the systems whose states it does not explore."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from fixture import write_files
+from roaml import api
+from roaml.explicit import space
+from roaml.project import exploration
+from rule_files import examples
+
+CODE = "never-ticked"
+INSTANT = ' reaction_time="instant"'
+
+
+@pytest.fixture
+def searches(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """The number of states of each search that has ended."""
+    numbers: list[int] = []
+    explore = space.explore
+
+    def counted(*arguments: Any, **options: Any) -> Any:
+        try:
+            found = explore(*arguments, **options)
+        except space.LimitError as error:
+            numbers.append(error.states)
+            raise
+        numbers.append(found.states)
+        return found
+
+    monkeypatch.setattr(space, "explore", counted)
+    return numbers
+
+
+def check(folder: Path, heading: str) -> tuple[api.CheckResult, list[str]]:
+    """The result of a check of an example of the rule without a reaction time, and the messages of the rule."""
+    write_files(folder, examples(CODE, heading)[0].text.replace(INSTANT, ""))
+    result = api.check([str(folder / "main.xml")])
+    return result, [d.message for d in result.diagnostics if d.code == CODE]
+
+
+def test_a_right_system_is_explored_once_with_machines_that_react_at_once(tmp_path: Path, searches: list[int]) -> None:
+    assert check(tmp_path, "Good")[1] == []
+    assert len(searches) == 1
+
+
+def test_a_finding_is_confirmed_for_all_reactions(tmp_path: Path, searches: list[int]) -> None:
+    [message] = check(tmp_path, "Bad")[1]
+    assert "react at once" not in message
+    instant, all_reactions = searches
+    assert instant < all_reactions
+
+
+def test_a_finding_that_is_not_confirmed_says_what_it_assumes(
+    tmp_path: Path, searches: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    check(tmp_path, "Bad")
+    monkeypatch.setattr(exploration, "MAX_STATES", searches[0])
+    [message] = check(tmp_path, "Bad")[1]
+    assert "if all machines react at once" in message
+
+
+def test_a_limit_ends_the_exploration_and_is_known(
+    tmp_path: Path, searches: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    main = str(tmp_path / "main.xml")
+    assert not check(tmp_path, "Bad")[0].snapshot.checker.has_too_many_states(main)
+    searches.clear()
+    monkeypatch.setattr(exploration, "MAX_STATES", 1)
+    result, messages = check(tmp_path, "Bad")
+    assert messages == []
+    assert len(searches) == 1
+    assert result.snapshot.checker.has_too_many_states(main)
