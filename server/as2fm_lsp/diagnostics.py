@@ -228,7 +228,7 @@ class Diagnostics:
         there = moment.files()
         for path in there:
             await self._let_messages_by()
-            diagnostics = self.of(moment, path)
+            diagnostics = await self._interruptible(partial(self.of, moment, path, explores=True))
             uri, version, result = self.session.convert.uri(path), moment.versions.get(path), result_id(diagnostics)
             if known.get(path) == result:
                 items.append(types.WorkspaceUnchangedDocumentDiagnosticReport(uri, result, version))

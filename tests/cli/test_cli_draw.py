@@ -36,7 +36,7 @@ def drawn(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
 def test_kinds(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A file is drawn as what it contains; options choose another part of its system."""
     arm = drawn(capsys, "robot/arm.ascxml")
-    assert "still /arm/command [_msg.data == 1] / holding := true" in texts(arm)
+    assert "still /arm/command 1. [_msg.data == 1] / holding := true" in texts(arm)
     assert "RetryUntilSuccessful 1001" in texts(drawn(capsys, "robot/tree.xml"))
     graph = drawn(capsys, "robot/main.xml")
     assert "/arm/command std_msgs/UInt8" in texts(graph)

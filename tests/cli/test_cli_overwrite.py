@@ -61,7 +61,7 @@ NOTHING = {
     "explain": "code",
     "format": "--check --diff",
     "init": "",
-    "migrate": "--diff --with-related --ros-path",
+    "migrate": "--check --diff --with-related --ros-path",
     "serve": "--stdio --tcp --allow-remote",
     "simulate": "main --property --seed --trace --for --until --max-steps --script --interactive --theme "
     f"--stdin-filename {MODEL}",

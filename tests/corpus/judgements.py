@@ -90,8 +90,8 @@ def page(rows: Iterable[tuple[str, Judgement]], limits: str) -> str:
         else:
             systems.setdefault((system, judgement.name), {})[judgement.column] = judgement
     listed = [judgement for columns in systems.values() for judgement in columns.values()]
-    parts = [TITLE, limits, "", "## Systems", "", *_counts(listed), "", *_list(systems)]
-    parts += ["", "## Random networks", "", *_counts(networks), *_reasons(networks)]
+    parts = [TITLE, limits, "", '<a id="systems"></a>', "", "## 1. Systems", "", *_counts(listed), "", *_list(systems)]
+    parts += ["", '<a id="networks"></a>', "", "## 2. Random networks", "", *_counts(networks), *_reasons(networks)]
     return "\n".join([*parts, ""])
 
 

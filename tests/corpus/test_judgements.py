@@ -27,7 +27,7 @@ def test_the_page_lists_systems_and_counts_networks(tmp_path: Path) -> None:
     assert "\nLimits.\n" in text
     assert "| robot, p | 1,200; 3,400, 1.5 s | no clock | no clock | 7; Storm: more than 60 s |" in text
     assert "network 0" not in text
-    systems, networks = text.split("## Random networks")
+    systems, networks = text.split("## 2. Random networks")
     assert "| any | 1 | 0 | 0 | 0 |" in systems
     assert "| instant | 0 | 0 | 1 | 0 |" in systems
     assert "| any | 1 | 0 | 0 | 0 |" in networks

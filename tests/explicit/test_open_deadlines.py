@@ -60,6 +60,6 @@ def test_the_reason_and_the_remedy(tmp_path: Path) -> None:
     with pytest.raises(UndecidedError) as error:
         exact_values(checker, soon, StateLimits())
     assert str(error.value) == (
-        "the time ends (`max_time`) before a deadline of the property; the probability of this is up to 1; "
-        "estimate the value from traces with uniform choices instead"
+        "in traces with a probability of up to 1, the time ends (`max_time`) before a deadline of the property; "
+        "raise max_time, which does not help where what starts the deadline keeps happening"
     )

@@ -168,8 +168,8 @@ def test_values_for_instant_reactions_bound_those_of_all_schedulers() -> None:
 @pytest.mark.parametrize(
     ("value", "least", "greatest"),
     [
-        (0.872, "between 0 and 0.872, not known more closely", "between 0.128 and 1, not known more closely"),
-        (1 - 2**-20, "less than 1, not known more closely", "greater than 0, not known more closely"),
+        (0.872, "between 0 and 0.872, no closer bounds", "between 0.128 and 1, no closer bounds"),
+        (1 - 2**-20, "less than 1, no closer bounds", "greater than 0, no closer bounds"),
         (1.0, "not known", "not known"),
     ],
 )

@@ -219,7 +219,7 @@ async def test_files_that_cannot_be_migrated(tmp_path: Path) -> None:
     clock.write(tmp_path)
     current, no_system = await asked(tmp_path, "as2fm/migrate", "main.xml", "clock.ascxml")
     assert current == {"edit": None, "files": [], "problem": ""}
-    assert no_system["problem"].endswith("not a system file; only systems can be migrated, so name the system file")
+    assert no_system["problem"].endswith("neither a system file nor a tree; name one of these")
     (tmp_path / "main.xml").write_text(OLD_MAIN)
     (tmp_path / "clock.scxml").write_text(OLD_CLOCK)
     (taken,) = await asked(tmp_path, "as2fm/migrate", "main.xml")

@@ -132,6 +132,8 @@ class RuleRunner:
         if settings.ignore >= exploration.CODES or (settings.select and not exploration.CODES & settings.select):
             return {}
         memo = self.analysis.memo
+        if not explores and not memo.holds("exploration", system):
+            return None
         if system not in self._contents:
             self._contents[system] = exploration.content_of(self.analysis, system)
         content = self._contents[system]

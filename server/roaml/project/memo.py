@@ -41,6 +41,10 @@ class Memo:
         self._slots[slot] = (key, result)
         return result
 
+    def holds(self, computation: str, subject: Hashable) -> bool:
+        """Whether a result of `computation` for `subject` is stored, with any key."""
+        return (computation, subject) in self._slots
+
     def known(self, computation: str, subject: Hashable, key: Hashable) -> Any:
         """The stored result of `computation` for `subject` if it has the key; otherwise `None`."""
         known = self._slots.get((computation, subject))

@@ -36,14 +36,14 @@ _EXTREME_STATES = {
 LONGER_TIME = "raise max_time, which does not help where what starts the deadline keeps happening"
 """The remedy for traces that the time ends before a deadline, as far as there is one."""
 _SIGNS = {"at most": "≤", "at least": "≥", "less than": "<", "greater than": ">"}
-NOT_CLOSER = "not known more closely"
+NOT_CLOSER = "no closer bounds"
 
 
 class Headline(Record, frozen=True):
     """The words for a result.
 
     Attributes:
-        claim: what is known for all schedulers, such as `minimum between 0 and 0.17, not known more closely`; "" if the
+        claim: what is known for all schedulers, such as `minimum between 0 and 0.17, no closer bounds`; "" if the
             property asks only for uniform choices, or all schedulers agree.
         estimate: the estimate from traces with uniform choices; "" if there is none.
         short: a short form of both, for editors; "" if there is no result.
