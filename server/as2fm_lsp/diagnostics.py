@@ -135,12 +135,13 @@ class Diagnostics:
         moment = self.session.moment()
         has_more = False
         for path in await self._interruptible(moment.files):
-            before = await self._interruptible(partial(self.of, moment, path))
+            before = None if self.pushes else await self._interruptible(partial(self.of, moment, path))
             diagnostics = await self._interruptible(partial(self.of, moment, path, explores=True))
-            has_more |= diagnostics != before
             if self.pushes:
                 self._send(path, diagnostics, moment.versions.get(path))
-        if has_more and not self.pushes:
+            else:
+                has_more |= diagnostics != before
+        if has_more:
             self._client.refresh_diagnostics()
 
     async def _check_all(self) -> None:
