@@ -217,6 +217,23 @@ def test_all_schedulers_agree(command: Command, tmp_path: Path) -> None:
     assert "\n  help: use a higher --max-states to search for longer, --exhaustive to compute" in note
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_the_exact_value_of_all_schedulers_decides_an_expectation(seed: int, command: Command, tmp_path: Path) -> None:
+    """Traces alone would be on the other side of the number for some seeds, and never be certain."""
+    name = write(tmp_path, coin())
+    options = ("--method", "adaptive", "--seed", str(seed), "--traces", "200", "--expect")
+    for expected, words in (
+        ("heads >= 0.3", "≥ 0.3: met\n"),
+        ("heads <= 0.3", "≤ 0.3: met\n"),
+        ("heads = 0.3", "= 0.3: met\n"),
+        ("heads > 0.301", "> 0.301: NOT MET"),
+    ):
+        done = command("verify", name, *options, expected)
+        assert f"expected {words}" in done.out
+        assert "not certain" not in done.out
+        assert done.status == (0 if "NOT" not in words else 1)
+
+
 def test_an_interrupted_search_for_schedulers_has_a_name() -> None:
     lines = one_as_text(Result("p", Sampled((), 512, is_interrupted=True), seconds=2.0), str).splitlines()
     assert lines[0] == "p: interrupted; there is no result so far"

@@ -26,13 +26,19 @@ def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | No
     Args:
         choices: `None` if the question is about uniform choices.
     """
-    if choices is None or choices.agreement:
+    if choices is None:
         return verdict
-    if not verdict.is_met:
-        verdict = replace(verdict, under="under uniform choices")
     threshold = verdict.expectation.threshold
     is_minimum = is_minimised(answer.question)
     extreme = choices.minimum if is_minimum else choices.maximum
+    if choices.agreement:
+        if extreme is None or not extreme.is_exact:
+            return verdict
+        # The exact value decides, not the interval of the estimate.
+        met = holds_exactly(threshold, extreme.bounds, extreme.value)
+        return replace(verdict, is_met=met, is_certain=True, is_open=False, unanimous=None)
+    if not verdict.is_met:
+        verdict = replace(verdict, under="under uniform choices")
     missed = replace(verdict, is_met=False, is_certain=True, is_open=False, under=_missed_by(answer.question, extreme))
     if extreme is not None and extreme.is_exact:
         met = holds_exactly(threshold, extreme.bounds, extreme.value)
