@@ -69,5 +69,5 @@ def test_rounding_is_no_difference() -> None:
 def test_wide_bounds_do_not_show_an_equation() -> None:
     assert not verdict("== 0.5", exact(0.4, 0.6)).is_met
     threshold = Expectation("p", parse("p >= 1").threshold).threshold
-    assert not holds_exactly(threshold, Bounds(-math.inf, math.inf), math.nan)
-    assert holds_exactly(threshold, Bounds(math.inf, math.inf), math.inf)
+    assert not holds_exactly(threshold, Bounds(-math.inf, math.inf), math.nan, is_reward=False)
+    assert holds_exactly(threshold, Bounds(math.inf, math.inf), math.inf, is_reward=True)

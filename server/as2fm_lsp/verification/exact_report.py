@@ -57,14 +57,14 @@ def lines(
         if _is_enclosed(exact):
             value, quality = f"between {' and '.join(_distinct(exact))}", f"the {quality} minimum and maximum"
         else:
-            value = f"= {_number(exact.uniform)}"
+            value = _below_one(exact, exact.uniform) or f"= {_number(exact.uniform)}"
         shown.append(f"{name}: {value} under uniform choices, {quality}, {end}")
     else:
         both = _extremes(exact, question)
         if _is_enclosed(exact):
             both += ", between them under uniform choices"
         elif exact.uniform is not None:
-            both += f", {_number(exact.uniform)} under uniform choices"
+            both += f", {_below_one(exact, exact.uniform) or _number(exact.uniform)} under uniform choices"
         shown.append(f"{name}: {both}, {quality}, {end}")
         if exact.uniform is None and uniform_estimate:
             shown.append(f"  under uniform choices: {uniform_estimate}")
@@ -110,8 +110,8 @@ def short(exact: Exact, question: Question) -> str:
 def _extremes(exact: Exact, question: Question | None) -> str:
     """The minimum and the maximum, with the one for which the property asks first; the minimum if that is unknown."""
     least, greatest = _distinct(exact)
-    minimum = f"minimum {_below_one(exact) or least}"
-    maximum = f"maximum {greatest}"
+    minimum = f"minimum {_least_below_one(exact) or least}"
+    maximum = f"maximum {_below_one(exact, exact.maximum) or greatest}"
     is_minimum_first = question is None or question.is_minimised
     return f"{minimum}, {maximum}" if is_minimum_first else f"{maximum}, {minimum}"
 
@@ -185,23 +185,25 @@ def estimate_row(computed: Computed) -> dict[str, Any]:
 
 def _one_value(exact: Exact) -> str:
     """The words for the value of all schedulers, also if all are close to 1; "" if they have different values."""
-    almost = _below_one(exact)
+    almost = _least_below_one(exact)
     if exact.agrees:
         return almost or f"= {_number(exact.minimum)}"
-    return f"1 or {almost}" if almost and _number(exact.maximum) == "1" else ""
+    return f"1 or {almost}" if almost and exact.maximum.lower >= 1.0 else ""
 
 
-def _below_one(exact: Exact) -> str:
-    """The words for a minimum that would be shown as 1 although a trace fails; "" for all other values."""
-    fails = exact.shortest(FALSE)
-    if fails is None or fails.compiled_property.question.is_reward:
-        return ""
-    is_shown_as_one = f"{exact.minimum.upper:.7g}" == "1" == f"{exact.least:.7g}"
-    if not is_shown_as_one:
-        return ""
-    if exact.minimum.lower == 1:
+def _least_below_one(exact: Exact) -> str:
+    """As `_below_one`, for the minimum. A trace that fails excludes 1 even if the bounds are equal to 1."""
+    if not exact.is_reward and exact.fails and exact.minimum.lower == 1:
         return "almost 1 (fails, but too rarely to compute how often)"
-    return f"almost 1 (fails with a probability of at most {_upwards(1 - exact.minimum.lower)})"
+    return _below_one(exact, exact.minimum)
+
+
+def _below_one(exact: Exact, bounds: Bounds) -> str:
+    """The words for a probability that is less than 1 and would be shown as 1; "" for all other values."""
+    is_shown_as_one = f"{bounds.upper:.7g}" == "1" == f"{(bounds.lower + bounds.upper) / 2:.7g}"
+    if exact.is_reward or bounds.upper >= 1.0 or not is_shown_as_one:
+        return ""
+    return f"almost 1 (fails with a probability of at most {_upwards(1 - bounds.lower)})"
 
 
 def _upwards(value: float) -> str:

@@ -9,7 +9,7 @@ ctypedef long long i64
 
 cdef int MAXIMUM, MINIMUM, MEAN, NOTHING, AS_JUDGED, NEGATED
 cdef int FALSE, TRUE, UNKNOWN, STATUS, LASTS, FAILS, HOLDS
-cdef double MAX_RELATIVE_ERROR, INFINITE, RELATIVE_TOLERANCE, MIN_TOLERANCE, ROUNDING
+cdef double MAX_RELATIVE_ERROR, INFINITE, RELATIVE_TOLERANCE, MIN_TOLERANCE, ROUNDING, MAX_ROUNDED
 cdef int MAX_PROOF_STEPS, MAX_DIRECT_STATES
 cdef i64 MAX_WORK
 
@@ -36,18 +36,17 @@ cdef class Solver:
     cpdef tuple bounded(self, int target, i64 lower, i64 upper)
     @cython.locals(state=int, status=int)
     cpdef tuple probability(self, int target, int bits, int accepts)
-    @cython.locals(state=int, top=int, certain=int, chooses=int, at=i64, choices=int, size=int, count=int, k=int,
-                   to=int)
-    cpdef int certainty(self, int root) except? -2
-    @cython.locals(state=int)
-    cdef int _reaches_zero(self) noexcept
+    @cython.locals(state=int, is_zero=int, first=int, last=int, k=int)
+    cpdef list certain(self, list roots)
     @cython.locals(state=int, at=i64, size=int)
     cpdef tuple expected(self)
     cdef void _swap(self) noexcept
     @cython.locals(state=int, changed=int, value=double)
     cdef int _sweep(self, int everywhere) except -1
     cdef void _fix(self, int state, double value) noexcept
-    @cython.locals(count=int, state=int, total=int, first=int, k=int, last=int)
+    @cython.locals(count=int, state=int)
+    cdef int _sort_components(self) except -1
+    @cython.locals(first=int, k=int, last=int)
     cdef void _solve(self) except *
     @cython.locals(i=int, counted=int, emitted=int, held=int, root=int, top=int, state=int, at=i64, left=int, end=i64,
                    pushed=int, size=int, to=int)
@@ -60,8 +59,10 @@ cdef class Solver:
     cdef void _find_ends(self, int first, int last, int free) noexcept
     @cython.locals(at=i64, size=int, k=int)
     cdef int _has_loop(self, int state) noexcept
-    @cython.locals(state=int, own=int, i=int, k=int)
+    @cython.locals(state=int, own=int, i=int, k=int, leads_to_one=int)
     cdef void _component(self, int first, int last) except *
+    @cython.locals(own=int, leaves=int, i=int, state=int, at=i64, size=int, count=int, k=int, to=int)
+    cdef int _leads_to_one(self, int first, int last) noexcept
     @cython.locals(i=int, state=int, at=i64, size=int)
     cdef int _is_closed(self, int first, int last, int own) noexcept
     cdef void _stay(self, int first, int last) noexcept

@@ -32,6 +32,8 @@ MIN_TOLERANCE = 1e-16
 wide."""
 ROUNDING = 1e-15
 """The relative difference up to which two values are regarded as equal."""
+MAX_ROUNDED = 1e-6
+"""The distance from 1 at which an upper bound of a probability does not exclude 1, with a margin for rounding."""
 MAX_PROOF_STEPS = 100
 """The number of steps after which the attempt to prove upper bounds is given up."""
 MAX_DIRECT_STATES = 2_000_000
@@ -124,56 +126,29 @@ class Solver:
         self._solve()
         return self.low[0], self.high[0]
 
-    def certainty(self, root: int) -> int:
-        """Whether the probability of a state is exactly 1, after `probability`: 1 if it is, 0 if it is less, and -1 if
-        that is not decided.
+    def certain(self, roots: list[int]) -> list[bool]:
+        """Whether the probability of each of some states is exactly 1, after `probability`, whose bounds this replaces.
 
-        It is 1 if the probability is positive in all states that can be reached. For a minimum, or if nothing is to be
-        chosen, it is less than 1 if a state can be reached in which the probability is 0.
+        Bounds cannot decide this because of rounding; the graph does (Baier and Katoen 2008, 10.6.1). Where it is less
+        than 1, the value in `low` becomes infinite, as that of an expected reward until a state with the value 1. For a
+        maximum, these are the states in which no scheduler reaches such a state almost surely. For the others, as all
+        end components have a value, they are the states from which one with the value 0 can be reached.
         """
+        certain = [self.high[root] > 1.0 - MAX_ROUNDED for root in roots]
+        if not any(certain):
+            return certain
         for state in range(self.states):
-            self.opened[state] = 0
-        self.opened[root] = 1
-        self.work_state[0] = root
-        top = 0
-        certain = 1
-        chooses = 0
-        while top >= 0:
-            state = self.work_state[top]
-            top -= 1
-            if self.fixed[state] != 0 and self.high[state] == 0.0:
-                if self.mode != MAXIMUM:
-                    return 0
-                certain = 0
-            elif self.low[state] == 0.0:
-                certain = 0
-            if self.fixed[state] != 0 and self.low[state] == 1.0:
-                continue
-            at = self.start[state]
-            choices = 0
-            while at < self.start[state + 1]:
-                size = self.code[at]
-                choices += 1
-                count = 1 if size >= 0 else -size
-                for k in range(count):
-                    to = size if size >= 0 else self.code[at + 3 + 2 * k]
-                    if self.opened[to] == 0:
-                        self.opened[to] = 1
-                        top += 1
-                        self.work_state[top] = to
-                at += 1 if size >= 0 else 3 - 2 * size
-            if choices > 1:
-                chooses = 1
-        if certain != 0:
-            return 1
-        return 0 if chooses == 0 and self._reaches_zero() != 0 else -1
-
-    def _reaches_zero(self) -> int:
-        """Whether a state that the last search of `certainty` has reached has the probability 0."""
-        for state in range(self.states):
-            if self.opened[state] != 0 and self.fixed[state] != 0 and self.high[state] == 0.0:
-                return 1
-        return 0
+            is_zero = self.fixed[state] != 0 and self.low[state] != 1.0
+            self.low[state] = INFINITE if is_zero else 0.0
+        first = 0
+        for k in range(self._sort_components()):
+            last = self.bound[k]
+            if self.mode == MAXIMUM:
+                self._keep_finite(first, last)
+            elif self._meets_infinite(first, last) != 0:
+                self._fix_all(first, last, INFINITE)
+            first = last
+        return [self.low[root] != INFINITE for root in roots]
 
     def expected(self) -> tuple[float, float]:
         """Bounds of the expected reward until states with the status TRUE are reached."""
@@ -270,7 +245,8 @@ class Solver:
         self.low[state] = value
         self.high[state] = value
 
-    def _solve(self) -> None:
+    def _sort_components(self) -> int:
+        """Sort the states without a fixed value into `order` and `bound`; return the number of components."""
         count = 0
         for state in range(self.states):
             self.set_of[state] = -1
@@ -281,9 +257,11 @@ class Solver:
         self.sets = 1
         self.bounds = 0
         self._components(0, count, 0, 0, 0)
-        total = self.bounds
+        return self.bounds
+
+    def _solve(self) -> None:
         first = 0
-        for k in range(total):
+        for k in range(self._sort_components()):
             last = self.bound[k]
             self._component(first, last)
             if self.is_unclear != 0:
@@ -454,15 +432,18 @@ class Solver:
 
     def _component(self, first: int, last: int) -> None:
         state = self.order[first]
-        if last - first == 1:
-            if self.start[state] == self.start[state + 1]:
-                self._stay(first, last)
+        if last - first == 1 and self.start[state] == self.start[state + 1]:
+            self._stay(first, last)
+            return
+        leads_to_one = self._leads_to_one(first, last) if self.is_reward == 0 else 0
+        if last - first == 1 and self._has_loop(state) == 0:
+            if leads_to_one != 0:
+                self._fix(state, 1.0)
                 return
-            if self._has_loop(state) == 0:
-                self.set_of[state] = -1
-                self.low[state] = self._best(state, self.low, state)
-                self.high[state] = self._best(state, self.high, state)
-                return
+            self.set_of[state] = -1
+            self.low[state] = self._best(state, self.low, state)
+            self.high[state] = self._best(state, self.high, state)
+            return
         if self._is_chain(first, last) != 0:
             own = self.sets
             self.sets += 1
@@ -476,8 +457,14 @@ class Solver:
             if self.is_reward != 0 and self._meets_infinite(first, last) != 0:
                 self._fix_all(first, last, INFINITE)
                 return
+            if leads_to_one != 0:
+                self._fix_all(first, last, 1.0)
+                return
         elif self.is_reward == 0:
             self._find_ends(first, last, 0)
+            if leads_to_one != 0 and (self.mode == MAXIMUM or self.ends == 0):
+                self._fix_all(first, last, 1.0)
+                return
             for k in range(self.ends):
                 if self.mode == MINIMUM:
                     self._fix_all(self.end_first[k], self.end_last[k], 0.0)
@@ -494,6 +481,30 @@ class Solver:
             self._keep_finite(first, last)
             self._merge_free(first, last)
         self._iterate(first, last)
+
+    def _leads_to_one(self, first: int, last: int) -> int:
+        """Whether paths leave a component, and only to states with a probability of exactly 1. Then the states of the
+        component have it, too, unless a path can stay in it for ever."""
+        own = self.sets
+        self.sets += 1
+        leaves = 0
+        for i in range(first, last):
+            self.set_of[self.order[i]] = own
+        for i in range(first, last):
+            state = self.order[i]
+            at = self.start[state]
+            while at < self.start[state + 1]:
+                size = self.code[at]
+                count = 1 if size >= 0 else -size
+                for k in range(count):
+                    to = size if size >= 0 else self.code[at + 3 + 2 * k]
+                    if self.set_of[to] == own:
+                        continue
+                    if self.fixed[to] == 0 or self.low[to] != 1.0:
+                        return 0
+                    leaves = 1
+                at += 1 if size >= 0 else 3 - 2 * size
+        return leaves
 
     def _is_closed(self, first: int, last: int, own: int) -> int:
         """Whether no choice leaves the component."""

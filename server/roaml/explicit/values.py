@@ -154,9 +154,8 @@ class _Question:
             high_of = solver_.low if method == "accumulated" else solver_.high
             values = [(solver_.low[root], high_of[root]) for root in self.space.roots]
         if method == "probability":
-            roots = self.space.roots if len(values) > 1 else [0]
-            certain = [solver_.certainty(root) for root in roots]
-            values = [_with_certainty(*bounds, state) for bounds, state in zip(values, certain, strict=True)]
+            certain = solver_.certain(list(self.space.roots) if len(values) > 1 else [0])
+            values = [_with_certainty(*bounds, is_one) for bounds, is_one in zip(values, certain, strict=True)]
         # Equal bounds can be in the wrong order after rounding.
         return [Bounds(min(low, high), max(low, high)) for low, high in values]
 
@@ -168,11 +167,9 @@ _BELOW_ONE = math.nextafter(1.0, 0.0)
 """The greatest floating-point number that is less than 1."""
 
 
-def _with_certainty(low: float, high: float, certain: int) -> tuple[float, float]:
-    """The bounds of a probability, if it is known whether it is 1 (`Solver.certainty`)."""
-    if certain == 1:
-        return 1.0, 1.0
-    return (min(low, _BELOW_ONE), min(high, _BELOW_ONE)) if certain == 0 else (low, high)
+def _with_certainty(low: float, high: float, is_one: bool) -> tuple[float, float]:
+    """The bounds of a probability of which is known whether it is 1 (`Solver.certain`)."""
+    return (1.0, 1.0) if is_one else (min(low, _BELOW_ONE), min(high, _BELOW_ONE))
 
 
 def _complements(values: list[Bounds]) -> list[Bounds]:

@@ -24,7 +24,7 @@ from roaml.smc.model import ModelChecker
 from roaml.smc.program import AT_END, FALSE, TRUE
 from roaml.smc.statistics import Bounds
 from roaml.verification.conditional import of_condition, parts_of, quotient
-from roaml.verification.expectations import Expectation, Verdict, holds_exactly
+from roaml.verification.expectations import Expectation, Verdict, holds_exactly, side_of_certainty
 from roaml.verification.headline import LONGER_TIME
 from roaml.verification.number_text import distinct
 from roaml.verification.results import Exact, Proof, ShortestTrace, is_close
@@ -204,6 +204,7 @@ def values_from(space: Space, limits: StateLimits) -> Exact:
         space.compiled_property.question.fold,
         tuple(ShortestTrace(space.checker, space.compiled_property, path, space.is_reduced) for path in paths),
         space.is_reduced,
+        space.compiled_property.question.is_reward,
         None if len(paths) == 2 or is_close(values.minimum, values.maximum) else _endless(space),
     )
 
@@ -244,21 +245,27 @@ def check_exactly(
     bounds, value = exact.asked_value(question, only_uniform=only_uniform)
     side = _side_of_example(expectation, exact, question, only_uniform=only_uniform)
     by = ""
-    if holds_exactly(threshold, bounds, value, side=side):
+    is_reward = question.is_reward
+    if holds_exactly(threshold, bounds, value, is_reward=is_reward, side=side):
         met, under = True, ""
         if not (exact.agrees or only_uniform or over_intervals):
             by = _deciding_bound(expectation, exact, question)
     elif side:
-        relation = "less than 1" if side < 0 else "greater than 0"
-        met, under = False, f"by an example trace; the value is {relation}"
+        met, under = False, f"by an example trace; the value is {_EXCLUDED[side]}"
     else:
         which = "worst value" if over_intervals else "value"
         if not exact.agrees:
             which = f"{extreme_of(question)} over all schedulers"
-        text = f"by the {which}, which is {distinct(value, threshold.number)}"
+        small = 0 if is_reward else side_of_certainty(threshold, bounds)
+        number = _EXCLUDED[small] if small else distinct(value, threshold.number)
+        text = f"by the {which}, which is {number}"
         met, under = False, "" if only_uniform else text
-    ends = {holds_exactly(threshold, Bounds(end, end), end) for end in bounds}
+    ends = {holds_exactly(threshold, Bounds(end, end), end, is_reward=is_reward) for end in bounds}
     return Verdict(expectation, met, exact.is_precise or side != 0 or len(ends) == 1, under=under, by=by)
+
+
+_EXCLUDED = {-1: "less than 1", 1: "greater than 0"}
+"""A probability that is known not to be 1 or 0."""
 
 
 def _deciding_bound(expectation: Expectation, exact: Exact, question: Question) -> str:

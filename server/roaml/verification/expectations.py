@@ -207,15 +207,24 @@ def check_expectation(expectation: Expectation, answer: Answer) -> Verdict:
     return Verdict(expectation, met, is_certain, is_open, unanimous=unanimous)
 
 
-def holds_exactly(threshold: Threshold, bounds: Bounds, value: float, *, side: int = 0) -> bool:
+def holds_exactly(threshold: Threshold, bounds: Bounds, value: float, *, is_reward: bool, side: int = 0) -> bool:
     """Whether an exact value satisfies a comparison. Of `<` and `≥`, and of `>` and `≤`, one is satisfied; `==` is only
     if the bounds contain the number, except for rounding.
 
     Args:
         bounds: those of the value; if they are wide, it decides itself, and `==` is not satisfied.
+        is_reward: whether the value is an expected reward. The bounds of a probability decide whether it is 0 or 1.
         side: -1 if the value is known to be less than the number, 1 if it is known to be greater.
     """
+    if not is_reward:
+        side = side or side_of_certainty(threshold, bounds)
     return bool(threshold.relation.function(side or _side(threshold, bounds, value), 0))
+
+
+def side_of_certainty(threshold: Threshold, bounds: Bounds) -> int:
+    """-1 if a probability is less than 1, with which it is compared, 1 if it is greater than 0, with which it is
+    compared, however small the difference is, and 0 otherwise."""
+    return (bounds.lower > threshold.number == 0) - (bounds.upper < threshold.number == 1)
 
 
 def _side(threshold: Threshold, bounds: Bounds, value: float) -> float:

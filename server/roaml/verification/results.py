@@ -97,6 +97,7 @@ class Exact(PartlyCompared, frozen=True):
         traces: the shortest traces in which the property fails or holds, if there are any.
         is_reduced: whether choices that change neither the minimum nor the maximum were left out. Then there are more
             than `states` states, and `traces` are not necessarily the shortest ones.
+        is_reward: whether the values are expected rewards, not probabilities.
         endless: an endless trace with the verdict that no trace has after finitely many steps, if the values differ and
             such a trace was found.
     """
@@ -114,6 +115,7 @@ class Exact(PartlyCompared, frozen=True):
     fold: InitialFold = InitialFold.CHOICE
     traces: tuple[ShortestTrace, ...] = ()
     is_reduced: bool = False
+    is_reward: bool = False
     endless: EndlessTrace | None = None
 
     @property
@@ -131,9 +133,12 @@ class Exact(PartlyCompared, frozen=True):
 
     @property
     def agrees(self) -> bool:
-        """Whether all schedulers have the same value, as far as the bounds and the traces show."""
-        is_sometimes_one = self.fails and self.minimum.upper < 1.0 <= self.maximum.lower
-        return is_same(self.minimum, self.maximum) and not is_sometimes_one
+        """Whether all schedulers have the same value, as far as the bounds show. Those of a probability decide whether
+        it is 0 or 1 (`roaml.explicit.solver.Solver.certain`)."""
+        is_sometimes_one = self.minimum.upper < 1.0 <= self.maximum.lower
+        is_sometimes_zero = self.minimum.upper <= 0.0 < self.maximum.lower
+        is_apart = not self.is_reward and (is_sometimes_one or is_sometimes_zero)
+        return is_same(self.minimum, self.maximum) and not is_apart
 
     def asked_value(self, question: Question, *, only_uniform: bool) -> tuple[Bounds, float]:
         """The bounds and the value of the minimum or maximum that a property asks for; with `only_uniform`, those for

@@ -35,13 +35,13 @@ def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | No
         if extreme is None or not extreme.is_exact:
             return verdict
         # The exact value decides, not the interval of the estimate.
-        met = holds_exactly(threshold, extreme.bounds, extreme.value)
+        met = holds_exactly(threshold, extreme.bounds, extreme.value, is_reward=answer.question.is_reward)
         return replace(verdict, is_met=met, is_certain=True, is_open=False, unanimous=None)
     if not verdict.is_met:
         verdict = replace(verdict, under="under uniform choices")
     missed = replace(verdict, is_met=False, is_certain=True, is_open=False, under=_missed_by(answer.question, extreme))
     if extreme is not None and extreme.is_exact:
-        met = holds_exactly(threshold, extreme.bounds, extreme.value)
+        met = holds_exactly(threshold, extreme.bounds, extreme.value, is_reward=answer.question.is_reward)
         return replace(verdict, is_met=True, is_certain=True, is_open=False, under="") if met else missed
     if answer.question.has_opposite_extremes:
         return replace(verdict, is_uniform=verdict.is_met)
