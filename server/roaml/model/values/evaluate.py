@@ -264,10 +264,10 @@ class Evaluator(Record, eq=False):
         if same or compared(operator, first, second) == FALSE:
             holds = same and operator in (Operator.EQUAL, Operator.LESS_EQUAL, Operator.GREATER_EQUAL)
             return known if holds else None
-        narrowed = self._with(known, left, self._related(left, operator, first, second))
+        narrowed = self._narrowed(known, left, self._related(left, operator, first, second))
         if narrowed is None:
             return None
-        return self._with(narrowed, right, self._related(right, MIRRORED[operator], second, first))
+        return self._narrowed(narrowed, right, self._related(right, MIRRORED[operator], second, first))
 
     def _quietly(self, known: Valuation, expr: Expr) -> ValueSet:
         """The values of an expression that is recorded elsewhere."""
@@ -279,8 +279,7 @@ class Evaluator(Record, eq=False):
 
     def _related(self, expr: Expr, operator: Operator, values: ValueSet, other: ValueSet) -> ValueSet:
         """The part of `values`, those of `expr`, for which `OPERATOR other` can hold."""
-        place = place_of(expr)
-        is_whole = place is not None and self.whole(place)
+        is_whole = self._is_whole(expr)
         match operator:
             case Operator.EQUAL:
                 return meet(values, other)
@@ -291,6 +290,37 @@ class Evaluator(Record, eq=False):
             case Operator.GREATER | Operator.GREATER_EQUAL if is_numeric(values) and is_numeric(other):
                 return above(values, other, is_whole, operator is Operator.GREATER)
         return values
+
+    def _is_whole(self, expr: Expr) -> bool:
+        """Whether the values of an expression are integers."""
+        match expr:
+            case Number():
+                return not expr.is_real
+            case Unary(operator=UnaryOperator.NEGATE):
+                return self._is_whole(expr.operand)
+            case Binary(operator=Operator.ADD | Operator.SUBTRACT):
+                return self._is_whole(expr.left) and self._is_whole(expr.right)
+        place = place_of(expr)
+        return place is not None and self.whole(place)
+
+    def _narrowed(self, known: Valuation, expr: Expr, values: ValueSet) -> Valuation | None:
+        """`known` where `expr` has one of `values`, which are some of those that it has in `known`. In a sum or a
+        difference of integers with a number, such as `level + 5`, the other operand is narrowed; the sums of real
+        numbers are rounded."""
+        match expr:
+            case Unary(operator=UnaryOperator.NEGATE) if self._is_whole(expr):
+                return self._narrowed(known, expr.operand, self._unary(UnaryOperator.NEGATE, values))
+            case Binary(operator=Operator.ADD | Operator.SUBTRACT) if self._is_whole(expr):
+                left, right = self._quietly(known, expr.left), self._quietly(known, expr.right)
+                if values.only == frozenset():
+                    return None
+                if right.value is not None:
+                    opposite = Operator.SUBTRACT if expr.operator is Operator.ADD else Operator.ADD
+                    return self._narrowed(known, expr.left, arithmetic(opposite, values, right))
+                if left.value is not None:
+                    rest = (values, left) if expr.operator is Operator.ADD else (left, values)
+                    return self._narrowed(known, expr.right, arithmetic(Operator.SUBTRACT, *rest))
+        return self._with(known, expr, values)
 
     def _with(self, known: Valuation, expr: Expr, values: ValueSet) -> Valuation | None:
         if values.only == frozenset():
