@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
-from roaml.model.machine import Handler
 from roaml.rules.rule import MachineContext, Rule, listing
+from roaml.rules.support.triggers import awaited
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -18,19 +18,13 @@ def check(context: MachineContext) -> Iterator[Finding]:
             always = next((h for h in handlers if h.trigger is None and h.cond is None), None)
             waiting = [handler for handler in handlers if handler.trigger is not None]
             if always is not None and waiting:
-                names = listing(dict.fromkeys(_awaited(handler) for handler in waiting))
+                names = listing(awaited(state))
                 yield RULE.at(
                     always.element.name_span,
                     f"without an event or condition, this transition is taken at once, so the state never waits for "
                     f"{names}; add an `event` or a `cond` to this transition",
                     related=(Related(handler.element.name_span, "never taken") for handler in waiting),
                 )
-
-
-def _awaited(handler: Handler) -> str:
-    """The name of the event or handle that a transition waits for; the name of its element if it has neither."""
-    name = handler.event or handler.handle
-    return name.value if name else handler.element.name
 
 
 RULE = Rule(

@@ -18,8 +18,9 @@ from roaml.model.values.describe import described, is_informative
 from roaml.model.values.domain import FALSE, TRUE, ValueSet
 from roaml.model.values.evaluate import place_of
 from roaml.record import Record
-from roaml.rules.rule import MachineContext
+from roaml.rules.rule import MachineContext, listing
 from roaml.rules.support.assignments import is_unchanged
+from roaml.rules.support.triggers import awaited
 from roaml.text import Span
 
 MAX_TRIED = 8
@@ -28,6 +29,13 @@ MAX_TRIED = 8
 
 MAX_NAMED = 3
 """The maximum number of variables whose values a message states."""
+
+
+_WITHOUT_EFFECT = "it has no effect; later ones are never tested"
+_TAKEN_AT_ONCE = (
+    "the transition is taken at once and the state never waits for {names}; check what assigns the variables, or give "
+    "the transition an `event`"
+)
 
 
 class ConstantPart(Record, frozen=True):
@@ -60,10 +68,14 @@ def constant_conditions(context: MachineContext, machine: MachineValues) -> dict
         unjudged = _unjudged(context, chart)
         for state in chart.states:
             for handlers in _groups(context, state):
-                parts += _first(values, facts, [h.cond for h in handlers], "transition", unjudged)
+                names = awaited(state) if handlers[0].trigger is None else ()
+                always = _TAKEN_AT_ONCE.format(names=listing(names)) if names else _WITHOUT_EFFECT
+                effects = "the transition is never taken", always
+                parts += _first(values, facts, [h.cond for h in handlers], effects, unjudged)
         for statement in chart.statements:
             if isinstance(statement, If):
-                parts += _first(values, facts, [b.cond for b in statement.branches], "branch", unjudged)
+                effects = "the branch is never executed", _WITHOUT_EFFECT
+                parts += _first(values, facts, [b.cond for b in statement.branches], effects, unjudged)
     return {part.span: part for part in parts}
 
 
@@ -110,11 +122,16 @@ def _first(
     values: ChartValues,
     facts: ConditionFacts,
     conditions: Iterable[Expression | None],
-    what: str,
+    effects: tuple[str, str],
     unjudged: frozenset[str],
 ) -> Iterator[ConstantPart]:
     """The conditions that are never true, up to the first one that is always true: the conditions after it are
-    not tested."""
+    not tested.
+
+    Args:
+        effects: what follows from a condition that is never true, and from one that is always true.
+    """
+    never, always = effects
     for cond in conditions:
         names = variables_in((cond.tree,)) if cond is not None else frozenset()
         if cond is None or cond.broken or not names:
@@ -126,14 +143,12 @@ def _first(
         if names & unjudged and not contradicts:
             continue
         if results.alone == FALSE or contradicts:
-            effect = "transition is never taken" if what == "transition" else "branch is never executed"
             why = values_in(values, cond.tree) or ("its parts contradict each other" if contradicts else "")
-            message = f"this condition is never true{because(why)}, so the {effect}"
+            message = f"this condition is never true{because(why)}, so {never}"
             yield ConstantPart(cond.span, message, is_true=False)
         elif results.alone == TRUE:
             why = values_in(values, cond.tree)
-            after = "has no effect; later ones are never tested"
-            message = f"this condition is always true{because(why)}, so it {after}"
+            message = f"this condition is always true{because(why)}, so {always}"
             yield ConstantPart(cond.span, message, is_true=True)
             return
 

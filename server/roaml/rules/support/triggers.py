@@ -11,6 +11,14 @@ from roaml.model.triggers import Trigger, chooses, trigger
 from roaml.rules.support.conditions import covered
 
 
+def awaited(state: State) -> tuple[str, ...]:
+    """The names of the events and handles that the handlers of a state wait for; of a handler with neither, the name of
+    its element."""
+    waiting = [handler for handler in state.handlers if handler.effective and handler.trigger is not None]
+    names = [(handler.event or handler.handle, handler.element) for handler in waiting]
+    return tuple(dict.fromkeys(name.value if name else element.name for name, element in names))
+
+
 def conditional(machine: Machine, state: State) -> Iterator[list[Handler]]:
     """The handlers of a state that have conditions, grouped by trigger; only groups of at least two handlers."""
     groups: dict[Trigger, list[Handler]] = {}
