@@ -13,7 +13,7 @@ from roaml.smc.tally import Tally
 _UNTESTED = "these are among the passed traces, but do not test it"
 _NEVER_TESTED = "nothing has tested the property, so this value does not show that the system is right (vacuous):"
 _NOT_TRIGGERED = "what must happen before the property requires anything did not happen"
-_NOT_OPENED = "the event that begins the scope of the property did not happen"
+_NOT_OPENED = "the event that begins or ends the scope of the property did not happen"
 _REMEDY = "check whether it can happen at all, or allow more time (max_time)"
 NONE_ACCEPTED = "no trace satisfies the assumptions of the property, so there is no value"
 
