@@ -337,7 +337,7 @@ class _Linker:
         pattern = Pattern(written.pattern.value)
         conditions = self._conditions(written, pattern)
         scope = self._scope(written)
-        window = self._window(written, pattern)
+        window = self._window(written, pattern, is_reaction=self._is_reaction(pattern, conditions))
         if conditions is None or scope is None or window is None:
             return None
         kind, limits = scope
@@ -350,6 +350,14 @@ class _Linker:
         if pattern is Pattern.UNIVERSALITY and kind is ScopeKind.GLOBALLY and window.lower == 0:
             self._check_start(conditions[LEFT])
         return PatternProperty(pattern, kind, window), {**conditions, **limits}
+
+    def _is_reaction(self, pattern: Pattern, conditions: Mapping[str, Expression] | None) -> bool:
+        """Whether a property relates an event to a reaction that no other timer sends. In the model, it can be sent at
+        the same time; a limit that is a little shorter than a step means the same on the robot."""
+        if pattern not in (Pattern.RESPONSE, Pattern.PRECEDENCE) or conditions is None:
+            return False
+        first, reaction = (self._slowest_timer(conditions[side].tree) for side in (LEFT, RIGHT))
+        return reaction is None or reaction == first
 
     def _check_start(self, condition: Expression) -> None:
         if self._event(condition.tree) is not None:
@@ -463,7 +471,7 @@ class _Linker:
 
     # ----------------------------------------------------------------- time
 
-    def _window(self, written: WrittenProperty, pattern: Pattern) -> Window | None:
+    def _window(self, written: WrittenProperty, pattern: Pattern, *, is_reaction: bool) -> Window | None:
         if not written.intervals:
             if pattern is Pattern.RECURRENCE:
                 message = "`recurrence` needs a `<time_interval>` within which the condition must be true again"
@@ -488,7 +496,11 @@ class _Linker:
         if self.step is None:
             self._no_clock(place)
             return None
-        return self._in_steps(interval, NANOSECONDS[interval.unit.value], self.step)
+        unit = NANOSECONDS[interval.unit.value]
+        window = self._in_steps(interval, unit, self.step)
+        if window is not None:
+            self._compare_with_the_clock(interval, unit, self.step, is_reaction=is_reaction)
+        return window
 
     def _no_clock(self, span: Span) -> None:
         self.report(
@@ -525,10 +537,9 @@ class _Linker:
             )
             self.report(ProblemKind.TIME, place, message)
             return None
-        self._compare_with_the_clock(interval, unit, step)
         return Window(lower, upper)
 
-    def _compare_with_the_clock(self, interval: TimeInterval, unit: int, step: int) -> None:
+    def _compare_with_the_clock(self, interval: TimeInterval, unit: int, step: int, *, is_reaction: bool) -> None:
         """Report ends of an interval that no trace reaches, or that are shorter than a step of the clock."""
         for written in (interval.after, interval.time or interval.within):
             number = _number(written)
@@ -541,13 +552,16 @@ class _Linker:
                 )
                 self.report(ProblemKind.BEYOND_END, written.span, message)
                 return
-            if 0 < number * unit < step:
+            shortest = step / MAX_COARSENESS if is_reaction and written is not interval.after else step
+            if 0 < number * unit < shortest:
                 meaning = "the next step" if written is interval.after else "the same time only"
                 message = f"this is shorter than a step of the clock, {_duration(step)}, so it means {meaning}"
                 self.report(ProblemKind.SHORT, written.span, message)
                 return
 
 
+MAX_COARSENESS = 10
+"""How many times longer than the limit of a reaction a step of the clock may be. Beyond it, the unit may be wrong."""
 MAX_STEPS = 1_000_000
 """The maximum number of steps of the clock in the bounds of a time interval."""
 

@@ -10,7 +10,7 @@ from roaml.diagnostics import Finding, Severity
 from roaml.durations import NANOSECONDS
 from roaml.exact_number import exact_number
 from roaml.model.node_effects import tree_effects
-from roaml.model.property_links import LinkedFile
+from roaml.model.property_links import MAX_COARSENESS, LinkedFile
 from roaml.model.property_problems import ProblemKind
 from roaml.model.tree import TreeNode
 from roaml.rules.rule import Rule, TreeContext
@@ -27,7 +27,7 @@ def _tree(context: TreeContext) -> Iterator[Finding]:
         return
     times = {(node, port): ns for node, port, ns in durations(context)}
     for (node, port), ns in times.items():
-        if ns < tick:
+        if ns < (tick if _type_name(node) == "Timeout" else tick / MAX_COARSENESS):
             message = (
                 f"{duration(ns)} is shorter than the time between two ticks of the tree, {duration(tick)} "
                 "(`bt_tick_rate`), and has the same effect as one tick"
@@ -68,9 +68,13 @@ _IN_TURN = frozenset(("Sequence", "AsyncSequence", "SequenceWithMemory", "Reacti
 _PASSING = frozenset(("Timeout", "RetryUntilSuccessful", "Repeat", "RateController"))
 
 
+def _type_name(node: TreeNode) -> str:
+    return node.plugin.value if node.plugin is not None else ""
+
+
 def _least(context: TreeContext, node: TreeNode) -> Fraction:
     """The least time that a node takes until it succeeds, in ns."""
-    name = node.plugin.value if node.plugin is not None else ""
+    name = _type_name(node)
     inside = [_least(context, child) for child in node.children if not child.scripts]
     if not node.children:
         return context.mocked.get(node, _own_time(context, node))
