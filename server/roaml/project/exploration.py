@@ -12,11 +12,13 @@ then either. This smaller search comes first, and ends most checks: without a fi
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import functools
+from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from roaml.diagnostics import Finding, Related
 from roaml.interruption import checkpoint
+from roaml.jani.expressions import Integer
 from roaml.libraries.programs.statuses import FAILURE, RUNNING, SUCCESS
 from roaml.model.expand import Instance, NodeSource, node_at
 from roaml.model.node_effects import statuses
@@ -24,10 +26,11 @@ from roaml.model.size import Size
 from roaml.model.system import System
 from roaml.model.tree import TreeNode
 from roaml.project.analysis import Analysis
+from roaml.project.optional_branches import ByNumber, ends_only_in_failure, is_required, reactive
 from roaml.project.translation import network_of
 from roaml.record import Record
 from roaml.rules.trees import never_ticked
-from roaml.scxml.names import TreeEventKind, read_tree_event, received_by
+from roaml.scxml.names import STATUS_NAMES, TreeEventKind, read_tree_event, received_by
 from roaml.text import Location
 
 if TYPE_CHECKING:
@@ -47,11 +50,23 @@ class Reached(Record, frozen=True):
 
     Attributes:
         events: the events that an automaton can receive -> whether it receives them in some state.
+        statuses: number of a node of the tree -> the statuses that it returns in some state.
         is_instant: whether this is only known if machines react at once.
     """
 
     events: Mapping[str, bool]
+    statuses: Mapping[int, frozenset[str]]
     is_instant: bool
+
+    @property
+    def ticks(self) -> Mapping[int, bool]:
+        """The numbers of the nodes of the tree -> whether they are ticked."""
+        ticks: dict[int, bool] = {}
+        for event, is_received in self.events.items():
+            tree = read_tree_event(event)
+            if tree is not None and tree.kind is TreeEventKind.TICK:
+                ticks[tree.number] = ticks.get(tree.number, False) or is_received
+        return ticks
 
 
 def findings_of(analysis: Analysis, path: str) -> Mapping[str, tuple[Finding, ...]] | None:
@@ -65,8 +80,10 @@ def findings_of(analysis: Analysis, path: str) -> Mapping[str, tuple[Finding, ..
     if _parts(size) > MAX_PARTS:
         return None
     known: list[tuple[str, Finding]] | None = None
+    nodes = {instance.number: instance for instance in system.instances}
+    missed = functools.cache(functools.partial(_is_missed, plain, path, nodes))
     for reached in _explored(plain, path):
-        known = list(_never_ticked(plain, system, reached))
+        known = list(_never_ticked(plain, system, nodes, reached, missed))
         if not known:
             break
     if known is None:
@@ -105,20 +122,20 @@ def _explored(analysis: Analysis, path: str) -> Iterator[Reached]:
     metadata = model.metadata
     if metadata is not None and metadata.clock is not None and metadata.reaction_time.is_any:
         try:
-            events = _received(reacting(model, AT_ONCE))
+            reached = _reached(reacting(model, AT_ONCE), is_instant=True)
         except ReactionError:
             return
-        if events is None:
+        if reached is None:
             return
-        yield Reached(events, is_instant=True)
-    events = _received(model)
-    if events is not None:
-        yield Reached(events, is_instant=False)
+        yield reached
+    reached = _reached(model, is_instant=False)
+    if reached is not None:
+        yield reached
 
 
-def _received(model: Model) -> Mapping[str, bool] | None:
-    """The events that automata can receive -> whether they do; `None` if there are too many states, or if an undefined
-    operation is executed, behind which no states are known."""
+def _reached(model: Model, *, is_instant: bool) -> Reached | None:
+    """What a model reaches; `None` if there are too many states, or if an undefined operation is executed, behind which
+    no states are known."""
     from roaml.explicit.independence import can_be_reduced  # noqa: PLC0415
     from roaml.explicit.space import LimitError, StateLimits, explore  # noqa: PLC0415
     from roaml.smc.fault import FaultError  # noqa: PLC0415
@@ -132,7 +149,10 @@ def _received(model: Model) -> Mapping[str, bool] | None:
         space = explore(checker, checker.stuck, limits, lambda _: checkpoint(), is_reduced=is_reduced)
     except (FaultError, LimitError):
         return None
-    return None if space.problem is not None else _events(checker, bytes(memoryview(space.search.taken)))
+    if space.problem is not None:
+        return None
+    taken = bytes(memoryview(space.search.taken))
+    return Reached(_events(checker, taken), _statuses(checker, taken), is_instant)
 
 
 def _events(checker: ModelChecker, taken: bytes) -> Mapping[str, bool]:
@@ -144,12 +164,30 @@ def _events(checker: ModelChecker, taken: bytes) -> Mapping[str, bool]:
     return events
 
 
-def _never_ticked(analysis: Analysis, system: System, reached: Reached) -> Iterator[tuple[str, Finding]]:
+def _statuses(checker: ModelChecker, taken: bytes) -> Mapping[int, frozenset[str]]:
+    """The numbers of the nodes of the tree -> the statuses that they return, as far as they send them as constants."""
+    statuses: dict[int, frozenset[str]] = {}
+    for way, (_, destination) in enumerate(checker.legend.ways):
+        for assignment in destination.assignments if taken[way] else ():
+            event, _, parameter = assignment.variable.rpartition("__")
+            tree = read_tree_event(event) if parameter == "status" else None
+            if tree is not None and isinstance(assignment.value, Integer):
+                name = STATUS_NAMES.get(assignment.value.value, "")
+                statuses[tree.number] = statuses.get(tree.number, frozenset()) | {name}
+    return statuses
+
+
+def _never_ticked(
+    analysis: Analysis, system: System, by_number: ByNumber, reached: Reached, missed: Callable[[Instance], bool]
+) -> Iterator[tuple[str, Finding]]:
     """The paths of files, and findings about nodes in them that are never ticked although their parents are. A place
-    that several instances share is reported if none of them is ticked."""
-    by_number = {instance.number: instance for instance in system.instances}
-    ticked = {number for number, is_ticked in _ticks(reached).items() if is_ticked}
-    known = _ticks(reached).keys()
+    that several instances share is reported if none of them is ticked.
+
+    Args:
+        missed: whether a node would be ticked if the nodes around it were reactive.
+    """
+    ticked = {number for number, is_ticked in reached.ticks.items() if is_ticked}
+    known = reached.ticks.keys()
     places = {instance.source for instance in system.instances if instance.number in ticked}
     for instance in system.instances:
         before = _before(instance, by_number)
@@ -161,13 +199,39 @@ def _never_ticked(analysis: Analysis, system: System, reached: Reached) -> Itera
             _decides(system, leaf, is_condition=needed is never_ticked.FAILS) for leaf in _leaves(before, by_number)
         ):
             continue
+        is_missed = not _is_needed(system, by_number, reached, instance, before)
+        if is_missed and not (_has_failing_action(system, by_number, reached) and missed(instance)):
+            continue
         node, earlier = _written(analysis, instance.source), _written(analysis, before.source)
         if node is None or earlier is None:
             continue
         # A finding refers to places in its own file; the root of another tree may be in another file.
         is_beside = instance.source.path == before.source.path
         related = [Related(earlier.element.name_span, f"never returns {needed}")] if is_beside else []
-        yield instance.source.path, never_ticked.finding(node, earlier, needed, related, reached.is_instant)
+        yield (
+            instance.source.path,
+            never_ticked.finding(node, earlier, needed, related, is_instant=reached.is_instant, is_missed=is_missed),
+        )
+
+
+def _is_needed(system: System, nodes: ByNumber, reached: Reached, instance: Instance, before: Instance) -> bool:
+    """Whether the tree cannot succeed because a node is never ticked, or whether the node follows an action that never
+    succeeds. Other nodes may be for cases that the environment does not contain."""
+    if is_required(instance, nodes) or ends_only_in_failure(nodes, reached.statuses, instance):
+        return True
+    return any(RUNNING in statuses(system, leaf) for leaf in _leaves(before, nodes))
+
+
+def _has_failing_action(system: System, nodes: ByNumber, reached: Reached) -> bool:
+    failing = (nodes[number] for number, found in reached.statuses.items() if "FAILURE" in found)
+    return any(not node.children and RUNNING in statuses(system, node) for node in failing)
+
+
+def _is_missed(analysis: Analysis, path: str, nodes: ByNumber, instance: Instance) -> bool:
+    """Whether a node that is never ticked would be ticked if the condition before it were checked again at every
+    tick."""
+    other = reactive(analysis, path, instance, nodes)
+    return other is not None and any(again.ticks.get(instance.number, False) for again in _explored(other, path))
 
 
 def _written(analysis: Analysis, source: NodeSource) -> TreeNode | None:
@@ -175,17 +239,7 @@ def _written(analysis: Analysis, source: NodeSource) -> TreeNode | None:
     return None if file is None else node_at(file, source)
 
 
-def _ticks(reached: Reached) -> Mapping[int, bool]:
-    """The numbers of the nodes of the tree -> whether they are ticked."""
-    ticks: dict[int, bool] = {}
-    for event, is_received in reached.events.items():
-        tree = read_tree_event(event)
-        if tree is not None and tree.kind is TreeEventKind.TICK:
-            ticks[tree.number] = ticks.get(tree.number, False) or is_received
-    return ticks
-
-
-def _before(instance: Instance, by_number: Mapping[int, Instance]) -> Instance | None:
+def _before(instance: Instance, by_number: ByNumber) -> Instance | None:
     """The sibling before a node."""
     if instance.parent is None:
         return None
@@ -194,7 +248,7 @@ def _before(instance: Instance, by_number: Mapping[int, Instance]) -> Instance |
     return by_number[siblings[index - 1]] if index > 0 else None
 
 
-def _leaves(instance: Instance, by_number: Mapping[int, Instance]) -> Iterator[Instance]:
+def _leaves(instance: Instance, by_number: ByNumber) -> Iterator[Instance]:
     for child in instance.children:
         yield from _leaves(by_number[child], by_number)
     if not instance.children:

@@ -27,18 +27,24 @@ def needed(plugin: str) -> str | None:
     return _NEEDED.get(plugin)
 
 
-def finding(node: TreeNode, before: TreeNode, status: str, related: Iterable[Related], is_instant: bool) -> Finding:
+def finding(
+    node: TreeNode, before: TreeNode, status: str, related: Iterable[Related], *, is_instant: bool, is_missed: bool
+) -> Finding:
     """The finding that a node is never ticked, because the sibling before it never returns a status.
 
     Args:
         is_instant: whether this is only known if all machines react at once.
+        is_missed: whether the sibling would return the status if it were ticked again while later nodes run.
     """
     assumed = " if all machines react at once" if is_instant else ""
     name = before.name.value if before.name is not None else before.type_name
-    message = (
-        f"no run of this system ticks this node{assumed}: `{name}` before it never returns {status}; check what "
-        "decides this status, when it is ticked, and whether an `Inverter` is missing or superfluous"
-    )
+    remedy = "check what decides this status, when it is ticked, and whether an `Inverter` is missing or superfluous"
+    if is_missed:
+        remedy = (
+            "it would if it were ticked again while later nodes are running, of which one fails; use "
+            "`ReactiveSequence` or `ReactiveFallback` around it"
+        )
+    message = f"no run of this system ticks this node{assumed}: `{name}` before it never returns {status}; {remedy}"
     return RULE.at(node.element.name_span, message, related=related)
 
 
