@@ -31,7 +31,7 @@ def test_all_registered_nodes_are_known() -> None:
 def test_nav2_has_its_nodes() -> None:
     kinds = [node.kind for node in NAV2.nodes.values()]
     counts = {kind: kinds.count(kind) for kind in set(kinds)}
-    assert counts == {NodeKind.CONTROL: 6, NodeKind.DECORATOR: 7, NodeKind.ACTION: 49, NodeKind.CONDITION: 19}
+    assert counts == {NodeKind.CONTROL: 6, NodeKind.DECORATOR: 7, NodeKind.ACTION: 49, NodeKind.CONDITION: 20}
     assert not NAV2.nodes.keys() & CPP.nodes.keys()
 
 

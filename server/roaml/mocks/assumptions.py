@@ -23,6 +23,7 @@ _COMPUTES = "computes from its inputs, and fails only if they are missing"
 _NEW_GOAL = "a new goal is rare: in 1 of 100 ticks"
 _HELPS = "most errors can be resolved by a recovery"
 _PLANS = "a planner usually finds a path, in a fraction of a second"
+_PATH_CHECKED = "obstacles make some paths invalid"
 _CANCELS = "a server answers a cancellation soon, and rarely refuses it"
 _SERVICE = "a service answers soon, and rarely fails"
 
@@ -65,7 +66,8 @@ _FIXED: Mapping[str, Assumption] = MappingProxyType(
         "NavigateThroughPoses": _fixed(0.9, 30_000, "driving takes seconds, and obstacles stop some attempts"),
         "DockRobot": _fixed(0.9, 15_000, "docking takes seconds, and some attempts miss the dock"),
         "UndockRobot": _fixed(0.98, 5_000, "leaving a dock rarely fails"),
-        "ValidatePath": _fixed(0.9, 0, "obstacles make some paths invalid"),
+        "ValidatePath": _fixed(0.9, 0, _PATH_CHECKED),
+        "IsPathValid": _fixed(0.9, 0, _PATH_CHECKED),
         "CheckPoseOccupancy": _fixed(0.95, 100, "most poses are free"),
         "CheckStopStatus": _fixed(1, 500, "a robot stops within half a second"),
         "RemovePassedGoals": _fixed(1, 0, _COMPUTES),
