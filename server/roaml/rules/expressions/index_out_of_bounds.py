@@ -18,7 +18,10 @@ from roaml.model.values.describe import described
 from roaml.model.values.domain import Origin, exactly, interval
 from roaml.model.values.evaluate import place_of
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.index_guards import counts_threads, ends_in_time, is_guarded, is_reset
+from roaml.rules.support.append_counters import ends_in_time
+from roaml.rules.support.blocks import is_reset
+from roaml.rules.support.free_threads import counts_threads
+from roaml.rules.support.index_guards import is_guarded
 from roaml.rules.support.written import written
 from roaml.text import TextEdit
 
@@ -303,7 +306,7 @@ def _has_room(context: MachineContext, place: ValuePlace, append: Index, bound: 
     holding, array, values = _holding(place), append.object, context.values.charts.get(place.chart.scope)
     if any(_limits(context, place.chart, condition.tree, array, bound, holds) for condition, holds in holding):
         return True
-    return values is not None and ends_in_time(place.chart, values, place, append, holding, bound)
+    return values is not None and ends_in_time(place.chart, values, append, holding, bound)
 
 
 def _trigger(handler: Handler) -> tuple[object, ...]:
