@@ -82,12 +82,15 @@ def test_a_call_goes_through_its_handler_to_the_server() -> None:
     timeline = timeline_of(session)
     names = [lane.name for lane in timeline.lanes]
     calls = {
-        (names[message.sender], names[receiver])
+        (message.name, names[message.sender], names[receiver])
         for message in timeline.messages
         for receiver in message.receivers
-        if message.name == "/block/pick_up"
+        if message.name.startswith("/block/pick_up")
     }
-    assert calls == {("Recoverer", "Mover"), ("Mover", "Recoverer")}
+    assert calls == {
+        ("/block/pick_up request", "Recoverer", "Mover"),
+        ("/block/pick_up response", "Mover", "Recoverer"),
+    }
 
 
 def test_a_timeline_is_continued_and_read_again_after_a_choice() -> None:
@@ -149,15 +152,27 @@ def test_messages_at_one_time_are_all_named() -> None:
     session = api.session(api.load(str(DELIVERY)), seed=3)
     session.until_decided(2_000)
     timeline = timeline_of(session)
-    drawing = draw_timeline(timeline, View(Axis.TIME, 0.0, extent(timeline, Axis.TIME), 1200.0))
+    drawing = draw_timeline(timeline, View(Axis.TIME, 0.0, extent(timeline, Axis.TIME), 1500.0))
     by_time: dict[float, list[str]] = {}
     for message in timeline.messages:
         by_time.setdefault(timeline.times[message.received], []).append(message.name)
     assert any(len(set(names)) > 1 for names in by_time.values())
-    written = [
-        i.text for group in drawing.groups if group.role == "event" for i in group.items if isinstance(i, TextItem)
+    events = [group for group in drawing.groups if group.role == "event"]
+    lines = [tuple(item.text for item in group.items if isinstance(item, TextItem)) for group in events]
+    written = [", ".join(texts).split(", ") for texts in lines if texts]
+    assert written == [list(dict.fromkeys(names)) for names in by_time.values()]
+    assert max(map(len, lines)) == 2
+    # With less space, the others are counted, and only a single name is shortened.
+    narrow = draw_timeline(timeline, View(Axis.TIME, 0.0, extent(timeline, Axis.TIME), 700.0))
+    texts = [
+        item.text
+        for group in narrow.groups
+        if group.role == "event"
+        for item in group.items
+        if isinstance(item, TextItem)
     ]
-    assert written == [", ".join(dict.fromkeys(names)) for names in by_time.values()]
+    assert any(text.endswith(", +1") or text == "+1" for text in texts)
+    assert not any("…" in text and "," in text for text in texts)
 
 
 @pytest.mark.parametrize("axis", list(Axis))
@@ -199,7 +214,9 @@ def test_names_of_messages_overlap_no_name_and_no_mark(path: Path, axis: Axis) -
         texts = [item for group in events for item in group.items if isinstance(item, TextItem)]
         named += len(texts)
         boxes = sorted((text.x, text.x + text_width(text.text, text.size)) for text in texts)
-        assert all(right <= left for (_, right), (left, _) in itertools.pairwise(boxes))
+        for row in {text.y for text in texts}:
+            own = sorted(text.box for text in texts if text.y == row)
+            assert all(left.right <= right.x for left, right in itertools.pairwise(own))
         for left, right in boxes:
             assert 0.0 <= left <= right <= width
             assert not any(left < mark.x + mark.width / 2 < right for mark in marks)
@@ -259,7 +276,7 @@ def test_only_the_visible_rows_are_drawn() -> None:
     session = api.session(api.load(str(ROBOT)), seed=3)
     session.until_decided()
     timeline = timeline_of(session)
-    view = View(Axis.STEPS, 0.0, float(timeline.count), 900.0, top=70.0, bottom=80.0)
+    view = View(Axis.STEPS, 0.0, float(timeline.count), 900.0, top=86.0, bottom=96.0)
     states = [group for group in draw_timeline(timeline, view).groups if group.role == "state"]
     assert states
     assert len({group.hint.split(":")[0] for group in states}) == 2

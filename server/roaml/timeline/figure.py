@@ -19,12 +19,14 @@ from roaml.figures.text import ELLIPSIS, SMALL, text_width
 from roaml.record import Record
 from roaml.timeline.record import Lane, LaneKind, Plot, SentMessage, Timeline
 
-LANE, PLOT, AXIS, MESSAGES = 26.0, 54.0, 24.0, 22.0
+LANE, PLOT, AXIS, MESSAGES = 26.0, 54.0, 24.0, 38.0
 """The heights of a lane, a plot, the axis, and the row with the names of messages, in pixels."""
 CURVES, CURVE_NAME = 120.0, 16.0
 """The minimum height of a row with several curves, and the height of the name of each, in pixels."""
 MESSAGES_NAME = "messages: ● sent, ▾ received"
 """The name of the row of messages, with the marks at the ends of their lines."""
+_MESSAGE_LINE, _MAX_NAMES = 15.0, 6
+"""The height of a line with names of messages, in pixels, and the maximum number of names at one instant."""
 _SPAN, _MARGIN = 20.0, 8.0
 _TEXT_MARGIN = 9.0
 """The distance of the name of a state from its beginning, where arrows of messages are, in pixels."""
@@ -347,11 +349,10 @@ class _Painter:
             beside = self._x(messages[following].received) if following < last else min(self._view.width, self._end)
             name = ", ".join(dict.fromkeys(message.name for message in marked[:_SAMPLE]))
             here = messages[number - len(marked) : min(following, number + _SAMPLE)]
-            names = ", ".join(dict.fromkeys(message.name for message in here))
-            left, text = _beside(names, x, end, free_from, beside)
-            if text:
-                items.append(TextItem(text, left, AXIS + MESSAGES / 2 + SMALL * 0.35, SMALL, "text"))
-            free_from = max(free_from, left + text_width(text, SMALL) + 6.0 if text else 0.0, end + 6.0)
+            names = tuple(dict.fromkeys(message.name for message in here))
+            texts = _beside(names, x, end, free_from, beside)
+            items += texts
+            free_from = max(free_from, end + 6.0, *(text.box.right + 6.0 for text in texts))
             if has_arrows:
                 items += self._arrows(marked[0], self._arrow_places[number - 1 - first][0] - x)
             # There, the message is in the ROS graph, and the next step is at the line that receives it.
@@ -506,16 +507,39 @@ def _range(plots: Sequence[Plot]) -> tuple[float, float]:
     return (0.0, 1.0) if all(plot.is_flag for plot in plots) else (min(finite), max(finite))
 
 
-def _beside(name: str, x: float, end: float, free_from: float, beside: float) -> tuple[float, str]:
-    """The left end of the text beside a mark from `x` to `end`, and the text. It is right of the mark if it ends before
-    `beside`, otherwise left of it if it begins after `free_from`, otherwise shortened on the side with more space."""
-    width = text_width(name, SMALL)
+def _beside(names: Sequence[str], x: float, end: float, free_from: float, beside: float) -> list[TextItem]:
+    """The names of messages beside their mark from `x` to `end`: right of it if they end before `beside`, otherwise on
+    the side with more space, of which the left one begins at `free_from`."""
     before = x - 3.0 - max(free_from, 0.0)
     behind = beside - end - 6.0 if end >= free_from - 6.0 else 0.0
-    if width > beside - end - 6.0 and before > behind:
-        text = _fitting(name, before)
-        return x - 3.0 - text_width(text, SMALL), text
-    return end + 3.0, _fitting(name, behind) if behind > 0 else ""
+    lines = _lines(names, behind)
+    is_left = before > behind and ", ".join(lines) != ", ".join(names)
+    if is_left:
+        lines = _lines(names, before)
+    y = AXIS + (MESSAGES - _MESSAGE_LINE * (len(lines) - 1)) / 2 + SMALL * 0.35
+    lefts = [x - 3.0 - text_width(line, SMALL) if is_left else end + 3.0 for line in lines]
+    return [
+        TextItem(line, left, y + _MESSAGE_LINE * row, SMALL, "text")
+        for row, (line, left) in enumerate(zip(lines, lefts, strict=True))
+    ]
+
+
+def _lines(names: Sequence[str], width: float) -> list[str]:
+    """One or two short lines with as many of the names as fit into a width, and the number of the others; a first name
+    for which there is no space is shortened."""
+
+    def longest(lines: Sequence[str]) -> float:
+        return max(text_width(line, SMALL) for line in lines)
+
+    if longest(names[:1]) > width:
+        return [text] if (text := _fitting(names[0], width)) else []
+    for count in range(min(len(names), _MAX_NAMES), 0, -1):
+        parts = [*names[:count], *([f"+{len(names) - count}"] if count < len(names) else [])]
+        pairs = ((", ".join(parts[:first]), ", ".join(parts[first:])) for first in range(1, len(parts) + 1))
+        lines = [line for line in min(pairs, key=longest) if line]
+        if longest(lines) <= width:
+            return lines
+    return [names[0]]
 
 
 def _received(message: SentMessage) -> int:

@@ -27,7 +27,6 @@ from roaml.scxml.names import (
 )
 from roaml.simulation.session import Session
 from roaml.smc.record import TraceStep
-from roaml.views.event_words import interface_name
 from roaml.views.events import EventReader
 from roaml.views.shared_names import field_name
 
@@ -67,7 +66,7 @@ class SentMessage(Record, frozen=True):
     """An event from one lane to others.
 
     Attributes:
-        name: the name of the topic, service or action, or of the event.
+        name: the name of the topic, of the part of a service or action, such as `/hand_over response`, or of the event.
         sent, received: the numbers of the steps that sent and received the event.
         sender, receivers: the indexes of the lanes in `Timeline.lanes`.
     """
@@ -141,13 +140,13 @@ class Timeline:
             if is_blackboard(name) or instance in machines
         }
         self._phrases = {instance: session.phrases(self._automata[instance]) for instance in self._plotted}
+        self._names = dict.fromkeys(self._automata, "")
         self._fields = dict(self._field_names())
 
     def _field_names(self) -> Iterator[tuple[str, str]]:
         """The variables with the fields of messages, and their names for users, such as `/arm/command.data`."""
-        names = dict.fromkeys(self._automata, "")
         for event, variable, part in self._events.fields():
-            if name := field_name(event, part, names):
+            if name := field_name(event, part, self._names):
                 yield variable, name
 
     def _add(self, session: Session, instance: int, kind: LaneKind) -> None:
@@ -244,5 +243,5 @@ class Timeline:
                 self._held[part.instance] = sent  # it passes the call on
         receivers = tuple(self._lane_of[part.instance] for part in actors if part.instance in self._lane_of)
         if receivers:
-            name = interface_name(event, self._automata) or self._events.name(event)
+            name = field_name(event, "", self._names) or self._events.name(event)
             self.messages.append(SentMessage(name, sent[0], number, sent[1], receivers))
