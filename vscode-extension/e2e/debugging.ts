@@ -68,7 +68,7 @@ export function debugging(stage: Stage): void {
                 await window.openFile("arm.ascxml");
                 await window.running();
                 await window.goBehind("arm.ascxml", '<target id="moving">');
-                await page.keyboard.press("F9");
+                await window.pressBound("F9");
                 await page.locator(".codicon-debug-breakpoint, .codicon-debug-breakpoint-unverified").first().waitFor();
                 await window.openFile("main_with_bug.xml");
                 await startRun(window);
@@ -99,7 +99,7 @@ export function debugging(stage: Stage): void {
                 // The arm keeps the block, and the property holds to the end.
                 await choices.getByText("way := 2, Arm enters").first().click();
                 await choices.getByText("chosen by the user").first().waitFor();
-                await page.keyboard.press("F5");
+                await window.pressBound("F5");
                 await choices.getByText(`The property ${PROPERTY} holds in this run.`).waitFor();
                 await page.locator(".debug-call-stack").getByText("Violated: block_dropped").first().waitFor();
                 await choices.locator(".monaco-list-row").first().waitFor({ state: "detached" });
@@ -114,12 +114,12 @@ export function debugging(stage: Stage): void {
         await window.openFile("fetch.xml");
         await window.running();
         await window.goBehind("fetch.xml", "<FollowPath");
-        await page.keyboard.press("F9");
+        await window.pressBound("F9");
         await page.locator(".codicon-debug-breakpoint, .codicon-debug-breakpoint-unverified").first().waitFor();
         await startRun(window);
         await choicesOf(window).getByText(POSITION).first().waitFor();
         await makeSpace(window);
-        await page.keyboard.press("F5");
+        await window.pressBound("F5");
         const stack = page.locator(".debug-call-stack .monaco-list-row");
         await stack.filter({ hasText: "FollowPath: TICKED" }).first().waitFor();
         await choicesOf(window).getByText("FollowPath is ticked").first().waitFor();
@@ -130,7 +130,8 @@ export function debugging(stage: Stage): void {
     stage.test("a run without debugging is shown on the stage, here that of a tree alone", loneTree, async (window) => {
         await window.openFile("fetch.xml");
         await window.running();
-        await window.repeat(() => window.press("Control+F5"), window.page.locator(".debug-toolbar"));
+        await window.pressBound("Control+F5");
+        await window.page.locator(".debug-toolbar").waitFor();
         const page = await window.picture('.pane-tree .node[data-label="FollowPath"][data-look]');
         await page.locator(".caption", { hasText: "The run has ended" }).waitFor();
         await window.screenshot("stage-tree");
@@ -143,7 +144,7 @@ export function debugging(stage: Stage): void {
         stage.test(`the timeline shows the run, and a click moves the debugger, ${look}`, themed, async (window) => {
             const { page } = window;
             await start(window, "main_with_bug.xml");
-            await page.keyboard.press("F5");
+            await window.pressBound("F5");
             await choicesOf(window).getByText("The property block_placed holds in this run.").waitFor();
             await page.locator(".panel .composite-bar .action-label", { hasText: "Timeline of the Run" }).click();
             const timeline = await window.picture(".drawing > svg");
@@ -289,7 +290,7 @@ export function debugging(stage: Stage): void {
         await window.clickTab("main.xml");
         await startRun(window);
         await choicesOf(window).getByText(POSITION).first().waitFor();
-        await page.keyboard.press("F5");
+        await window.pressBound("F5");
         await page.locator(".debug-call-stack .monaco-list-row", { hasText: "<ros_topic_publish>" }).first().waitFor();
         await window.repeat(() => window.press("F10"), anna.and(picture.locator('[data-look="message"]')));
         await window.screenshot("ros-graph-message-inside");
@@ -301,26 +302,38 @@ export function debugging(stage: Stage): void {
         const { page } = window;
         await window.openFile("arm.ascxml");
         await window.running();
-        const widget = page.locator(".breakpoint-widget");
-        for (const [place, title, kind, text] of [
-            ['cond="way &lt; 6"', "Debug: Add Logpoint", "Log Message", "on the way: {way}"],
-            ['expr="way + 1"', "Debug: Add Conditional Breakpoint", "Hit Count", "3"],
-        ] as const) {
-            await window.goBehind("arm.ascxml", place);
-            await window.repeat(() => window.run(title), widget);
-            await widget.locator("select").first().selectOption({ label: kind });
-            await window.type(text);
-            await widget.locator(".view-line", { hasText: text.replaceAll(" ", "\u00a0") }).waitFor();
-            await window.press("Enter");
-            await widget.waitFor({ state: "detached" });
-        }
+        const [log, third] = ["Debug: Add Logpoint", "Debug: Add Conditional Breakpoint"];
+        await setBreakpoint(window, ['cond="way &lt; 6"', log, "Log Message", "on the way: {way}"]);
+        await setBreakpoint(window, ['expr="way + 1"', third, "Hit Count", "3"]);
         await start(window, "main_with_bug.xml");
-        await page.keyboard.press("F5");
+        await window.pressBound("F5");
         await page.locator(".debug-call-stack").getByText("Paused: arm.ascxml:54").first().waitFor();
         const logged = page.locator(".repl .monaco-list-row", { hasText: "on the way: " });
         for (const way of [0, 2, 3]) await logged.getByText(`on the way: ${way}`).first().waitFor();
         await window.becomes(() => logged.count(), 3);
         await window.screenshot("debugging-hits");
+        await stop(window);
+    });
+
+    stage.test("a conditional breakpoint stops only where its condition is true", fromStart, async (window) => {
+        const { page } = window;
+        await window.openFile("arm.ascxml");
+        await window.running();
+        const title = "Debug: Add Conditional Breakpoint";
+        await setBreakpoint(window, ['expr="way + 1"', title, "Expression", "way == 4"]);
+        await page.locator(".codicon-debug-breakpoint-conditional").first().waitFor();
+        await start(window, "main_with_bug.xml");
+
+        // The line is reached with 0, 2 and 3 before.
+        await window.pressBound("F5");
+        await page.locator(".debug-call-stack").getByText("Paused: arm.ascxml:54").first().waitFor();
+        const variables = page.locator(".pane", { has: page.locator('.pane-header[aria-label^="Variables"]') });
+        await variables.locator(".monaco-list-row", { hasText: /^way\s*=?\s*4$/ }).waitFor();
+        await window.screenshot("debugging-condition");
+
+        // It is reached with 5 after that, and the run goes on to its end.
+        await window.pressBound("F5");
+        await choicesOf(window).getByText("The property block_placed holds in this run.").waitFor();
         await stop(window);
     });
 
@@ -388,9 +401,24 @@ export function debugging(stage: Stage): void {
     );
 }
 
-/** Presses F5 until a run has begun; once it has, F5 would continue it. */
 async function startRun(window: Window): Promise<void> {
-    await window.repeat(() => window.press("F5"), window.page.locator(".debug-toolbar"));
+    await window.pressBound("F5");
+    await window.page.locator(".debug-toolbar").waitFor();
+}
+
+/** Sets a breakpoint with a condition, a hit count, or a message for the log, in the line of a text. */
+async function setBreakpoint(window: Window, [place, title, kind, text]: readonly string[]): Promise<void> {
+    const widget = window.page.locator(".breakpoint-widget");
+    await window.goBehind("arm.ascxml", place ?? "");
+    await window.repeat(() => window.run(title ?? ""), widget);
+    await widget
+        .locator("select")
+        .first()
+        .selectOption({ label: kind ?? "" });
+    await window.type(text ?? "");
+    await widget.locator(".view-line", { hasText: text?.replaceAll(" ", "\u00a0") ?? "" }).waitFor();
+    await window.press("Enter");
+    await widget.waitFor({ state: "detached" });
 }
 
 /** Starts a run of the system that stops at its start. */

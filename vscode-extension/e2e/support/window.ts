@@ -328,6 +328,29 @@ export class Window {
         for (const key of keys) await this.page.keyboard.press(key);
     }
 
+    /**
+     * Presses a key with a command until the workbench runs the command. It does so only if the command is enabled, for
+     * example after it has noticed that a run has stopped. The focus is not in a picture, which hides the key.
+     */
+    async pressBound(key: string): Promise<void> {
+        await this.until(async () => {
+            const pressed = await this.page.evaluateHandle(() => {
+                const pressed = { isUsed: false };
+                // The listener of the workbench is on the same object, and was added before. The keys of modifiers come
+                // first.
+                const look = (event: KeyboardEvent) => {
+                    if (["Control", "Shift", "Alt", "Meta"].includes(event.key)) return;
+                    pressed.isUsed = event.defaultPrevented;
+                    window.removeEventListener("keydown", look);
+                };
+                window.addEventListener("keydown", look);
+                return pressed;
+            });
+            await this.page.keyboard.press(key);
+            return await pressed.evaluate(({ isUsed }) => isUsed);
+        });
+    }
+
     async type(text: string): Promise<void> {
         await this.page.keyboard.type(text);
     }
