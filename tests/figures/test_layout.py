@@ -6,6 +6,7 @@ from __future__ import annotations
 import random
 from itertools import combinations, pairwise
 
+import pytest
 from hypothesis import given, settings
 
 import kept_strategies as st
@@ -464,3 +465,19 @@ def test_mirrored_twice_is_the_same() -> None:
     again = layout.mirrored.mirrored
     assert all(abs(again.nodes[name].x - box.x) < NEAR for name, box in layout.nodes.items())
     assert len(segments(again)) == len(segments(layout)) > 0
+
+
+@pytest.mark.parametrize(("count", "sides"), [(30, (14, 15)), (12, (0, 11))])
+def test_a_node_with_many_others_has_them_on_both_sides(count: int, sides: tuple[int, int]) -> None:
+    nodes = {f"n{number}": Extent(80.0, 30.0) for number in range(count)}
+    links = [Link("n0", f"n{number}", Extent(60.0, 20.0)) for number in range(1, count)]
+    layout = layered(nodes, links, LayoutDirection.RIGHT, 1.3)
+    assert not flaws(nodes, links, layout)
+    first = layout.nodes["n0"].x
+    before = [name for name in nodes if layout.nodes[name].x < first]
+    assert (len(before), count - 1 - len(before)) == sides
+    # The others are in the order of the links, first those behind it.
+    behind = [name for name in nodes if layout.nodes[name].x > first]
+    right = sorted(behind, key=lambda name: layout.nodes[name].y)
+    assert right == [f"n{number}" for number in range(1, sides[1] + 1)]
+    assert all(route.parts[0][0].x in (layout.nodes["n0"].x, layout.nodes["n0"].right) for route in layout.routes)

@@ -3,7 +3,11 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
+
+MIN_FAN = 16
+"""The minimum number of nodes around another one that are on both sides of it."""
 
 
 def closing_links(count: int, links: Sequence[tuple[int, int]]) -> frozenset[int]:
@@ -41,3 +45,22 @@ def closing_links(count: int, links: Sequence[tuple[int, int]]) -> frozenset[int
                 active.add(target)
                 path.append((target, iter(outgoing[target])))
     return frozenset(closing)
+
+
+def fanned_links(count: int, links: Sequence[tuple[int, int]]) -> frozenset[int]:
+    """The indexes of the links that are reversed so that a node with many others around it has half of them on each
+    side: if most nodes of the graph have their only link from it, the links to the second half of these.
+
+    Args:
+        count: the number of nodes.
+        links: source and target of each link.
+    """
+    uses = Counter(end for link in links for end in link)
+    fans: dict[int, list[int]] = {}
+    for index, (source, target) in enumerate(links):
+        if uses[target] == 1:
+            fans.setdefault(source, []).append(index)
+    largest = max(fans.values(), key=len, default=[])
+    if len(largest) < max(MIN_FAN, count / 2):
+        return frozenset()
+    return frozenset(largest[(len(largest) + 1) // 2 :])

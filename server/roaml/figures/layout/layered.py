@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from functools import cached_property
 
 from roaml.figures.geometry import Box, Extent, Point
-from roaml.figures.layout.cycles import closing_links
+from roaml.figures.layout.cycles import closing_links, fanned_links
 from roaml.figures.layout.graph import Layout, LayoutDirection, Link, Route, at_origin
 from roaml.figures.layout.layers import assign_layers, column_starts
 from roaml.figures.layout.lines import find_line, in_columns
@@ -190,7 +190,9 @@ class _Component:
         number = {name: index for index, name in enumerate(names)}
         ends = [(number[links[index].source], number[links[index].target]) for index in indexes]
         turned = closing_links(len(names), ends)
-        if columns > 1:
+        if columns == 1:
+            turned |= fanned_links(len(names), ends)
+        else:
             turned = self._wrapped(ends, turned, [sizes[name] for name in names], columns)
         self.turned = {index: position in turned for position, index in enumerate(indexes)}
         downwards = {
