@@ -4,8 +4,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { Picture } from "../src/pictures/contract";
-import { chipsOf, cornersOf, exitsOf, inARow, type DrawnLine } from "../src/pictures/view/exits";
-import { mapCorner } from "../src/pictures/view/find";
+import { bandsOf, chipsOf, cornersOf, exitsOf, inARow, NO_BANDS, type DrawnLine } from "../src/pictures/view/exits";
+import { mapCorner, withoutCuts } from "../src/pictures/view/find";
 import { edgesOf } from "../src/pictures/view/surroundings";
 
 const SIGHT = { x: 0, y: 0, scale: 1 };
@@ -36,6 +36,14 @@ test("the exit is in pixels of the window, at the last place where the line leav
     assert.deepEqual([exit?.side, exit?.at], ["top", 20]);
 });
 
+test("a line that ends at a node just behind the border has an exit there", () => {
+    const near = new Map([...BOXES, [1, { x: 40, y: 96, width: 20, height: 20 }] as const]);
+    const [exit] = exitsOf([line(0, 1, "M 50 60 L 50 95")], near, SIGHT, 100, 100);
+    assert.deepEqual([exit?.side, exit?.at, exit?.node], ["bottom", 50, 1]);
+    const far = new Map([...BOXES, [1, { x: 40, y: 80, width: 20, height: 60 }] as const]);
+    assert.deepEqual(exitsOf([line(0, 1, "M 50 60 L 50 80")], far, SIGHT, 100, 100), []);
+});
+
 test("lines without a visible end, with two, or that end at a label have no exit", () => {
     const lines = [
         line(0, 2, "M 50 40 L 50 -20 L 80 -20 L 80 40"),
@@ -61,6 +69,52 @@ test("neighbouring exits of a direction share a chip, which names each node once
             [15, false, [4]],
             [30, true, [3]],
         ],
+    );
+});
+
+test("lines to the same node share a chip, unless they are far from each other", () => {
+    const exit = (at: number, node: number) =>
+        ({ side: "bottom", at, edge: at, node, isOut: true, distance: at }) as const;
+    const chips = chipsOf([exit(10, 1), exit(90, 1), exit(400, 1)], 15);
+    assert.deepEqual(
+        chips.map(({ at, exits }) => [at, exits.map(({ node }) => node)]),
+        [
+            [50, [1]],
+            [400, [1]],
+        ],
+    );
+});
+
+test("chips cover the sides at which the drawing goes on", () => {
+    const drawn = { width: 300, height: 300 };
+    const { top, bottom, left, right } = bandsOf({ x: -5, y: 0, scale: 1 }, drawn, 400, 200);
+    assert.deepEqual([top, left, right], [0, 0, 0]);
+    assert.ok(bottom > 0);
+    assert.deepEqual(bandsOf({ x: -5, y: -5, scale: 0.5 }, drawn, 400, 200), NO_BANDS);
+    const inside = bandsOf({ x: 50, y: 50, scale: 1 }, drawn, 100, 100);
+    assert.ok(inside.top > 0 && inside.left > 0 && inside.right > 0);
+});
+
+test("the first view cuts off no row if a little other scale or place avoids it", () => {
+    const rows = Array.from({ length: 20 }, (_, row) => ({ x: 100, y: row * 60, width: 80, height: 30 }));
+    const drawing = { width: 300, height: 1200 };
+    for (const y of [-24, 300])
+        for (let height = 400; height < 460; height += 7) {
+            const sight = { x: -50, y, scale: 1 };
+            const bands = (view: typeof sight) => bandsOf(view, drawing, 400, height);
+            const found = withoutCuts(sight, drawing, rows, 400, height, bands);
+            const { top, bottom } = bands(found);
+            const [upper, lower] = [found.y + top / found.scale, found.y + (height - bottom) / found.scale];
+            const cut = rows.filter((row) => [upper, lower].some((at) => row.y < at && row.y + row.height > at));
+            assert.deepEqual(cut, [], `from ${y}, height ${height}`);
+            assert.ok(found.scale >= 0.9 && found.scale <= 1);
+            if (y < 0) assert.equal(found.y * found.scale, y);
+        }
+    // What fits as a whole is not changed.
+    const whole = { x: 0, y: -10, scale: 1 };
+    assert.deepEqual(
+        withoutCuts(whole, drawing, rows, 400, 1300, () => NO_BANDS),
+        whole,
     );
 });
 

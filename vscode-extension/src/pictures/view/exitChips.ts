@@ -2,7 +2,20 @@
 /** Chips at the border of the view with the names of the nodes to which lines lead that leave it. */
 
 import type { Box, Drawing, Picture } from "../contract";
-import { chipsOf, cornersOf, exitsOf, inARow, type Chip, type DrawnLine, type Exit, type Side } from "./exits";
+import {
+    NO_BANDS,
+    SIDES,
+    bandsOf,
+    chipsOf,
+    cornersOf,
+    exitsOf,
+    inARow,
+    type Bands,
+    type Chip,
+    type DrawnLine,
+    type Exit,
+    type Side,
+} from "./exits";
 import type { Corner, Sight } from "./find";
 import type { Scene } from "./scene";
 
@@ -18,13 +31,15 @@ const ARROWS: Readonly<Record<Side, readonly [string, string]>> = {
     left: ["←", "→"],
     right: ["→", "←"],
 };
-const SIDES = ["top", "bottom", "left", "right"] as const;
 
 export class ExitChips {
     readonly layer = document.createElement("div");
     private picture: Picture | undefined;
     private lines: readonly DrawnLine[] = [];
     private boxes: ReadonlyMap<number, Box> = new Map();
+    private drawn = { width: 0, height: 0 };
+    /** What is behind the chips at the upper and the lower side, so that they cover no name. */
+    private readonly bands = { top: document.createElement("div"), bottom: document.createElement("div") };
     private readonly buttons = new Map<string, HTMLButtonElement>();
     private readonly sizes = new Map<string, number>();
 
@@ -37,12 +52,15 @@ export class ExitChips {
         private readonly point: (edges: readonly number[]) => void,
     ) {
         this.layer.className = "exits";
+        for (const side of ["top", "bottom"] as const) this.bands[side].className = `band is-${side}`;
+        this.layer.append(this.bands.top, this.bands.bottom);
     }
 
     /** Take the lines of a drawing. Trees have none: their order says what is beside the view. */
     show(picture: Picture, drawing: Drawing, scene: Scene): void {
         this.picture = picture;
         this.boxes = new Map(drawing.nodes.map((node) => [node.index, node]));
+        this.drawn = drawing;
         const index = new Map(picture.nodes.map(({ id }, number) => [id, number]));
         const links =
             picture.kind === "tree"
@@ -60,22 +78,33 @@ export class ExitChips {
         });
     }
 
+    /** What chips cover in a view; nothing if the picture has none. */
+    bandsOf(sight: Sight, width: number, height: number): Bands {
+        return this.lines.length > 0 ? bandsOf(sight, this.drawn, width, height) : NO_BANDS;
+    }
+
     clear(): void {
         this.lines = [];
         this.buttons.clear();
-        this.layer.replaceChildren();
+        this.layer.replaceChildren(this.bands.top, this.bands.bottom);
     }
 
     /** Show the chips of a view, beside the map. */
     look(sight: Sight, width: number, height: number, map: Corner | undefined): void {
-        const named = exitsOf(this.lines, this.boxes, sight, width, height).filter(
+        const { top, bottom } = this.bandsOf(sight, width, height);
+        this.bands.top.classList.toggle("hidden", top === 0);
+        this.bands.bottom.classList.toggle("hidden", bottom === 0);
+        const inner = { ...sight, y: sight.y + top / sight.scale };
+        const named = exitsOf(this.lines, this.boxes, inner, width, height - top - bottom).filter(
             ({ node }) => this.label(node) !== "",
         );
         const shown = new Set<string>();
         for (const side of SIDES) {
-            const own = named.filter((exit) => exit.side === side);
-            if (own.length === 0) continue;
             const isRow = side === "top" || side === "bottom";
+            const own = named
+                .filter((exit) => exit.side === side)
+                .map((exit) => (isRow ? exit : { ...exit, at: exit.at + top }));
+            if (own.length === 0) continue;
             const [low, high] = limits(side, isRow ? width : height, map);
             const sizeOf = (chip: Chip) => (isRow ? this.sizeOf(this.text(chip)) : HEIGHT);
             const chips = fitting(own, NEAR[side], high - low, sizeOf);

@@ -12,7 +12,8 @@ export interface DrawnLine {
     readonly points: readonly Point[];
 }
 
-export type Side = "top" | "bottom" | "left" | "right";
+export const SIDES = ["top", "bottom", "left", "right"] as const;
+export type Side = (typeof SIDES)[number];
 
 /** A line with one visible end: the side that it crosses, where on this side, in pixels, and its other end. */
 export interface Exit {
@@ -24,6 +25,32 @@ export interface Exit {
     readonly isOut: boolean;
     /** The distance of the other end from the view, in pixels. */
     readonly distance: number;
+}
+
+/** The height of the bands with the chips at the upper and the lower side of a window, in pixels. */
+const BAND = 24;
+
+/** The usual width of a chip, in pixels. */
+const CHIP = 110;
+
+/** The sizes of what covers a window at its sides, in pixels. */
+export type Bands = Readonly<Record<Side, number>>;
+
+export const NO_BANDS: Bands = { top: 0, bottom: 0, left: 0, right: 0 };
+
+/** What chips cover: the sides at which the drawing goes on. */
+export function bandsOf(
+    { x, y, scale }: Sight,
+    drawn: { readonly width: number; readonly height: number },
+    width: number,
+    height: number,
+): Bands {
+    return {
+        top: y > 0 ? BAND : 0,
+        bottom: (drawn.height - y) * scale > height ? BAND : 0,
+        left: x > 0 ? CHIP : 0,
+        right: (drawn.width - x) * scale > width ? CHIP : 0,
+    };
 }
 
 /** A line ends at its node if it is not farther from it, in pixels of the drawing; others end at their labels. */
@@ -44,20 +71,30 @@ export function exitsOf(
         const [from, to] = [boxes.get(source), boxes.get(target)];
         if (!from || !to || isVisible(middle(from)) === isVisible(middle(to))) return [];
         const isOut = isVisible(middle(from));
-        const last = points.at(-1);
+        const [first, last] = [points[0], points.at(-1)];
         if (!isOut && last && distanceTo(to, last) > AT_NODE) return [];
         const path = (isOut ? points.toReversed() : points).map(seen);
         const other = middle(isOut ? to : from);
+        const exitAt = (side: Side, entry: Point): Exit => {
+            const distance = Math.hypot(other.x - entry.x, other.y - entry.y);
+            const at = side === "top" || side === "bottom" ? entry.x : entry.y;
+            return { side, at, edge, node: isOut ? target : source, isOut, distance };
+        };
         for (const [index, start] of path.entries()) {
             const end = path[index + 1];
             if (!end) break;
             const entry = { x: within(start.x, 0, width), y: within(start.y, 0, height) };
             if (!isBetween(entry, start, end)) continue;
-            if (entry.x === start.x && entry.y === start.y) break; // its end is visible
+            if (entry.x === start.x && entry.y === start.y) {
+                const isAtNode =
+                    index === 0 && first && last && distanceTo(isOut ? to : from, isOut ? last : first) <= AT_NODE;
+                const side = isAtNode ? sideNear(entry, width, height) : undefined;
+                if (!side) break; // its end is visible
+                return [exitAt(side, entry)];
+            }
             const isVertical = entry.x === start.x;
             const side = isVertical ? (start.y < 0 ? "top" : "bottom") : start.x < 0 ? "left" : "right";
-            const distance = Math.hypot(other.x - entry.x, other.y - entry.y);
-            return [{ side, at: isVertical ? entry.x : entry.y, edge, node: isOut ? target : source, isOut, distance }];
+            return [exitAt(side, entry)];
         }
         return [];
     });
@@ -71,13 +108,18 @@ export interface Chip {
     readonly exits: readonly Exit[];
 }
 
-/** The exits at one side of a window, grouped so that neighbours of a direction within a distance share a chip. */
+/** Lines to the same node at this distance share a chip, in pixels. */
+const SAME_NODE = 160;
+
+/** The exits at one side of a window, grouped so that neighbours of a direction within a distance share a chip, and those
+ * that lead to the same node if they are not far from each other. */
 export function chipsOf(exits: readonly Exit[], distance: number): Chip[] {
     const groups: Exit[][] = [];
     for (const exit of exits.toSorted((one, other) => one.at - other.at)) {
         const group = groups.findLast(([first]) => first?.isOut === exit.isOut);
         const first = group?.[0];
-        if (group && first && exit.at - first.at <= distance) group.push(exit);
+        const isSame = group?.some(({ node, at }) => node === exit.node && exit.at - at <= SAME_NODE);
+        if (group && first && (isSame || exit.at - first.at <= distance)) group.push(exit);
         else groups.push([exit]);
     }
     return groups.flatMap((group) => {
@@ -116,6 +158,12 @@ export function inARow(
 export function cornersOf(path: string): Point[] {
     const numbers = (path.match(/-?[\d.]+/g) ?? []).map(Number);
     return numbers.flatMap((x, index) => (index % 2 === 0 ? [{ x, y: numbers[index + 1] ?? 0 }] : []));
+}
+
+/** The side of a window at which a line ends at its node, so that the node is not seen. */
+function sideNear({ x, y }: Point, width: number, height: number): Side | undefined {
+    const distances = { bottom: height - y, top: y, right: width - x, left: x };
+    return SIDES.find((side) => distances[side] <= AT_NODE);
 }
 
 function within(value: number, low: number, high: number): number {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Navigation in a picture: by arrow keys, by search, and by zooming. */
 
+import type { Bands } from "./exits";
 import { DIRECTIONS, type Box, type Drawing, type DrawnNode, type Picture, type Point } from "../contract";
 
 export type Arrow = "ArrowUp" | "ArrowDown" | "ArrowLeft" | "ArrowRight";
@@ -338,6 +339,66 @@ const START = 90;
 export function withStart<B extends Box>(box: B): B {
     const [left, top] = [Math.min(START, box.x), Math.min(START, box.y)];
     return { ...box, x: box.x - left, y: box.y - top, width: box.width + left, height: box.height + top };
+}
+
+/** The factors and the distances in pixels by which a first view is changed so that it cuts off fewer boxes, the smallest
+ * changes first. */
+const FACTORS = [1, 0.99, 1.01, 0.98, 1.02, 0.97, 1.03, 0.96, 1.04, 0.95, 1.05, 0.94, 0.93, 0.92, 0.91, 0.9] as const;
+const DISTANCES = [0, 10, -10, 20, -20, 30, -30] as const;
+
+/**
+ * The view that is a little larger, smaller, higher or lower so that it cuts off the fewest boxes. If it begins at the
+ * upper side of the drawing, it does so still.
+ *
+ * @param bands what covers the window at its sides, at a view.
+ */
+export function withoutCuts(
+    sight: Sight,
+    drawing: Area,
+    boxes: readonly Box[],
+    width: number,
+    height: number,
+    bands: (sight: Sight) => Bands,
+): Sight {
+    const views = FACTORS.filter((factor) => factor === 1 || isFirstScale(sight.scale * factor)).flatMap((factor) => {
+        const scale = sight.scale * factor;
+        const isWider = factor > 1 && drawing.width * scale > width - 2 * MARGIN;
+        if (isWider && drawing.width * sight.scale <= width - 2 * MARGIN) return [];
+        const start = MARGIN / sight.scale - MARGIN / scale;
+        const x =
+            drawing.width * scale <= width ? sight.x + (width / sight.scale - width / scale) / 2 : sight.x + start;
+        if (sight.y <= 0) return drawing.height * sight.scale <= height ? [] : [{ scale, x, y: sight.y + start }];
+        const y = sight.y + (height / sight.scale - height / scale) / 2;
+        return DISTANCES.map((distance) => ({ scale, x, y: y + distance / scale }));
+    });
+    let best = sight;
+    let least = cuts(sight, boxes, width, height, bands(sight));
+    for (const view of views) {
+        const count = cuts(view, boxes, width, height, bands(view));
+        if (count < least) [least, best] = [count, view];
+    }
+    return best;
+}
+
+function isFirstScale(scale: number): boolean {
+    return scale >= WHOLE && scale <= 1;
+}
+
+/** The number of boxes that are cut off by the sides of a window, or by what covers these. */
+function cuts({ x, y, scale }: Sight, boxes: readonly Box[], width: number, height: number, bands: Bands): number {
+    const [right, lower] = [x + width / scale, y + height / scale];
+    const inner = {
+        left: x + bands.left / scale,
+        right: right - bands.right / scale,
+        upper: y + bands.top / scale,
+        lower: lower - bands.bottom / scale,
+    };
+    return boxes.filter((box) => {
+        const isOut = box.x >= right || box.x + box.width <= x || box.y >= inner.lower;
+        if (isOut || box.y + box.height <= inner.upper) return false;
+        const isAcross = box.x < inner.left || box.x + box.width > inner.right;
+        return isAcross || box.y < inner.upper || box.y + box.height > inner.lower;
+    }).length;
 }
 
 function ascending(one: number, other: number): number {

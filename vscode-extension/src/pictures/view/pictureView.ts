@@ -36,6 +36,7 @@ import {
     search,
     shifts,
     withStart,
+    withoutCuts,
     zoom,
     type PlacedNodes,
     type Sight,
@@ -46,7 +47,7 @@ import { ExitChips } from "./exitChips";
 import { Minimap } from "./minimap";
 import { MockPane } from "./mocks";
 import { menuOf } from "./menu";
-import { element, inkOf, pngData, sceneOf, spoken, type Scene } from "./scene";
+import { element, inkOf, labelsOf, pngData, sceneOf, spoken, type Scene } from "./scene";
 import { shownActivity, shownId } from "./shown";
 import { legendOf, type LegendEntry } from "./words";
 import { edgesOf, markEdges, type NodeEdges } from "./surroundings";
@@ -344,12 +345,15 @@ export class PictureView {
         if (!this.drawing) return;
         this.minimap.settle();
         const sight = fitLegibly(this.drawing, width, height, this.least);
+        const boxes = this.innermost(this.drawing);
         const first = this.firstBox(sight, width, height);
-        if (!first && this.picture?.kind === "ros") {
-            this.look(fullest(sight, this.drawing, this.innermost(this.drawing), width, height));
-            return;
-        }
-        this.look(first ? this.amongOthers(sight, this.drawing, first, width, height) : sight);
+        const chosen = first
+            ? this.amongOthers(sight, this.drawing, first, width, height)
+            : this.picture?.kind === "ros"
+              ? fullest(sight, this.drawing, boxes, width, height)
+              : sight;
+        const bands = (view: Sight) => this.exits.bandsOf(view, width, height);
+        this.look(withoutCuts(chosen, this.drawing, [...boxes, ...this.labels], width, height, bands));
     }
 
     /** The view that shows a node with as many others as possible, first of all those to which its edges lead. */
@@ -360,6 +364,10 @@ export class PictureView {
         const others = this.innermost(drawing);
         const near = others.filter(({ index }) => targets.has(picture?.nodes[index]?.id ?? ""));
         return amongOthers(sight, drawing, node, near, others, width, height);
+    }
+
+    private get labels(): readonly Box[] {
+        return this.scene ? labelsOf(this.scene) : [];
     }
 
     /** The boxes of nodes, labels, and pieces of the lines in a part of the drawing. */
