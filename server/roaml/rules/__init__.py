@@ -23,6 +23,7 @@ from roaml.rules.answers import (
     early_status,
     endless_node,
     invalid_status,
+    outstanding_response,
     repeated_answer,
     running_condition,
     unanswered_cancel,

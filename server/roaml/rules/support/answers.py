@@ -457,9 +457,8 @@ def unhandled_states(
 
 def running_without(behavior: Behavior, missing: ProtocolPart) -> Iterator[State]:
     """The state of a plugin that handles only halts or only ticks while the node is running, although every other state
-    that handles one of both handles both; none if there are several such states. If it does not handle halts, a
-    response may end it before a halt arrives, and so may everything else that arrives, unless at least two similar
-    states handle halts.
+    that handles one of both handles both; none if there are several such states. If it does not handle halts, what
+    it waits for may end it before a halt arrives, unless at least two similar states handle halts.
 
     Args:
         missing: what the state does not handle: `BT_TICK` or `BT_HALT`.
@@ -481,7 +480,13 @@ def _needs_no_time(step: BehaviorStep) -> bool:
     return step.event is None or step.event.part not in _LASTING
 
 
-_LASTING = (ProtocolPart.MESSAGE, ProtocolPart.FEEDBACK, ProtocolPart.RESULT, ProtocolPart.TICK)
+_LASTING = (
+    ProtocolPart.MESSAGE,
+    ProtocolPart.FEEDBACK,
+    ProtocolPart.RESPONSE,
+    ProtocolPart.RESULT,
+    ProtocolPart.TICK,
+)
 
 
 def _running(behavior: Behavior, numbers: Iterable[int]) -> set[str]:
