@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from roaml.diagnostics import Finding, Related, Severity
-from roaml.forest.cpp_types import ANY
+from roaml.forest.cpp_types import ANY, SIMPLE_TYPES
 from roaml.forest.entries import BoundUse, Entries, Use
 from roaml.forest.forest import Forest
 from roaml.libraries import library_node
@@ -56,6 +56,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 overwriting.setdefault(diverted, use)
             elif not is_hosted:
                 reported.add(use)
+                close = close or _only_unread(entries, names, written, bound)
                 yield _unset(context, bound, entries) or _unwritten(forest, bound, close)
     for writer, reader in misspelled.items():
         yield _unread(writer, reader)
@@ -142,6 +143,27 @@ def _only_written(uses: Iterable[BoundUse]) -> Use | None:
     writers = [use for use in places if use.writes]
     is_read = any(use.reads is not False or use.remaps for use in places)
     return None if is_read or len(writers) != 1 or writers[0].script else writers[0]
+
+
+def _only_unread(
+    entries: Entries, names: Mapping[str, Mapping[str, str]], written: Collection[str], reader: BoundUse
+) -> tuple[str, ...]:
+    """The name of the only entry of a tree that a port of the same type writes and nothing reads, if `reader` is the
+    only port of this type in the tree that reads an entry which nothing writes. Ports of a type that many ports have
+    must also have the same name."""
+    tree, type_ = reader.use.tree, reader.use.type
+    lacking = {
+        bound.use.name
+        for key, uses in entries.by_entry.items()
+        for bound in uses
+        if key not in written and bound.use.tree == tree and bound.use.type == type_
+    }
+    if type_ == ANY or lacking != {reader.use.name}:
+        return ()
+    writers = {name: _only_written(entries.by_entry[key]) for name, key in names.get(tree, {}).items()}
+    unread = [use for use in writers.values() if use is not None and use.tree == tree and use.type == type_]
+    is_alike = len(unread) == 1 and (type_ not in SIMPLE_TYPES or unread[0].port == reader.use.port)
+    return (unread[0].name,) if is_alike else ()
 
 
 def _diverted(forest: Forest, entries: Entries, reader: Use) -> Use | None:
