@@ -12,6 +12,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from roaml.disk import UnreadableReason, read, required
+from roaml.durations import DEFAULT_MAX_TIME
 from roaml.exact_number import exact_fraction
 from roaml.mocks.mock import Mock, MockableWords, MockError, read_mock, read_mocks
 from roaml.project.settings import Settings, ament_prefixes
@@ -146,7 +147,7 @@ def load_mocked_tree(
         PathError, ModelError: as `load_tree`.
     """
     from roaml.api.trees import load_tree  # noqa: PLC0415 - systems start faster without these
-    from roaml.mocks.network import DEFAULT_MAX_TIME, DEFAULT_RATE, MissingMocksError, MockOptions  # noqa: PLC0415
+    from roaml.mocks.network import DEFAULT_RATE, MissingMocksError, MockOptions  # noqa: PLC0415
     from roaml.mocks.unfolding import mockable_words  # noqa: PLC0415
     from roaml.model.kinds import mocks_path  # noqa: PLC0415
 

@@ -9,6 +9,8 @@ NANOSECONDS = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}
 """Unit of time in models -> its length in ns, the longest first."""
 UNITS = {"h": 3600 * 10**9, "min": 60 * 10**9, **NANOSECONDS}
 """Unit of time in texts of users -> its length in ns."""
+DEFAULT_MAX_TIME = 600 * 10**9
+"""The time, in ns, for which a tree without a system runs unless an option limits it."""
 ANY, INSTANT = "any", "instant"
 REACTION_TIME = "a reaction time must be `any`, `instant`, or a duration such as `20 ms`"
 

@@ -8,6 +8,7 @@ import re
 from collections.abc import Collection, Mapping
 from fractions import Fraction
 
+from roaml.durations import DEFAULT_MAX_TIME
 from roaml.expansion.uses import VARIABLE
 from roaml.experiments.parametric import Chances
 from roaml.experiments.sweeps import Setting
@@ -82,7 +83,7 @@ class ParametricTree(Record, frozen=True):
 
     def target(self, setting: Setting) -> VerificationTarget:
         from roaml.api.trees import load_tree  # noqa: PLC0415 - systems need none of these
-        from roaml.mocks.network import DEFAULT_MAX_TIME, DEFAULT_RATE, MissingMocksError, MockOptions  # noqa: PLC0415
+        from roaml.mocks.network import DEFAULT_RATE, MissingMocksError, MockOptions  # noqa: PLC0415
 
         values = dict(setting)
         if unknown := [name for name in values if name not in self.mocks.uses()]:

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from roaml.distributions.outcomes import Outcomes, hazards
-from roaml.durations import AT_ONCE, ReactionTime
+from roaml.durations import AT_ONCE, DEFAULT_MAX_TIME, ReactionTime
 from roaml.expr.operators import Operator
 from roaml.expr.types import BASE_TYPES
 from roaml.forest.forest import Forest, port_type
@@ -45,8 +45,6 @@ from roaml.text import Location
 
 DEFAULT_RATE = Fraction(10)
 """The default number of ticks of the tree per second, in Hz."""
-DEFAULT_MAX_TIME = 600 * 10**9
-"""The default limit of the simulated time, in ns."""
 TICKS = "ticks"
 """The name of the variable in which the automaton of the tree root counts the ticks."""
 MAX_TEXT_LENGTH = 100

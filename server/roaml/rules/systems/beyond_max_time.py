@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Severity
+from roaml.durations import DEFAULT_MAX_TIME
 from roaml.model.node_effects import tree_effects
 from roaml.model.property_links import LinkedFile
 from roaml.model.property_problems import ProblemKind
@@ -62,6 +63,7 @@ def _machine(context: MachineContext) -> Iterator[Finding]:
 
 
 def _tree(context: TreeContext) -> Iterator[Finding]:
+    yield from _mocked(context)
     end = context.system.parameters.max_time if context.system else None
     for node, port, ns in durations(context) if end is not None else ():
         if end is not None and ns > end:
@@ -77,6 +79,21 @@ def _tree(context: TreeContext) -> Iterator[Finding]:
                 f"runs, {duration(end)} (`max_time`), so it never succeeds"
             )
             yield RULE.at(place_of(node, port), message)
+
+
+def _mocked(context: TreeContext) -> Iterator[Finding]:
+    """Report the leaves of a tree without a system that cannot end before the end of the time, because of their mocks.
+    Those below a `Timeout` that is shorter are reported by short-time."""
+    forest = context.forest
+    for _, node in forest.own_nodes if forest is not None and context.mocked else ():
+        least = context.mocked.get(node, 0)
+        if least > DEFAULT_MAX_TIME:
+            message = (
+                f"with its mock, `{node.type_name}` takes {duration(least)}, and the tree runs for "
+                f"{duration(DEFAULT_MAX_TIME)}, so it never succeeds; check the unit in the file of mocks, or "
+                "verify with `--max-time`"
+            )
+            yield RULE.at(node.element.name_span, message)
 
 
 def _system(context: SystemContext) -> Iterator[Finding]:
