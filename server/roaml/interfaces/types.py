@@ -155,6 +155,13 @@ class Section(PartlyCompared, frozen=True):
     def field(self, name: str) -> Field | None:
         return next((f for f in self.fields if f.name == name), None)
 
+    def named_values(self, field: str) -> tuple[Constant, ...]:
+        """The constants that are probably values of a field: those of its type that begin like the field; if there are
+        none, all of its type."""
+        declared = self.field(field)
+        fitting = [c for c in self.constants if declared is not None and c.type.name == declared.type.element.name]
+        return tuple([c for c in fitting if c.name.startswith(field.upper())] or fitting)
+
 
 class Definition(Record, frozen=True):
     """A message, service or action type. It has all the sections of `SECTION_NAMES[kind]`, in that order.

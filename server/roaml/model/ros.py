@@ -40,6 +40,10 @@ class RepeatedType(Record, frozen=True):
     other: str
 
 
+Enumeration: TypeAlias = tuple[tuple[str, int], ...]
+"""The names and values of the constants for a field, in the order of their values."""
+
+
 class InterfaceType(Record, frozen=True):
     """A ROS interface type in terms of HL-SCXML.
 
@@ -47,12 +51,14 @@ class InterfaceType(Record, frozen=True):
         name: the full name, `package/Name`.
         parts: the names of the parts with their structs: message; request and response; or goal, result and feedback.
         optional: for each part, the dotted paths of the leaf fields that need not be set.
+        enumerations: part, field, and the constants that are all values of this field.
     """
 
     name: str
     kind: Kind
     parts: tuple[tuple[str, Struct], ...]
     optional: tuple[tuple[str, frozenset[str]], ...]
+    enumerations: tuple[tuple[str, str, Enumeration], ...] = ()
 
     def part(self, name: str) -> Struct:
         return dict(self.parts)[name]
@@ -69,7 +75,7 @@ class InterfaceType(Record, frozen=True):
 def interface_type(definition: Definition, find: FindMessage) -> InterfaceType:
     """The interface type of `definition`, which must not be too large (see `extent_of`). `find` resolves nested
     messages."""
-    parts, optional = [], []
+    parts, optional, enumerations = [], [], []
     reader = _Reader(find)
     for name, section in zip(SECTION_NAMES[definition.kind], definition.sections, strict=True):
         label = name if definition.kind == "msg" else f"{name} of {definition.full_name}"
@@ -78,7 +84,30 @@ def interface_type(definition: Definition, find: FindMessage) -> InterfaceType:
             reader.inside.append(definition.full_name)
         parts.append((name, Struct(title, reader.members(section), label, StructKind.ROS)))
         optional.append((name, frozenset(_optional(section, (), parts[-1][1], find))))
-    return InterfaceType(definition.full_name, definition.kind, tuple(parts), tuple(optional))
+        for field in section.fields:
+            values = _enumeration(section, field)
+            if values:
+                enumerations.append((name, field.name, values))
+    return InterfaceType(definition.full_name, definition.kind, tuple(parts), tuple(optional), tuple(enumerations))
+
+
+def _enumeration(section: Section, field: Field) -> Enumeration:
+    """The constants that are all values of a field, because they are consecutive integers, and named after it or the
+    only ones for the only field of their type; otherwise none."""
+    named = section.named_values(field.name)
+    values = sorted((c.value, c.name) for c in named if isinstance(c.value, int) and not isinstance(c.value, bool))
+    numbers = [number for number, _ in values]
+    is_series = len(numbers) > 1 and numbers == list(range(numbers[0], numbers[0] + len(numbers)))
+    is_named = all(c.name.startswith(field.name.upper()) for c in named)
+    is_only = sum(other.type.name == field.type.name for other in section.fields) == 1
+    is_limit = any(word in _LIMITS for c in named for word in c.name.split("_"))
+    if field.type.is_array or not is_series or is_limit or not (is_named or is_only):
+        return ()
+    return tuple((name, number) for number, name in values)
+
+
+_LIMITS = frozenset(("DEFAULT", "LIMIT", "MAX", "MIN", "SIZE"))
+"""Words in the names of constants that limit the values of a field, which is then no enumeration."""
 
 
 def extent_of(definitions: Iterable[Definition]) -> TypeExtent:

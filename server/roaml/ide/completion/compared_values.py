@@ -5,7 +5,7 @@ machines of the system send."""
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from roaml.expr.infer import infer
 from roaml.expr.parse import parse
@@ -69,9 +69,8 @@ def _of_variable(request: Request, name: str) -> Iterator[CompletionItem]:
         yield CompletionItem(text, ItemKind.VALUE, detail=f"assigned to {name}", rank=Rank.BEST)
 
 
-def _constants(request: Request, owner: str, field: str, scope: Mapping[str, Type]) -> list[Constant]:
-    """The constants of the interface that `owner` is a part of for its field `field`: those that begin like the field;
-    if there are none, those of its type."""
+def _constants(request: Request, owner: str, field: str, scope: Mapping[str, Type]) -> Sequence[Constant]:
+    """The constants of the interface that `owner` is a part of for its field `field`."""
     tree, findings = parse(Decoded(owner, 0))
     type_ = None if findings else infer(tree, scope.get)[0]
     if not isinstance(type_, Struct) or type_.kind is not StructKind.ROS:
@@ -81,10 +80,7 @@ def _constants(request: Request, owner: str, field: str, scope: Mapping[str, Typ
     definition = request.analysis.registry.resolve(kind, full_name)
     if isinstance(definition, NotFound):
         return []
-    section = definition.sections[SECTION_NAMES[kind].index(part) if part else 0]
-    declared = next((f.type for f in section.fields if f.name == field), None)
-    fitting = [c for c in section.constants if declared is not None and c.type.name == declared.element.name]
-    return [c for c in fitting if c.name.startswith(field.upper())] or fitting
+    return definition.sections[SECTION_NAMES[kind].index(part) if part else 0].named_values(field)
 
 
 def _arriving(request: Request, place: str) -> ValueSet:

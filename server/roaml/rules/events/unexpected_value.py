@@ -7,9 +7,12 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from roaml.diagnostics import Finding, Fix, Severity
+from roaml.model.machine import RosSend
 from roaml.model.message_constants import MessageField, constant_of, sent_fields
+from roaml.model.value_types import find_handle
 from roaml.model.waits import fixed_variables
 from roaml.rules.rule import MachineContext, Rule, TreeContext
+from roaml.rules.support.enumerations import enumerations
 from roaml.rules.support.instances import instances
 from roaml.rules.support.message_constants import port_constant, wrong_fields
 from roaml.text import Span, TextEdit
@@ -17,6 +20,7 @@ from roaml.text import Span, TextEdit
 
 def check(context: MachineContext) -> Iterator[Finding]:
     """Report the fields that contain the only constant that nothing expects."""
+    yield from _unnamed(context)
     if context.system is None:
         return
     wrong = {
@@ -30,6 +34,22 @@ def check(context: MachineContext) -> Iterator[Finding]:
             for field, param in sent_fields(context.machine, statement):
                 if field in wrong and param.value is not None and constant_of(param, fixed) == wrong[field][0]:
                     yield _finding(param.value.span, field, *wrong[field])
+
+
+def _unnamed(context: MachineContext) -> Iterator[Finding]:
+    """Report the fields that contain a number which no constant of the field has."""
+    for chart in context.machine.charts:
+        fixed = fixed_variables(chart)
+        for statement in chart.statements:
+            declaration = find_handle(context.machine, statement) if isinstance(statement, RosSend) else None
+            if declaration is None or not isinstance(statement, RosSend):
+                continue
+            known = enumerations(context, declaration, statement.part)
+            for param in statement.fields if known else ():
+                field = known.get(param.name.value) if param.name is not None else None
+                number = constant_of(param, fixed)
+                if param.value is not None and field is not None and number is not None and not field.has(number):
+                    yield RULE.at(param.value.span, f"no constant has the value {number}: {field.described}")
 
 
 def in_tree(context: TreeContext) -> Iterator[Finding]:
@@ -58,7 +78,7 @@ def _finding(span: Span, field: MessageField, number: Fraction, missing: Fractio
 RULE = Rule(
     "unexpected-value",
     Severity.WARNING,
-    "A constant is sent that no receiver expects, and another one is expected that nothing sends.",
+    "A constant is sent that no receiver expects, or that its interface does not name.",
     machine=check,
     tree=in_tree,
     whole=True,

@@ -38,6 +38,7 @@ from roaml.rules.support.constant_conditions import (
 )
 from roaml.rules.support.decided_values import decided_values
 from roaml.rules.support.entries import entries_of
+from roaml.rules.support.enumerations import never_named
 from roaml.rules.support.forest import trees_of
 from roaml.rules.support.jani_formulas import constant_comparisons
 from roaml.rules.support.ranges import always_within
@@ -61,7 +62,9 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for span, part in constant.items():
         yield _finding(at_step(context, span) or at_target(context, span) or part)
     yield from map(_finding, always_within(context, constant.keys()))
-    yield from map(_finding, never_sent(context, constant.keys()))
+    unsent = list(never_sent(context, constant.keys()))
+    yield from map(_finding, unsent)
+    yield from map(_finding, never_named(context, {*constant, *(part.span for part in unsent)}))
     yield from _beyond_type(context, constant.keys())
     yield from map(_finding, decided_values(context))
     yield from map(_finding, never_handled(context, constant.keys()))
