@@ -86,7 +86,7 @@ def test_formats(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
 def test_uniform_choices_have_no_unknown_minimum(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The report says that the minimum is not known only if it was asked for."""
     asked = ("old/main.xml", "new/main.xml", "--property=block_dropped", "--method=fixed", "--max-traces=50")
-    unknown = "(the minimum and maximum over all schedulers are not known)"
+    unknown = "(the minimum and maximum over all schedulers are undecided)"
     text = called(capsys, *asked)[1]
     assert f"estimates from traces with uniform choices {unknown}: the intervals" in text
     text = called(capsys, *asked, "--scheduler=uniform")[1]

@@ -57,8 +57,10 @@ def test_the_delayed_machine_is_one_that_matters(tmp_path: Path, capsys: pytest.
     text = verified(tmp_path, "", capsys)
     for name in ("anna", "bert"):
         block = text[text.index(f"{name}_beeps: minimum 0") :]
-        assert "it fails, for example, if `" in block
-        assert block.split("it fails, for example, if `")[1].startswith(f"{name}` is delayed from 1 s")
+        assert "the property does not hold, for example, if `" in block
+        assert block.split("the property does not hold, for example, if `")[1].startswith(
+            f"{name}` is delayed from 1 s"
+        )
 
 
 @pytest.mark.parametrize("expectation", ["== 1", ">= 0.9", "== 0.9"])

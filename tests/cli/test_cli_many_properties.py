@@ -44,5 +44,5 @@ def test_each_of_many_properties_is_answered_exactly(command: Command, tmp_path:
     done = command("verify", "main.xml")
     text = done.out
     assert not done.err
-    assert "minimum not known" not in text
+    assert "minimum undecided" not in text
     assert text.count(", exact, ") == COUNT

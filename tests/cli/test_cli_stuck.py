@@ -223,7 +223,7 @@ def test_traces_contain_the_reason_of_their_end(command: Command, ward: Path) ->
 def test_traces_that_were_cut_are_reported(command: Command, ward: Path) -> None:
     done = command("verify", "main.xml", "--max-steps", 30, "--method", "fixed", "--max-traces", 50)
     assert "  ends: too many steps 50\n" in done.out
-    assert "unknown: all 100 traces were cut after 30 steps" in done.out
+    assert "undecided: all 100 traces were cut after 30 steps" in done.out
 
 
 def test_counts_are_saved(command: Command, ward: Path) -> None:
@@ -258,7 +258,7 @@ def test_a_trace_with_a_fault_after_its_goal_is_reported(command: Command, tmp_p
     assert done.status == 0
     assert "delivered: minimum 0, maximum 1, exact, " in done.out
     assert "  under uniform choices: 1 in" in done.out
-    assert "probability of getting stuck: unknown, because a longer trace failed: " in done.out
+    assert "probability of getting stuck: undecided, because a longer trace failed: " in done.out
 
 
 def test_a_model_without_machines_is_not_asked(command: Command, tmp_path: Path) -> None:

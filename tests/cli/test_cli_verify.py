@@ -72,7 +72,7 @@ def test_verifies_what_init_writes(command: Command, robot: Path) -> None:
 def test_undecided_traces_are_not_vacuous(command: Command, robot: Path) -> None:
     options = ("--method", "fixed", "--max-traces", 20, "--max-steps", 40)
     done = command("verify", "main.xml", "--property", "docks_only_when_low", *options)
-    assert done.out.startswith("docks_only_when_low: unknown: all 20 traces were cut after 40 steps")
+    assert done.out.startswith("docks_only_when_low: undecided: all 20 traces were cut after 40 steps")
     assert "vacuous" not in done.out
     assert "did not happen" not in done.out
 
@@ -80,7 +80,7 @@ def test_undecided_traces_are_not_vacuous(command: Command, robot: Path) -> None
 def test_text_says_how_choices_were_made(command: Command, robot: Path) -> None:
     done = command("verify", "main.xml", "--property", "never_empty", "--reaction-time", "any", "--epsilon", "0.05")
     assert done.status == 0
-    assert done.out.startswith("never_empty: minimum not known; under uniform choices: 1 in [0.9")
+    assert done.out.startswith("never_empty: minimum undecided; under uniform choices: 1 in [0.9")
     assert "uniform choices: each step that is possible is equally probable; a scheduler: " in done.out
     assert "all_delivered" not in done.out
 
@@ -128,10 +128,10 @@ def test_a_value_is_unknown_if_no_trace_is_decided(command: Command, tmp_path: P
     goal = {"p": probability(op("F", op("=", "x", 50)))}
     name = write(tmp_path, document(automaton("a", "s", [counts]), variables=[variable("x")], properties=goal))
     done = command("verify", name, "--max-steps", 5, "--method", "adaptive")
-    assert "p: unknown: all 100 traces were cut after 5 steps: raise max-steps, or" in done.out
+    assert "p: undecided: all 100 traces were cut after 5 steps: raise max-steps, or" in done.out
     few = command("verify", name, "--max-steps", 5, "--method", "adaptive", "--max-states", 2).out
-    assert few.startswith("p: unknown: all 100 traces were cut after 5 steps: ")
-    assert "note: the minimum of p over all schedulers is not known" in few
+    assert few.startswith("p: undecided: all 100 traces were cut after 5 steps: ")
+    assert "note: the minimum of p over all schedulers is undecided" in few
 
 
 def test_junit(command: Command, tmp_path: Path) -> None:
@@ -225,11 +225,15 @@ def test_wrong_expectations_in_the_configuration(command: Command, tmp_path: Pat
 def test_unanimous_traces_prove_no_certainty(command: Command, tmp_path: Path) -> None:
     name, traces = write(tmp_path, coin()), ("--method", "adaptive", "--scheduler", "uniform")
     done = command("verify", name, "--expect", "never >= 1", "--expect", "heads >= 0.1", *traces)
-    assert "expected ≥ 1: met; no trace of 200 contradicts it; the interval reaches down to 0.98\n" in done.out
+    assert (
+        "expected ≥ 1: met; no trace of 200 contradicts it, which proves nothing: the interval reaches down to 0.98\n"
+        in done.out
+    )
     assert "expected ≥ 0.1: met\n" in done.out
     done = command("verify", write(tmp_path, coin(0.0)), "--expect", "heads <= 0", "--property", "heads", *traces)
     assert re.search(
-        r"expected ≤ 0: met; no trace of 200 contradicts it; the interval reaches up to 0\.0[12]", done.out
+        r"expected ≤ 0: met; no trace of 200 contradicts it, which proves nothing: the interval reaches up to 0\.0[12]",
+        done.out,
     )
 
 
@@ -353,7 +357,7 @@ def test_a_full_disk_leaves_whole_traces(command: Command, robot: Path, monkeypa
     done = command("verify", "main.xml", "--traces", "out")
     assert done.status == 2
     assert "No space left on device" in done.err
-    assert "never_empty: minimum not known" in done.out
+    assert "never_empty: minimum undecided" in done.out
     assert sorted(written) == sorted(f"out/{path.name}" for path in (robot / "out").iterdir())
 
 

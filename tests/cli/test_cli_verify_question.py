@@ -101,7 +101,7 @@ def test_a_small_model_is_answered_exactly(command: Command, tmp_path: Path) -> 
     assert first.startswith("p: minimum 0, ")
     assert others == [
         "  `done` holds at some time.",
-        "  it fails, for example, if `worker` is delayed for ever while `busy` repeats 50 steps",
+        "  the property does not hold, for example, if `worker` is delayed for ever while `busy` repeats 50 steps",
         "  expected ≤ 0.1: met by the minimum over all schedulers, which is 0, because the property asks for it; "
         "not met by the maximum, which is 1, so ask for the maximum if all schedulers must meet it",
         "uniform choices: each step that is possible is equally probable; a scheduler: a rule that chooses which of "
@@ -213,7 +213,7 @@ def test_all_schedulers_agree(command: Command, tmp_path: Path) -> None:
     assert "were explored" not in few
     assert few.startswith("heads: minimum between 0 and 0.3")
     note = command("verify", "model.jani", "--max-states", "2").out
-    assert "is not known (too many states: gave up after 2; " in note
+    assert "is undecided (too many states: the search stopped at 2 states, at the limit --max-states; " in note
     assert "\n  help: use a higher --max-states to search for longer, --exhaustive to compute" in note
 
 
@@ -266,7 +266,7 @@ def test_met_under_uniform_choices(command: Command, tmp_path: Path) -> None:
     assert "expected ≥ 0.9: met under uniform choices" in done.out
     assert "\n1 of 1 expectation is met only under uniform choices, not known to be met under" in done.out
     assert done.out.count("\nnote: ") == 1
-    known = r"\nnote: the minimum of p over all schedulers is not known \(up to \d+ sampled schedulers show no "
+    known = r"\nnote: the minimum of p over all schedulers is undecided \(up to \d+ sampled schedulers show no "
     assert re.search(known, done.out)
     assert "\n  help: use --exhaustive to compute it from all states, or --scheduler uniform if " in done.out
     assert "may differ" in rows(command("verify", name, *options, "--format", "json").out)["p"]["warning"]
@@ -325,7 +325,7 @@ def test_the_note_names_each_property_once(command: Command, tmp_path: Path) -> 
     cost = {"op": "Emax", "exp": 1, "accumulate": ["steps"], "reach": op("=", "n", 200)}
     written["properties"] += [{"name": "most", "expression": most}, {"name": "cost", "expression": cost}]
     out = command("verify", write(tmp_path, written), "--method", "fixed", "--max-traces", "60").out
-    notes = re.findall(r"^note: the (.*) over all schedulers is not known \((.*)\)$", out, re.MULTILINE)
+    notes = re.findall(r"^note: the (.*) over all schedulers is undecided \((.*)\)$", out, re.MULTILINE)
     assert [of for of, _ in notes] == ["minimum of p, q", "maximum of most", "maximum of cost"]
     assert notes[2][1] == "schedulers are not sampled for expected rewards"
     assert out.count("\n  help: use --exhaustive ") == 1
@@ -386,16 +386,22 @@ def test_an_expectation_that_is_not_met_names_the_scheduler(command: Command, tm
 @pytest.mark.parametrize(
     ("expected", "said"),
     [
-        ("heads >= 0.3", "met; not certain: the interval includes values below 0.3"),
-        ("heads >= 0.31", "NOT MET; not certain: the interval includes values of at least 0.31"),
-        ("heads > 0.3", "met; not certain: the interval includes values of at most 0.3"),
-        ("heads > 0.31", "NOT MET; not certain: the interval includes values above 0.31"),
-        ("heads <= 0.31", "met; not certain: the interval includes values above 0.31"),
-        ("heads <= 0.3", "NOT MET; not certain: the interval includes values of at most 0.3"),
-        ("heads < 0.31", "met; not certain: the interval includes values of at least 0.31"),
-        ("heads < 0.3", "NOT MET; not certain: the interval includes values below 0.3"),
-        ("heads = 0.3", "met; not certain: the interval includes values more than 0.01 away from 0.3"),
-        ("heads = 0.313", "NOT MET; not certain: the interval includes values within 0.01 of 0.313"),
+        ("heads >= 0.3", "undecided: the estimate meets it, but the interval includes values below 0.3"),
+        ("heads >= 0.31", "undecided: the interval includes values of at least 0.31 and values below 0.31"),
+        ("heads > 0.3", "undecided: the estimate meets it, but the interval includes values of at most 0.3"),
+        ("heads > 0.31", "undecided: the interval includes values above 0.31 and values of at most 0.31"),
+        ("heads <= 0.31", "undecided: the estimate meets it, but the interval includes values above 0.31"),
+        ("heads <= 0.3", "undecided: the interval includes values of at most 0.3 and values above 0.3"),
+        ("heads < 0.31", "undecided: the estimate meets it, but the interval includes values of at least 0.31"),
+        ("heads < 0.3", "undecided: the interval includes values below 0.3 and values of at least 0.3"),
+        (
+            "heads = 0.3",
+            "undecided: the estimate meets it, but the interval includes values more than 0.01 away from 0.3",
+        ),
+        (
+            "heads = 0.313",
+            "undecided: the interval includes values within 0.01 of 0.313 and values more than 0.01 away from 0.313",
+        ),
         ("heads >= 0.2", "met"),
         ("heads = 0.7", "NOT MET"),
     ],
@@ -406,6 +412,35 @@ def test_verdicts_that_are_not_certain(command: Command, tmp_path: Path, expecte
     out = command("verify", write(tmp_path, coin()), *options, "--expect", expected).out
     (line,) = (line for line in out.splitlines() if line.startswith("  expected "))
     assert line.partition(": ")[2] == said
+
+
+@pytest.mark.parametrize(("expected", "status"), [("heads >= 0.3", 0), ("heads >= 0.31", 1)])
+def test_an_undecided_expectation_is_one_in_all_formats(
+    command: Command, tmp_path: Path, expected: str, status: int
+) -> None:
+    """The interval contains the number. The estimate decides the exit status, and nothing says `met` or `not met`."""
+    arguments = (
+        "verify",
+        write(tmp_path, coin()),
+        "--scheduler",
+        "uniform",
+        "--method",
+        "adaptive",
+        "--expect",
+        expected,
+    )
+    done = command(*arguments)
+    assert done.status == status
+    assert "\n1 of 1 expectation is undecided, because the interval is too wide; a smaller --epsilon" in done.out
+    row = rows(command(*arguments, "--format", "json").out)["heads"]
+    assert (row["verdict"], row["expectations"][0]["certain"]) == ("undecided", False)
+    assert ("undecided: the estimate meets it, but" in row.get("warning", "")) is (status == 0)
+    assert "| undecided: the " in command(*arguments, "--format", "markdown").out
+    (case,) = ET.fromstring(command(*arguments, "--format", "junit").out).iter("testcase")
+    assert case.find("failure") is None
+    assert (case.find("error") is None) is (status == 0)
+    narrow = command(*arguments[:-1], "heads >= 0.295", "--epsilon", "0.003")
+    assert (narrow.status, "undecided" in narrow.out) == (0, False)
 
 
 @pytest.mark.parametrize("format_", ["text", "markdown", "csv"])
@@ -522,7 +557,7 @@ def test_expectations_of_sampled_schedulers(command: Command, tmp_path: Path) ->
 
 def test_a_note_names_few_properties() -> None:
     entries = [(Question(name, "Pmin", False, None, ()), Choices()) for name in "abcdef"]
-    assert note(entries)[0].startswith("note: the minimum of a, b, c and 3 more over all schedulers is not known")
+    assert note(entries)[0].startswith("note: the minimum of a, b, c and 3 more over all schedulers is undecided")
     assert note(entries[:4])[0].startswith("note: the minimum of a, b, c, d over all")
 
 

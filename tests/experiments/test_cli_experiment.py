@@ -56,7 +56,7 @@ def test_estimates_are_not_those_of_all_schedulers(tmp_path: Path, capsys: pytes
     sampled = ("--method", "fixed", "--max-traces", "100")
     _, text, _ = called(capsys, model, *GRID, *sampled)
     assert (
-        "estimates from traces with uniform choices (the minimum and maximum over all schedulers are not known): "
+        "estimates from traces with uniform choices (the minimum and maximum over all schedulers are undecided): "
         in text
     )
     _, text, _ = called(capsys, model, *GRID, *sampled, "--scheduler", "uniform")

@@ -45,7 +45,10 @@ def test_the_line_says_what_the_sampled_scheduler_shows(text: str, words: str) -
 
 def test_values_for_instant_reactions_are_a_reason() -> None:
     missed = verdict("p >= 0.9", ExtremeMethod.REACTIONS)
-    assert missed.text == "NOT MET if machines react at once: 0.756"
+    assert (
+        missed.text
+        == "NOT MET by the minimum over all schedulers, which is at most 0.756, the value if machines react at once"
+    )
     assert missed.is_certain
 
 
@@ -66,7 +69,9 @@ def test_the_policy_decides_what_it_is_worth(policy: UniformPolicy, is_met: bool
     unknown = Choices("", None, None, 0)
     known = judged(under_all_schedulers(check_expectation(parse("p >= 1"), answer), answer, unknown), policy)
     assert (known.is_met, known.text) == (is_met, words)
-    assert known.doubt(0.01) == "no trace of 200 contradicts it; the interval reaches down to 0.969"
+    assert (
+        known.doubt(0.01) == "no trace of 200 contradicts it, which proves nothing: the interval reaches down to 0.969"
+    )
     assert mark_of(Result("p", Estimated(answer, unknown), (known,))) is mark
 
 

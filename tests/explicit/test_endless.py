@@ -45,8 +45,8 @@ def result_of(written: Json) -> Result:
 @pytest.mark.parametrize(
     ("formula", "operator", "reason"),
     [
-        (op("F", "done"), "Pmin", "it fails, for example, if `worker` is delayed for ever while"),
-        (op("G", op("¬", "done")), "Pmax", "it holds, for example, if `worker` is delayed for ever while"),
+        (op("F", "done"), "Pmin", "the property does not hold, for example, if `worker` is delayed for ever while"),
+        (op("G", op("¬", "done")), "Pmax", "the property holds, for example, if `worker` is delayed for ever while"),
     ],
 )
 def test_the_delayed_element_is_named(formula: Json, operator: str, reason: str) -> None:

@@ -141,7 +141,7 @@ def test_open_extremes_are_shown_for_instant_reactions(tmp_path: Path, capsys: p
         shown = capsys.readouterr().out
         assert "seen: minimum 0, maximum 1" in shown
         assert "if machines react at once: = 1 for all schedulers, exact" in shown
-        assert "it fails, for example, if `Counter` is delayed from" in shown
+        assert "the property does not hold, for example, if `Counter` is delayed from" in shown
     assert run(["verify", path, "--exhaustive", "--format", "json"]) == 0
     (result,) = json.loads(capsys.readouterr().out)["results"]
     (conditional,) = result["conditional"]
@@ -162,7 +162,7 @@ def test_values_for_instant_reactions_bound_those_of_all_schedulers() -> None:
     sampled = Extreme(0.5, Bounds(0.4, 0.6), ExtremeMethod.SAMPLING, "sampled scheduler 1", 60)
     assert with_reactions(Choices("", sampled, uniform), instant).minimum == sampled
     nothing = with_reactions(Choices(), Exact(Bounds(1, 1), Bounds(1, 1), None, 20))
-    assert claim_for_all(Question("p", "Pmin", False, None, ()), nothing) == "minimum not known"
+    assert claim_for_all(Question("p", "Pmin", False, None, ()), nothing, 0.95) == "minimum undecided"
 
 
 @pytest.mark.parametrize(
@@ -170,16 +170,16 @@ def test_values_for_instant_reactions_bound_those_of_all_schedulers() -> None:
     [
         (0.872, "between 0 and 0.872, no closer bounds", "between 0.128 and 1, no closer bounds"),
         (1 - 2**-20, "less than 1, no closer bounds", "greater than 0, no closer bounds"),
-        (1.0, "not known", "not known"),
+        (1.0, "undecided", "undecided"),
     ],
 )
 def test_a_bound_is_true_after_rounding(value: float, least: str, greatest: str) -> None:
     known = Extreme(value, Bounds(value, value), ExtremeMethod.REACTIONS)
     question = Question("p", "Pmin", False, None, ())
-    assert claim_for_all(question, Choices("", known, None)) == f"minimum {least}"
+    assert claim_for_all(question, Choices("", known, None), 0.95) == f"minimum {least}"
     opposite = Extreme(1 - value, Bounds(1 - value, 1 - value), ExtremeMethod.REACTIONS)
     question = Question("p", "Pmax", False, None, ())
-    assert claim_for_all(question, Choices("", None, opposite)) == f"maximum {greatest}"
+    assert claim_for_all(question, Choices("", None, opposite), 0.95) == f"maximum {greatest}"
 
 
 def test_requested_traces_are_not_extended_by_a_search(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -255,7 +255,7 @@ def test_a_delay_ends_with_the_time(tmp_path: Path, capsys: pytest.CaptureFixtur
     file.write_text(json.dumps(model))
     assert run(["verify", str(file)]) == 0
     shown = capsys.readouterr().out
-    assert "it fails, for example, if `worker` is delayed from 0 s until the end" in shown
+    assert "the property does not hold, for example, if `worker` is delayed from 0 s until the end" in shown
 
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"

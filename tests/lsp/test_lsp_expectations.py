@@ -308,4 +308,4 @@ async def test_cancelled_work_keeps_what_is_complete(tmp_path: Path) -> None:
         parts = [plain(part) for part in client.parts["tests"]]
         assert [(part["property"], part["interrupted"]) for part in parts] == [(THROWN, False)]
         ((hint, _),) = await hints(client, file)
-        assert hint.startswith("? minimum not known; uniform 1 [0.99")
+        assert hint.startswith("? minimum undecided; uniform 1 [0.99")

@@ -21,7 +21,7 @@ from as2fm_lsp.cli.main import run
 from as2fm_lsp.handlers.results import PROPERTIES
 from as2fm_lsp.verification.result_view import SYMBOLS
 from corpus.parts import compose
-from roaml.verification.headline import NOT_KNOWN
+from roaml.verification.headline import UNDECIDED
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 EPSILON = 0.2
@@ -53,10 +53,10 @@ def contradictions(words: str, report: str) -> list[str]:
         for value, last in numbers(words)
         if not any(abs(value - other) <= last for other in known)
     ]
-    if NOT_KNOWN in words and NOT_KNOWN not in report:
-        wrong.append(f"only the editor says: {NOT_KNOWN}")
-    if NOT_KNOWN in report.splitlines()[0] and NOT_KNOWN not in words:
-        wrong.append(f"only the report says: {NOT_KNOWN}")
+    if UNDECIDED in words and UNDECIDED not in report:
+        wrong.append(f"only the editor says: {UNDECIDED}")
+    if UNDECIDED in report.splitlines()[0] and UNDECIDED not in words:
+        wrong.append(f"only the report says: {UNDECIDED}")
     return wrong
 
 
@@ -168,5 +168,5 @@ def test_contradictions_are_found() -> None:
     report = "p: 0.4832 in [0.4701, 0.4912] from 1,000 traces: 483 passed, 517 failed, 0.1 s"
     assert contradictions("0.48 [0.47, 0.50]", report) == []
     assert contradictions("0.52 [0.47, 0.49]", report)
-    assert contradictions(f"{NOT_KNOWN}; uniform 0.48", report)
-    assert contradictions("0.48", f"p: {NOT_KNOWN}; under uniform choices: 0.4832")
+    assert contradictions(f"{UNDECIDED}; uniform 0.48", report)
+    assert contradictions("0.48", f"p: {UNDECIDED}; under uniform choices: 0.4832")

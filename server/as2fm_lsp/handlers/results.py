@@ -256,7 +256,7 @@ def result_words(current: CurrentResults, known: KnownResult, where: str = "") -
     result = known.result
     wrong = missed(result)
     parts = [short(result) + where, *([f"not {wrong}"] if wrong else [])]
-    parts += dict.fromkeys(verdict.text for verdict in result.verdicts if verdict.is_uniform or verdict.is_open)
+    parts += dict.fromkeys(verdict.text for verdict in result.verdicts if verdict.is_uniform or verdict.is_undecided)
     parts += dict.fromkeys(verdict.unanimous_text for verdict in result.verdicts if verdict.unanimous_text)
     parts += [NO_EXPECTATION] if result.has_no_expectation else []
     if result.stuck is not None:

@@ -11,7 +11,7 @@ from as2fm_lsp.verification.report import conditional_texts, warning
 from as2fm_lsp.verification.scheduler_report import OTHERS
 from roaml.experiments.results import csv_text
 from roaml.smc.lss import Side
-from roaml.verification.headline import headline
+from roaml.verification.headline import UNDECIDED, headline
 from roaml.verification.results import Estimated, Refused, Result, Sampled, Undecided
 
 COLUMNS = (
@@ -28,7 +28,7 @@ def as_csv(results: Iterable[Result]) -> str:
 
 
 def _row(result: Result) -> dict[str, Any]:
-    row: dict[str, Any] = {"property": result.name, "kind": "unknown", "seconds": round(result.seconds, 3)}
+    row: dict[str, Any] = {"property": result.name, "kind": UNDECIDED, "seconds": round(result.seconds, 3)}
     if result.verdicts:
         row["expected"] = "; ".join(verdict.expectation.text for verdict in result.verdicts)
         row["met"] = "true" if result.is_met else "false"

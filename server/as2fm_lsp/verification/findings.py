@@ -55,7 +55,7 @@ def diagnostics(results: Sequence[Result], target: VerificationTarget, main: str
         if missed:
             story = _counterexample(result, target)
             places = [] if story is None else _places(story)
-            words = "; ".join(f"expected {v.expectation.text}: {v.text}" for v in missed)
+            words = "; ".join(f"expected {v.expectation.text}: {v.explained(result.epsilon)}" for v in missed)
             message = f"`{result.name}`: {value_text(result)}; {words}"
             if places:
                 message += "; the shortest trace that shows it ends here"

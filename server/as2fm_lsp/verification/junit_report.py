@@ -57,8 +57,10 @@ def _case(result: Result, title: str, text: str) -> Case:
         return replace(case, outcome=CaseOutcome.SKIPPED, message=NO_EXPECTATION)
     if result.is_met:
         return case
-    if result.is_open:
-        message = "; ".join(f"expected {v.expectation.text}: {v.text}" for v in result.verdicts if v.is_open)
+    if result.is_undecided:
+        message = "; ".join(
+            f"expected {v.expectation.text}: {v.explained(result.epsilon)}" for v in result.verdicts if not v.is_met
+        )
         return replace(case, outcome=CaseOutcome.ERROR, message=message, type="undecided")
     missed = [verdict.expectation.text for verdict in result.verdicts if not verdict.is_met]
     return replace(case, outcome=CaseOutcome.FAILED, message=f"expected {' and '.join(missed)}")

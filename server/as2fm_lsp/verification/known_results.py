@@ -109,10 +109,10 @@ class KnownResults(Record):
 
 
 def short(result: Result) -> str:
-    """A short form of a result, such as `0.48 [0.47, 0.49]`, `0.4832, exact` or `unknown`; "" if there is no result."""
+    """A short form of a result, such as `0.48 [0.47, 0.49]`, `0.4832, exact` or `undecided`; "" if there is none."""
     return headline(result).short
 
 
 def missed(result: Result) -> str:
     """The texts of the expectations that do not hold, joined by `and`; "" if all hold, or may hold."""
-    return " and ".join(v.expectation.text for v in result.verdicts if not (v.is_met or v.is_open))
+    return " and ".join(v.expectation.text for v in result.verdicts if not (v.is_met or v.is_undecided))

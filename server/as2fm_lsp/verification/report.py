@@ -17,7 +17,7 @@ from roaml.smc.goal import Question
 from roaml.smc.lss import Side
 from roaml.smc.run import Answer, ratio_of
 from roaml.verification.expectations import NO_EXPECTATION
-from roaml.verification.headline import NO_TRACES, estimate_text, headline
+from roaml.verification.headline import NO_TRACES, UNDECIDED, estimate_text, headline
 from roaml.verification.number_text import json_number, number
 from roaml.verification.refusal import Refusal
 from roaml.verification.results import (
@@ -78,7 +78,7 @@ def as_text(
     opened = {r.name for r in results if r.answer is not None and activity_report.open_at_end(r.answer.tally)}
     knows_reactions = any(result.conditional for result in results)
     note = scheduler_report.note(unknown, opened=opened, knows_reactions=knows_reactions)
-    return "".join(f"{line}\n" for line in (*blocks, *unexpected, *met_only_uniformly(results), *note))
+    return "".join(f"{line}\n" for line in (*blocks, *unexpected, *remarks_on_expectations(results), *note))
 
 
 def as_brief_text(results: Sequence[Result], place_of: PlaceOf, level: StuckLevel = StuckLevel.WARNING) -> str:
@@ -100,17 +100,24 @@ def _without_expectation(results: Sequence[Result]) -> list[str]:
     return [f"{NO_EXPECTATION}: {', '.join(names)}"] if names else []
 
 
-def met_only_uniformly(results: Sequence[Result]) -> list[str]:
-    """A line with the number of expectations that are met only under uniform choices, unless these are accepted; empty
-    if there are none."""
+def remarks_on_expectations(results: Sequence[Result]) -> list[str]:
+    """A line with the number of expectations that are met only under uniform choices, unless these are accepted, and
+    one with the number of those that an interval leaves undecided; empty if there are none."""
     verdicts = [(result.name, verdict) for result in results for verdict in result.verdicts]
-    names = [name for name, v in verdicts if v.is_uniform and v.policy is not UniformPolicy.ACCEPT]
-    if not names:
-        return []
-    what = f"expectation{'' if len(verdicts) == 1 else 's'} {'is' if len(names) == 1 else 'are'}"
-    shown = ", ".join(dict.fromkeys(names))
-    known = "not known to be met under all schedulers"
-    return [f"{len(names):,} of {len(verdicts):,} {what} met only under uniform choices, {known}: {shown}"]
+    uniform = [
+        name for name, v in verdicts if v.is_uniform and not v.is_undecided and v.policy is not UniformPolicy.ACCEPT
+    ]
+    undecided = [name for name, v in verdicts if v.is_undecided and not v.is_open]
+    lines = []
+    for names, what in (
+        (uniform, "met only under uniform choices, not known to be met under all schedulers"),
+        (undecided, "undecided, because the interval is too wide; a smaller --epsilon makes it narrower"),
+    ):
+        if names:
+            of = f"{len(verdicts):,} expectation{'' if len(verdicts) == 1 else 's'}"
+            verb = "is" if len(names) == 1 else "are"
+            lines.append(f"{len(names):,} of {of} {verb} {what}: {', '.join(dict.fromkeys(names))}")
+    return lines
 
 
 def one_as_text(result: Result, place_of: PlaceOf, level: StuckLevel = StuckLevel.WARNING, shown: str = "") -> str:
@@ -147,11 +154,10 @@ def _block(
         if isinstance(result.outcome, Undecided):
             lines.append(f"  expected {verdict.expectation.text}: undecided")
             continue
-        doubt = verdict.doubt(result.epsilon)
-        text = f"  expected {verdict.expectation.text}: {verdict.text}"
+        text = f"  expected {verdict.expectation.text}: {verdict.explained(result.epsilon)}"
         if verdict.is_met and result.answer is not None and activity_report.is_untested(result.answer):
             text += ", but nothing has tested the property"
-        lines.append(f"{text}; {doubt}" if doubt else text)
+        lines.append(text)
     if is_alone and result.has_no_expectation:
         lines.append(f"  {NO_EXPECTATION}")
     if not is_alone and result.comment and lines:
@@ -494,7 +500,7 @@ def _verdict(result: Result) -> str:
         return "no answer"
     if result.has_no_expectation:
         return NO_EXPECTATION
-    return "met" if result.is_met else "undecided" if result.is_open else "not met"
+    return UNDECIDED if result.is_undecided else "met" if result.is_met else "not met"
 
 
 def warning(result: Result) -> str:
@@ -507,7 +513,11 @@ def warning(result: Result) -> str:
         parts.append(activity_report.warning(result.answer))
     if isinstance(result.outcome, Estimated):
         parts.append(scheduler_report.warning(result.outcome.answer.question, result.outcome.choices))
-    parts += [f"expected {v.expectation.text}: {v.text}" for v in result.verdicts if v.is_warned_about]
+    parts += [
+        f"expected {verdict.expectation.text}: {verdict.explained(result.epsilon)}"
+        for verdict in result.verdicts
+        if verdict.is_warned_about
+    ]
     parts += doubts(result)
     if can_get_stuck(result):
         parts.append(CAN_GET_STUCK)

@@ -27,8 +27,7 @@ class ResultMark(Enum):
     Attributes:
         UNIFORM: the expectation is met under uniform choices only, which a warning reports.
         OPEN: no expectation.
-        UNDECIDED: neither an expectation nor a value for all schedulers, or an expectation that undecided traces leave
-            open.
+        UNDECIDED: neither an expectation nor a value for all schedulers, or an expectation that is undecided.
         DOUBTFUL: traces got stuck.
     """
 
@@ -53,7 +52,7 @@ SYMBOLS = {
 def mark_of(result: Result) -> ResultMark:
     if result.stuck:
         return ResultMark.DOUBTFUL
-    if result.is_open:
+    if result.is_undecided:
         return ResultMark.UNDECIDED
     if missed(result):
         return ResultMark.FAILED

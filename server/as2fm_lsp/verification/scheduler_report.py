@@ -121,7 +121,7 @@ def note(
     lines = []
     if unclear := [question.name for question, choices in entries if question.name in opened and not choices.differ]:
         why = "the time ends before a deadline in some traces, and --exhaustive does not decide these either"
-        lines.append(f"note: the minimum or maximum of {_listed(unclear)} over all schedulers is not known ({why})")
+        lines.append(f"note: the minimum or maximum of {_listed(unclear)} over all schedulers is undecided ({why})")
     entries = [(question, choices) for question, choices in entries if question.name not in opened]
     return lines + (_note_of_others(entries, knows_reactions=knows_reactions) if entries else [])
 
@@ -130,28 +130,30 @@ def _note_of_others(entries: Sequence[tuple[Question, Choices]], *, knows_reacti
     """The lines of `note` about properties for which all states may give a value."""
     names: dict[tuple[str, str], list[str]] = {}
     tried: dict[tuple[str, str], int] = {}
-    explored: dict[tuple[str, str], int] = {}
+    explored: dict[tuple[str, str], tuple[int, str]] = {}
     for question, choices in entries:
         if choices.differ:
             continue
         key = (question.operator, "" if choices.tried else _looked(question, choices))
         names.setdefault(key, []).append(question.name)
         tried[key] = max(tried.get(key, 0), choices.tried)
-        explored[key] = max(explored.get(key, 0), choices.explored)
+        explored[key] = max(explored.get(key, (0, "")), (choices.explored, choices.limit))
     lines = []
     for (operator, why), of in names.items():
         extreme = "minimum" if operator.endswith("min") else "maximum"
         looked = why or f"{_no_difference(tried[operator, why], 'up to ')}, which proves nothing"
-        if states := explored[operator, why]:
-            looked = f"too many states: gave up after {states:,}; {looked}"
-        lines.append(f"note: the {extreme} of {_listed(of)} over all schedulers is not known ({looked})")
+        states, limit = explored[operator, why]
+        if states:
+            at = f", at the limit --{limit}" if limit else ""
+            looked = f"too many states: the search stopped at {states:,} states{at}; {looked}"
+        lines.append(f"note: the {extreme} of {_listed(of)} over all schedulers is undecided ({looked})")
     ways = ["--exhaustive to compute it from all states", "--scheduler uniform if uniform choices are meant"]
     if limits := [limit for limit in dict.fromkeys(choices.limit for _, choices in entries) if limit]:
         ways.insert(0, f"a higher {' and '.join(f'--{limit}' for limit in limits)} to search for longer")
     if knows_reactions:
         ways.insert(0, 'a reaction time if machines always react within it (--reaction-time instant, or "20 ms")')
     advice = f"use {', '.join(ways[:-1])}, or {ways[-1]}"
-    return [*lines, f"  help: {advice}"] if lines else [f"help: for what is not known, {advice}"]
+    return [*lines, f"  help: {advice}"] if lines else [f"help: for what is undecided, {advice}"]
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from roaml.durations import short_moment
 from roaml.jani.node import Origin
 from roaml.smc.end import End
+from roaml.verification.headline import UNDECIDED
 from roaml.verification.stuck import Stuck, StuckLevel, StuckResult
 
 if TYPE_CHECKING:
@@ -33,13 +34,13 @@ def as_text(result: StuckResult, place_of: PlaceOf, shown: str = "", *, is_whole
         cut = answer.tally.ended(End.CUT)
         traces = f"{answer.tally.traces:,} traces"
         if cut == answer.tally.traces:
-            lines.append(f"{PROBABILITY}: unknown: all {traces} were cut after {answer.options.max_steps:,} steps")
+            lines.append(f"{PROBABILITY}: {UNDECIDED}: all {traces} were cut after {answer.options.max_steps:,} steps")
         else:
             to = f"; {cut:,} of them were cut after {answer.options.max_steps:,} steps" if cut else " to their end"
-            value = "unknown" if answer.is_unknown else f"{answer.value:.6g}"
+            value = UNDECIDED if answer.is_unknown else f"{answer.value:.6g}"
             lines.append(f"{PROBABILITY}: {value} in [{lower:.6g}, {upper:.6g}] from {traces}{to}")
     if result.fault:
-        lines.append(f"{PROBABILITY}: unknown, because a longer trace failed: {result.fault}")
+        lines.append(f"{PROBABILITY}: {UNDECIDED}, because a longer trace failed: {result.fault}")
     if stuck is not None:
         still = "" if stuck.time is None else " and time does not advance"
         if shown:

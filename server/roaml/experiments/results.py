@@ -22,7 +22,7 @@ MAX_LINES = 6
 COLUMNS = ("value", "low", "high", "kind", "schedulers", "minimum", "maximum", "uniform", "states", "traces", "note")
 
 ESTIMATE_NOTE = "estimates from traces with uniform choices"
-UNKNOWN_EXTREME = " (the minimum and maximum over all schedulers are not known)"
+UNKNOWN_EXTREME = " (the minimum and maximum over all schedulers are undecided)"
 EXACT_NOTES = {
     Schedulers.ALL: "the same for all schedulers",
     Schedulers.MINIMUM: "the minimum over all schedulers where these differ",

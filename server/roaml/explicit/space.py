@@ -230,7 +230,7 @@ def _searched(
             watch(ExplorationProgress(search.count, search.expanded, search.memory_used()))
         match status:
             case codes.PART if limits.transitions is not None and transitions > limits.transitions:
-                why = f", with more than {limits.transitions:,} transitions"
+                why = f", with more than {limits.transitions:,} transitions ({MAX_TRANSITIONS_LIMIT})"
                 raise _stopped(search, why, MAX_TRANSITIONS_LIMIT)
             case codes.PART:
                 continue

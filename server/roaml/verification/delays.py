@@ -160,8 +160,8 @@ def endless_delay(
     who = names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
     count = len(endless.cycle)
     what = f"{'repeats' if len(names) == 1 else 'repeat'} {'a step' if count == 1 else f'{count:,} steps'}"
-    verb = "fails" if endless.path.verdict == FALSE else "holds"
-    return f"it {verb}, for example, if {checker.actors[waiting[0]]} is delayed for ever while {who} {what}"
+    verb = "does not hold" if endless.path.verdict == FALSE else "holds"
+    return f"the property {verb}, for example, if {checker.actors[waiting[0]]} is delayed for ever while {who} {what}"
 
 
 def _ends_of_time(checker: ModelChecker, clock: Clock) -> tuple[int, frozenset[int]]:

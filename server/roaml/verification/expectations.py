@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """`NAME >= 0.95`: the expected value of a property, and whether it holds.
 
-- The estimate decides, not its interval: no number of traces could ever show that a probability is 1. If the interval
-  contains both values that satisfy the expectation and others, this is only reported (`Verdict.is_certain`).
+- The estimate decides the exit status, not its interval: no number of traces could ever show that a probability is 1.
+  If the interval contains both values that satisfy the expectation and others, the words are `undecided`, unless no
+  trace contradicts an expected 0 or 1 (`Verdict.is_undecided`).
 - An exact value is compared with its bounds (`holds_exactly`).
 - `==` means at most epsilon away from an estimate.
 - Undecided traces can have any result: an expectation is met if it is met whatever they have, and open if it is met
@@ -55,6 +56,7 @@ class Verdict(Record, frozen=True):
     """Whether an expectation is met.
 
     Attributes:
+        is_met: whether the expectation counts as met.
         is_certain: whether the verdict is the same for the whole interval.
         is_open: whether the expectation is not met, but could be, depending on the traces that are undecided.
         is_uniform: whether the expectation is met under uniform choices and not known to be met under all schedulers.
@@ -83,8 +85,17 @@ class Verdict(Record, frozen=True):
     policy: UniformPolicy = UniformPolicy.WARN
 
     @property
+    def is_undecided(self) -> bool:
+        """Whether the expectation depends on traces that are undecided, or on which value of the interval is the true
+        one. If it is met all the same, the estimate meets it."""
+        is_refused = self.is_uniform and not self.is_met
+        return self.is_open or not (self.is_certain or self.unanimous_text or is_refused)
+
+    @property
     def text(self) -> str:
         """A phrase for users that states whether the expectation is met."""
+        if self.is_undecided and not self.is_open:
+            return "; ".join(filter(None, (f"undecided {self.under}".rstrip(), self.uniform_only)))
         if self.is_uniform:
             what = "met under uniform choices" if self.is_met else "NOT MET: known only under uniform choices"
             return "; ".join(filter(None, (what, self.uniform_only)))
@@ -112,8 +123,13 @@ class Verdict(Record, frozen=True):
 
     @property
     def is_warned_about(self) -> bool:
-        """Whether a warning reports that the expectation is met under uniform choices only."""
-        return self.is_uniform and self.policy is UniformPolicy.WARN
+        """Whether a warning reports that the expectation is met under uniform choices only, or by the estimate only."""
+        return (self.is_uniform and self.policy is UniformPolicy.WARN) or (self.is_undecided and self.is_met)
+
+    def explained(self, epsilon: float) -> str:
+        """The text, with the reason why the interval leaves the verdict open (`doubt`)."""
+        doubt = self.doubt(epsilon)
+        return f"{self.text}{': ' if self.is_undecided else '; '}{doubt}" if doubt else self.text
 
     def doubt(self, epsilon: float) -> str:
         """The reason why the interval leaves the verdict open; "" if it does not.
@@ -126,7 +142,8 @@ class Verdict(Record, frozen=True):
         if self.unanimous_text:
             assert self.unanimous is not None
             where = "down" if self.expectation.threshold.is_lower else "up"
-            return f"{self.unanimous_text}; the interval reaches {where} to {_rounded(self.unanimous[1]):g}"
+            bound = f"{_rounded(self.unanimous[1]):g}"
+            return f"{self.unanimous_text}, which proves nothing: the interval reaches {where} to {bound}"
         number = as_written(self.expectation.threshold.number)
         met, missed = {
             BinaryOperator.GREATER_EQUAL: (f"of at least {number}", f"below {number}"),
@@ -135,7 +152,12 @@ class Verdict(Record, frozen=True):
             BinaryOperator.LESS: (f"below {number}", f"of at least {number}"),
             BinaryOperator.EQUAL: (f"within {epsilon:g} of {number}", f"more than {epsilon:g} away from {number}"),
         }[self.expectation.threshold.relation]
-        return f"not certain: the interval includes values {missed if self.is_met_in_traces else met}"
+        if not self.is_undecided:
+            return f"the interval includes values {missed}"
+        if not self.is_met:
+            return f"the interval includes values {met} and values {missed}"
+        by = "the estimate under uniform choices" if self.is_uniform else "the estimate"
+        return f"{by} meets it, but the interval includes values {missed}"
 
 
 def parse(text: str) -> Expectation:

@@ -4,7 +4,7 @@ of tests all use these words.
 
 - A property that asks for a minimum or maximum over all schedulers is never answered by the value under uniform
   choices. The sampled traces of one scheduler bound the minimum from above and the maximum from below; if not even that
-  excludes a value, the words only state that it is not known.
+  excludes a value, the words only state that it is undecided.
 - If traces are undecided, the words name bounds, the number of undecided traces and the remedy, and no value between
   the bounds.
 """
@@ -25,9 +25,9 @@ from roaml.verification.number_text import number
 from roaml.verification.results import Computed, CutShort, Estimated, Refused, Result, Sampled, SampledResult, Undecided
 from roaml.verification.schedulers import extreme_of, is_minimised
 
-NOT_KNOWN = "not known"
 NO_TRACES = "no result yet"
-UNKNOWN = "unknown"
+UNDECIDED = "undecided"
+"""The word for a value, an extreme or an expectation about which nothing was found out."""
 _EXTREME_STATES = {
     InitialFold.MINIMUM: "minimum over the initial states",
     InitialFold.MAXIMUM: "maximum over the initial states",
@@ -43,8 +43,8 @@ class Headline(Record, frozen=True):
     """The words for a result.
 
     Attributes:
-        claim: what is known for all schedulers, such as `minimum between 0 and 0.17, no closer bounds`; "" if the
-            property asks only for uniform choices, or all schedulers agree.
+        claim: what is known for all schedulers, such as `minimum between 0 and 0.17 (0.95 confidence), no closer
+            bounds`; "" if the property asks only for uniform choices, or all schedulers agree.
         estimate: the estimate from traces with uniform choices; "" if there is none.
         short: a short form of both, for editors; "" if there is no result.
     """
@@ -66,7 +66,7 @@ def headline(result: Result) -> Headline:
         case Estimated(answer=answer, choices=choices):
             return of_answer(answer, choices)
         case Undecided():
-            return Headline(short="undecided")
+            return Headline(short=UNDECIDED)
         case Sampled(extremes=extremes):
             return of_sampled(extremes)
         case Refused() | CutShort():
@@ -106,11 +106,11 @@ def of_answer(answer: Answer, choices: Choices | None = None) -> Headline:
         choices: what is known about other schedulers; `None` if only uniform choices are considered.
     """
     estimate, short = estimate_text(answer), _short(answer)
-    claim = claim_for_all(answer.question, choices) if answer.tally.traces else ""
+    claim = claim_for_all(answer.question, choices, answer.options.confidence) if answer.tally.traces else ""
     if not claim and answer.question.is_conditional and answer.tally.traces:
         # The minimum and the maximum under a condition are not computed.
         return Headline("", f"under uniform choices: {estimate}", f"uniform {short}")
-    if not claim or (_is_open(answer) and claim.endswith(NOT_KNOWN)):
+    if not claim or (_is_open(answer) and claim.endswith(UNDECIDED)):
         # Nothing is known: once is enough.
         return Headline("", estimate, short)
     known = _asked_extreme_of(answer.question, choices)
@@ -120,16 +120,20 @@ def of_answer(answer: Answer, choices: Choices | None = None) -> Headline:
     return Headline(claim, estimate, f"{claim}; uniform {short}")
 
 
-def claim_for_all(question: Question, choices: Choices | None) -> str:
+def claim_for_all(question: Question, choices: Choices | None, confidence: float) -> str:
     """What is known about the minimum or maximum that a property asks for, if it may differ from the value under
-    uniform choices; otherwise ""."""
+    uniform choices; otherwise "".
+
+    Args:
+        confidence: that of bounds from traces.
+    """
     if question.asks_for_extreme_state:
         known = _asked_extreme_of(question, choices)
         extreme = _EXTREME_STATES.get(question.fold, f"{extreme_of(question)} over the initial states")
         return (
             f"{extreme} {number(known.value)}, exact"
             if known is not None and known.is_exact
-            else f"{extreme} {NOT_KNOWN}"
+            else f"{extreme} {UNDECIDED}"
         )
     if choices is None or choices.agreement:
         return ""
@@ -138,12 +142,13 @@ def claim_for_all(question: Question, choices: Choices | None) -> str:
         return f"{extreme_of(question)} {number(known.value)}, exact"
     bound = bound_text(question, known)
     if not bound:
-        return f"{extreme_of(question)} {NOT_KNOWN}"
+        return f"{extreme_of(question)} {UNDECIDED}"
     # A range cannot be taken for a second estimate.
     words, _, value = bound.rpartition(" ")
     if words in ("at most", "at least"):
         bound = f"between 0 and {value}" if words == "at most" else f"between {value} and 1"
-    return f"{extreme_of(question)} {bound}, {NOT_CLOSER}"
+    sure = "" if known is None or known.method is ExtremeMethod.REACTIONS else f" ({confidence:g} confidence)"
+    return f"{extreme_of(question)} {bound}{sure}, {NOT_CLOSER}"
 
 
 def _asked_extreme_of(question: Question, choices: Choices | None) -> Extreme | None:
@@ -177,18 +182,18 @@ def estimate_text(answer: Answer) -> str:
         return NO_TRACES
     good, bad = ("stuck", "not stuck") if answer.question.is_stuck else ("passed", "failed")
     if not tally.undecided or answer.question.is_reward:
-        value = UNKNOWN if answer.is_unknown else "infinite" if math.isinf(answer.value) else number(answer.value)
+        value = UNDECIDED if answer.is_unknown else "infinite" if math.isinf(answer.value) else number(answer.value)
         counts = f"{tally.traces:,} traces: {tally.successes:,} {good}, {answer.failures:,} {bad}"
         if tally.undecided:
             counts += f", {tally.undecided:,} undecided"
         return f"{value} in [{number(lower)}, {number(upper)}] from {counts}"
     if _is_open(answer):
-        return f"{UNKNOWN}: {_undecided(answer)}"
+        return f"{UNDECIDED}: {_undecided(answer)}"
     results = [f"{tally.successes:,} of {tally.traces:,} traces {good}"]
     results += [f"{answer.failures:,} {bad}"] if answer.failures else []
     results.append(_undecided(answer))
     bounds = _between(answer)
-    confidence = "" if bounds == UNKNOWN else f" ({answer.options.confidence:g} confidence)"
+    confidence = "" if bounds == UNDECIDED else f" ({answer.options.confidence:g} confidence)"
     return f"{bounds}{confidence}: {', '.join(results)}"
 
 
@@ -208,7 +213,7 @@ def _between(answer: Answer) -> str:
         case False, True:
             return f"at most {upper:g}"
         case _:
-            return UNKNOWN
+            return UNDECIDED
 
 
 def _undecided(answer: Answer) -> str:
@@ -236,7 +241,7 @@ def _short(answer: Answer) -> str:
     if answer.tally.traces == 0:
         return ""
     if answer.is_unknown:
-        return UNKNOWN
+        return UNDECIDED
     if answer.tally.undecided and not answer.question.is_reward:
         return _between(answer).replace("at least ", "≥ ").replace("at most ", "≤ ")
     lower, upper = answer.bounds

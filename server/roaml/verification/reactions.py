@@ -111,5 +111,6 @@ def _remark(outcome: Outcome, exact: Exact, clock: Clock) -> str:
         return ""
     seconds = clock.step / 1e9
     end = "the end" if delay.until is None else short_moment(delay.until * seconds)
-    what = "fails" if verdict == FALSE else "holds"
-    return f"it {what}, for example, if {delay.actor} is delayed from {short_moment(delay.since * seconds)} until {end}"
+    what = "does not hold" if verdict == FALSE else "holds"
+    when = f"from {short_moment(delay.since * seconds)} until {end}"
+    return f"the property {what}, for example, if {delay.actor} is delayed {when}"

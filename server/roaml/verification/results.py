@@ -530,6 +530,7 @@ class Result(Record, frozen=True):
         return self.has_answer and all(verdict.is_met for verdict in self.verdicts)
 
     @property
-    def is_open(self) -> bool:
-        """Whether no expectation is missed, and some depend on traces that are undecided."""
-        return any(verdict.is_open for verdict in self.verdicts) and all(v.is_met or v.is_open for v in self.verdicts)
+    def is_undecided(self) -> bool:
+        """Whether no expectation is missed, and some are undecided."""
+        is_any = any(verdict.is_undecided for verdict in self.verdicts)
+        return is_any and all(verdict.is_met or verdict.is_undecided for verdict in self.verdicts)

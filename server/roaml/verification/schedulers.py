@@ -103,7 +103,9 @@ def _missed_by(question: Question, extreme: Extreme | None) -> str:
     if extreme.is_exact:
         return f"by the {extreme_of(question)} over all schedulers, which is {number(extreme.value)}"
     if extreme.method is ExtremeMethod.REACTIONS:
-        return f"if machines react at once: {number(extreme.value)}"
+        bound = "at most" if is_minimised(question) else "at least"
+        which = f"the {extreme_of(question)} over all schedulers, which is {bound} {number(extreme.value)}"
+        return f"by {which}, the value if machines react at once"
     return f"under {extreme.scheduler}: {interval_text(extreme)}"
 
 
