@@ -378,7 +378,7 @@ def test_vacuous_traces_and_those_that_fail_at_the_end_of_time_are_counted() -> 
         r"\n  the event that begins or ends the scope of the property did not happen in [0-9]+ of 300 traces \(", text
     )
     assert re.search(rf"\n  {trigger} in [0-9]+ of 300 traces \(", text)
-    assert "failed traces fail when the time ends (max_time)" in text
+    assert "failed traces fail because the time ends (max_time)" in text
 
 
 BEFORE = """

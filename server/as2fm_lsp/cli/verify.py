@@ -71,6 +71,20 @@ WIDTH_OF_TREES = 0.05
 MAX_TRACES_IN_ONE_PROCESS = 20_000
 """The maximum number of traces of a tree that are generated in one process, because starting more processes would take
 longer than it saves."""
+NO_QUANTILES = (
+    "--quantiles has no effect: it is about expected values, and no property asks for one; ask for one, for example "
+    "with --property 'R{\"time\"}=? [ F CONDITION ]'"
+)
+NO_QUANTILES_OF_TREE = (
+    "--quantiles has no effect: it is about expected values of systems; the line `time until success` of a tree has "
+    "quantiles"
+)
+NO_CURVES = (
+    "--plot draws nothing: a property with an assumption (`||`) has no curve; ask for the property without it, or draw "
+    "a variable with --over-time"
+)
+NO_CLOCK = "no time passes in this model, because it has no timer and no delay"
+"""Why options have no effect, and what to do."""
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -255,7 +269,7 @@ class _Verification:
                     interrupted = True
         if not interrupted and self.options.quantiles:
             if not any(result.question is not None and result.question.is_reward for result in self.results):
-                note('--quantiles has no effect: no property is an expected value, such as R{"time"}=? [ F … ]')
+                note(NO_QUANTILES if self.tree is None else NO_QUANTILES_OF_TREE)
             self.results = [self._with_quantiles(result) for result in self.results]
         answered = Answered(
             self.options, self.verifier, tuple(self.results), tuple(self.faults), self.stuck_result, self.tree
@@ -263,6 +277,7 @@ class _Verification:
         print_text(report_text(answered), self.options.format.encoding)
         flush()
         print_faults(answered)
+        self._note_unused_times()
         is_met = all(r.is_met for r in self.results) and (self.stuck_result is None or self.stuck_result.is_met)
         if self.options.stuck is stuck.StuckLevel.ERROR and any(map(can_get_stuck, self.results)):
             is_met = False
@@ -274,6 +289,14 @@ class _Verification:
         if not interrupted and self.options.plot:
             self._write_plots()
         return status
+
+    def _note_unused_times(self) -> None:
+        """Say that options about times have no effect, because the model has no clock."""
+        metadata = self.target.model.metadata
+        given = {"--reaction-time": self.options.reaction_time, "--max-time": self.options.max_time}
+        names = [name for name, value in given.items() if value is not None]
+        if names and (metadata is None or metadata.clock is None):
+            note(f"{' and '.join(names)} {'has' if len(names) == 1 else 'have'} no effect: {NO_CLOCK}")
 
     def _with_quantiles(self, result: Result) -> Result:
         """The result of a reward, with the quantiles that the options ask for."""
@@ -299,6 +322,8 @@ class _Verification:
                 raise UsageError(f"the curves cannot be drawn: {fault.message}") from None
             except ValueError as error:
                 raise UsageError(str(error)) from None
+        if not plots:
+            note(NO_CURVES)
         title = f"Curves of {os.path.basename(self.options.main)}"
         for path in self.options.plot:
             write_plots(self.outputs, path, plots, AUTOMATIC, title)

@@ -7,6 +7,7 @@ from __future__ import annotations
 from typing import Any
 
 from roaml.smc.end import End
+from roaml.smc.program import FALSE
 from roaml.smc.run import Answer
 from roaml.smc.tally import Tally
 
@@ -14,7 +15,9 @@ _UNTESTED = "these are among the passed traces, but do not test it"
 _NEVER_TESTED = "nothing has tested the property, so this value does not show that the system is right (vacuous):"
 _NOT_TRIGGERED = "what must happen before the property requires anything did not happen"
 _NOT_OPENED = "the event that begins or ends the scope of the property did not happen"
-_REMEDY = "check whether it can happen at all, or allow more time (max_time)"
+_REMEDY = "check whether it can happen at all"
+_MORE_TIME = ", or allow more time (max_time)"
+"""A remedy where the end of time has ended traces."""
 NONE_ACCEPTED = "no trace satisfies the assumptions of the property, so there is no value"
 
 
@@ -39,12 +42,13 @@ def remarks(answer: Answer, *, are_examples: bool = False) -> list[str]:
             lines.append(f"{_NOT_OPENED} in {_share(tally.closed, tally.traces)}: {_UNTESTED}")
         if tally.idle:
             lines.append(f"{_NOT_TRIGGERED} in {_share(tally.idle, tally.traces)}: {_UNTESTED}")
-    if tally.late:
+    late = tally.late or _ended_with_time(answer)
+    if late:
         of = f" (of {tally.traces:,} random examples)" if are_examples else ""
-        share = "all" if tally.late == answer.failures else f"{tally.late:,} of"
+        share = "all" if late == answer.failures else f"{late:,} of"
         lines.append(
-            f"{share} {answer.failures:,} failed traces{of} fail when the time ends (max_time), because an event that "
-            "the property requires has not occurred; a longer time may satisfy them"
+            f"{share} {answer.failures:,} failed traces{of} fail because the time ends (max_time) before what "
+            "the property requires has happened; a longer time may satisfy them"
         )
     opened = open_at_end(tally)
     if opened:
@@ -61,6 +65,16 @@ def is_untested(answer: Answer) -> bool:
     return tally.undecided < tally.traces == tally.closed + tally.idle
 
 
+def _ended_with_time(answer: Answer) -> int:
+    """The number of failed traces if all of them, and only they, have lasted until the end of time; otherwise 0."""
+    question, tally = answer.question, answer.tally
+    ended = tally.ends.get(End.TIME)
+    if ended is None or question.is_reward or question.is_stuck or ended.count != answer.failures:
+        return 0
+    # As many traces as have failed may also have passed at the end of time.
+    return answer.failures if ended.shortest == tally.shortest.get(FALSE) else 0
+
+
 def open_at_end(tally: Tally) -> int:
     """The number of traces that are undecided because the time ended before a deadline of the property."""
     return tally.undecided - tally.ended(End.CUT)
@@ -74,7 +88,8 @@ def warning(answer: Answer) -> str:
         return f"{NONE_ACCEPTED}: {tally.rejected:,} traces violate them"
     if not is_untested(answer):
         return ""
-    return f"{_NEVER_TESTED} {_NOT_TRIGGERED if tally.idle else _NOT_OPENED} in any trace; {_REMEDY}"
+    more_time = _MORE_TIME if End.TIME in tally.ends else ""
+    return f"{_NEVER_TESTED} {_NOT_TRIGGERED if tally.idle else _NOT_OPENED} in any trace; {_REMEDY}{more_time}"
 
 
 def row(answer: Answer) -> dict[str, Any]:

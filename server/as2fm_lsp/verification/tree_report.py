@@ -250,10 +250,12 @@ def story_as_text(
     if len(lines) > MAX_LINES and not is_whole:
         folded = len(lines) - MAX_LINES
         lines[MAX_LINES // 2 : -MAX_LINES // 2] = [f"  … {folded} more statuses (--verbose) …"]
+    failures = sum(turn.status == "FAILURE" and turn.automaton in uncertain for turn in leaf_turns)
+    independent = f"; its {failures} failures happen by chance, independently of each other" if failures > 1 else ""
     outcome = "with" if story.recording.verdict == TRUE else "without"
     number = story.recording.trace
     article = "a" if number == SELECTED else "the shortest"
-    head = f"{article} trace {outcome} success{f' (trace {number})' if number >= 0 else ''}:"
+    head = f"{article} trace {outcome} success{f' (trace {number})' if number >= 0 else ''}{independent}:"
     why = cause(story, place_of)
     table = status_table(story, mocked.tree.nodes, place_of, is_whole=is_whole) if has_table else []
     return "".join(f"{line}\n" for line in (*([why] if why else []), head, *lines, *table))
