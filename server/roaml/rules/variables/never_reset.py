@@ -177,26 +177,34 @@ def _sets(body: tuple[Statement, ...], name: str) -> bool:
     )
 
 
+_REPEATED = (ProtocolPart.TICK, ProtocolPart.BT_TICK)
+"""What arrives again and again while a machine counts."""
+
+
 def _counting(machine: Machine, chart: Chart, state: State) -> Iterator[tuple[Handler, Handler, str, Expression]]:
-    """The handlers of timers that count while a variable is less than a limit, each with the handler that leaves the
-    state, the variable and the condition, if the next handler of the timer leaves the state in which the machine may
-    later be again."""
+    """The handlers of timers and ticks that count while a variable is less than a limit, each with the handler that
+    leaves the state, the variable and the condition, if the next handler for the same trigger leaves the state in which
+    the machine may later be again. Other targets than the one that counts may lead anywhere."""
     own = state.id.value if state.id is not None else ""
-    timers = [h for h in state.handlers if h.trigger is ProtocolPart.TICK]
-    for handler, following in itertools.pairwise(timers):
+    repeated = [h for h in state.handlers if h.trigger in _REPEATED]
+    for handler, following in itertools.pairwise(repeated):
         test = handler.cond.tree if handler.cond is not None and not handler.cond.broken else None
         ends = [target.state.value if target.state is not None else "" for target in following.targets]
         if handler.cond is None or not isinstance(test, Binary) or not isinstance(test.left, Name):
             continue
-        counts = any(
-            isinstance(s, Assign) and isinstance(s.value, Expression) and step_of(s.value.tree, test.left.name) > 0
-            for target in handler.targets for s in target.body
-        )  # fmt: skip
-        stays = all(target.state is not None and target.state.value == own for target in handler.targets)
+        counting = [target for target in handler.targets if _counts(target.body, test.left.name)]
+        stays = all(target.state is not None and target.state.value == own for target in counting)
         is_alike = trigger(machine, handler) == trigger(machine, following)
-        is_limit = test.operator in (Operator.LESS, Operator.LESS_EQUAL) and counts and stays and is_alike
+        is_limit = test.operator in (Operator.LESS, Operator.LESS_EQUAL) and counting and stays and is_alike
         if is_limit and own not in ends and _returns(chart, state, ends):
             yield handler, following, test.left.name, handler.cond
+
+
+def _counts(body: tuple[Statement, ...], name: str) -> bool:
+    """Whether a body increases a variable, whatever its conditions are."""
+    return any(
+        isinstance(s, Assign) and isinstance(s.value, Expression) and step_of(s.value.tree, name) > 0 for s in body
+    )
 
 
 def _is_limit(tree: Expr, name: str, sign: int) -> bool:
