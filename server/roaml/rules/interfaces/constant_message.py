@@ -11,6 +11,7 @@ from roaml.expr.tree import Boolean, Number
 from roaml.expr.types import leaves
 from roaml.model.machine import Declaration, RosSend
 from roaml.model.syntax import Expression
+from roaml.model.system import ChannelEndpoint
 from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
@@ -33,6 +34,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
         users = [end for _, channel in channels for end in channel.users]
         if not any(end.use.reads for end in users) and (users or not isinstance(values[0], Boolean)):
             continue  # a signal, such as a heartbeat, whose receivers read no value
+        if isinstance(values[0], Number) and not any(_distinguishes(end) for end in users):
+            continue  # an amount or a position, with which receivers calculate
         if any(end.automaton is not own for own, channel in channels for end in channel.sources):
             continue  # the value differs from that of another publisher, as in the order of a monitor to stop
         for value in values:
@@ -40,6 +43,12 @@ def check(context: MachineContext) -> Iterator[Finding]:
             message = f"all messages that this machine publishes on the topic are `{text}`, so receivers learn nothing"
             others = [Related(other.span, "also here") for other in values if other is not value]
             yield RULE.at(value.span, f"{message} from the value; change one of them", related=others)
+
+
+def _distinguishes(end: ChannelEndpoint) -> bool:
+    """Whether a subscriber compares a field of the messages with constants."""
+    fields = (choice.field for choice in end.automaton.outline.choices)
+    return any(field.part is ProtocolPart.MESSAGE and field.handle == end.use.handle for field in fields)
 
 
 def _published(context: MachineContext) -> dict[Declaration, list[RosSend]]:

@@ -15,7 +15,7 @@ from roaml.model.syntax import Expression
 from roaml.model.value_types import CONDITIONS, ValuePlace, find_handle
 from roaml.model.values.analyse import ChartValues, DataChannel
 from roaml.model.values.describe import described
-from roaml.model.values.domain import FALSE, MAX_LISTED, TRUE, ValueSet, joined
+from roaml.model.values.domain import FALSE, MAX_LISTED, TRUE, ValueSet, interval, joined
 from roaml.model.values.evaluate import compared, place_of
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, close_names
@@ -133,7 +133,9 @@ def _compared_with_sent(
     result = compared(node.operator, *sides)
     what = f"the values that machines send are {described(known)}"
     if result == FALSE:
-        if not _is_reported_at_sender(context, number.value):
+        if not _is_reported_at_sender(context, number.value) and not _is_highest_level(
+            context, place, chart, node, field
+        ):
             severity = Severity.INFORMATION if is_validation(tree, node, place.handler) else None
             message = f"this comparison is never true: {what}"
             yield ConstantPart(node.span, message, is_true=False, severity=severity)
@@ -141,6 +143,40 @@ def _compared_with_sent(
         conditions = chart.conditions.get(tree.span)
         if conditions is None or (node is tree and conditions.alone == TRUE):
             yield ConstantPart(node.span, f"this comparison is always true: {what}", is_true=True)
+
+
+def _is_highest_level(
+    context: MachineContext, place: ValuePlace, values: ChartValues, node: Binary, field: Expr
+) -> bool:
+    """Whether an order that never holds is one of several levels, of which another one can be reached: the environment
+    of a model often does not reach the level of an emergency. A level that is missed by at most 1 may be a mistake."""
+    name, is_upper = place_of(field), _is_upper_limit(node, field)
+    met, level = values.at(field), values.at(node.right if field is node.left else node.left)
+    if met is None or level is None or not isinstance(level.value, int | float):
+        return False
+    if (level.value - interval(met).high if is_upper else interval(met).low - level.value) <= 1:
+        return False
+    trees = [
+        v.value.tree
+        for v in context.typed.values
+        if v.use in CONDITIONS and v.place.chart is place.chart and isinstance(v.value, Expression)
+    ]
+    for other in (n for tree in trees for n in walk(tree) if isinstance(n, Binary) and n is not node):
+        for side, limit in ((other.left, other.right), (other.right, other.left)):
+            if name is None or place_of(side) != name or other.operator.kind is not OperatorKind.ORDER:
+                continue
+            known, number = values.at(side), values.at(limit)
+            if _is_upper_limit(other, side) is not is_upper or known is None or number is None or number.value is None:
+                continue
+            sides = (reached(known), number) if side is other.left else (number, reached(known))
+            if compared(other.operator, *sides) != FALSE:
+                return True
+    return False
+
+
+def _is_upper_limit(node: Binary, field: Expr) -> bool:
+    """Whether a comparison holds for great values of one of its sides."""
+    return (node.operator in (Operator.GREATER, Operator.GREATER_EQUAL)) is (field is node.left)
 
 
 def _never_chosen(
