@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -16,6 +17,7 @@ def test_widths() -> None:
     assert text_width("ab", 20) == 2 * text_width("ab", 10)
     assert text_width("漢", 10) > text_width("m", 10)
     assert text_width("e\u0301", 10) == text_width("e", 10)
+    assert text_width("Überprüfung é", 10) == pytest.approx(text_width("Uberprufung e", 10))
 
 
 def test_lines() -> None:

@@ -162,6 +162,18 @@ def test_messages_at_one_time_are_all_named() -> None:
     written = [", ".join(texts).split(", ") for texts in lines if texts]
     assert written == [list(dict.fromkeys(names)) for names in by_time.values()]
     assert max(map(len, lines)) == 2
+    # Where names are left of their mark, a later mark at the same instant has no name of its own.
+    robot = api.session(api.load(str(ROBOT)), seed=3)
+    robot.until_decided()
+    timeline_of_robot = timeline_of(robot)
+    for width in range(400, 1200, 50):
+        view = View(Axis.TIME, 0.0, extent(timeline_of_robot, Axis.TIME), float(width))
+        named: dict[float, int] = {}
+        for group in draw_timeline(timeline_of_robot, view).groups:
+            if group.role == "event" and any(isinstance(item, TextItem) for item in group.items):
+                mark = next(item.box.x for item in group.items if isinstance(item, Shape))
+                named[mark] = named.get(mark, 0) + 1
+        assert set(named.values()) == {1}, width
     # With less space, the others are counted, and only a single name is shortened.
     narrow = draw_timeline(timeline, View(Axis.TIME, 0.0, extent(timeline, Axis.TIME), 700.0))
     texts = [

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from roaml.regex import regex
 
@@ -56,12 +56,15 @@ letter, a character."""
 def text_width(text: str, size: float, *, bold: bool = False) -> float:
     """The width of one line of text, in pixels, as `size`."""
     widths = _WIDTHS[bold]
-    return size * sum(widths.get(character) or _other_width(character) for character in text)
+    return size * sum(widths.get(character) or _other_width(character, widths) for character in text)
 
 
-def _other_width(character: str) -> float:
+def _other_width(character: str, widths: Mapping[str, float]) -> float:
     if unicodedata.combining(character):
         return 0
+    letter = unicodedata.normalize("NFD", character)[0]
+    if letter in widths:
+        return widths[letter]  # `ä` is as wide as `a`
     return 1.25 if unicodedata.east_asian_width(character) in "WF" else 1.0
 
 

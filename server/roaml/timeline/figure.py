@@ -335,7 +335,7 @@ class _Painter:
         first, last = self._visible_messages()
         has_arrows = bool(self._arrow_places)
         free_from = -math.inf
-        number = first
+        number = named = first
         while number < last:
             following = number + 1 if has_arrows else self._behind_mark(number, last)
             marked = messages[number:following]
@@ -350,7 +350,8 @@ class _Painter:
             name = ", ".join(dict.fromkeys(message.name for message in marked[:_SAMPLE]))
             here = messages[number - len(marked) : min(following, number + _SAMPLE)]
             names = tuple(dict.fromkeys(message.name for message in here))
-            texts = _beside(names, x, end, free_from, beside)
+            texts = _beside(names, x, end, free_from, beside) if number > named else []
+            named = max(named, following)
             items += texts
             free_from = max(free_from, end + 6.0, *(text.box.right + 6.0 for text in texts))
             if has_arrows:
