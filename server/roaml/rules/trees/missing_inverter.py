@@ -12,23 +12,21 @@ from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.words import words_of
 from roaml.text import TextEdit
 
-_PROBLEMS = frozenset(
-    (
-        *("blocked", "bumped", "collided", "collision", "dropped", "empty", "failed", "fallen", "fell"),
-        *("jammed", "lost", "low", "stuck", "tilted"),
-    )
-)
-"""The last words of the names of conditions that hold if something is wrong."""
-
-_REMEDIES = frozenset(
-    (
-        *("charge", "clear", "free", "recharge", "recover", "refill"),
-        *("repair", "rescue", "reset", "restore", "unblock", "unjam"),
-    )
-)
-"""The first words of the names of actions that correct something."""
+_SUPPLIES = frozenset(("charge", "recharge", "refill"))
+_CLEARANCES = frozenset(("clear", "free", "recover", "rescue", "unblock", "unjam"))
+_REPAIRS = frozenset(("recover", "repair", "rescue", "reset", "restore"))
+_REMEDIES = {
+    **dict.fromkeys(("empty", "low"), _SUPPLIES),
+    **dict.fromkeys(("blocked", "jammed", "stuck"), _CLEARANCES),
+    **dict.fromkeys(("bumped", "collided", "collision", "failed", "fallen", "fell", "lost", "tilted"), _REPAIRS),
+    "dropped": _REPAIRS - {"reset"},
+}
+"""The last words of the names of conditions that hold if something is wrong -> the first words of the names of actions
+that correct it."""
 
 _NEGATIONS = frozenset(("no", "not", "never", "without"))
+_VERBS = frozenset(("are", "check", "has", "have", "is", "was"))
+"""Words before the object of a condition."""
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
@@ -41,7 +39,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
             for condition, action in itertools.pairwise(node.children):
                 is_inverted = condition.type_name == "Inverter" and len(condition.children) == 1
                 leaf = condition.children[0] if is_inverted else condition
-                if is_inverted is is_fallback or not _is_problem(leaf) or not _is_remedy(action):
+                if is_inverted is is_fallback or not _corrects(action, leaf):
                     continue
                 message = (
                     f"`{action.type_name}` is only ticked if `{leaf.type_name}` "
@@ -58,14 +56,14 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 yield RULE.at(name, message, fix, related=[Related(action.element.name_span, "the remedy")])
 
 
-def _is_problem(node: TreeNode) -> bool:
-    words = words_of(node.type_name)
-    return not node.children and words[-1:] != [] and words[-1] in _PROBLEMS and _NEGATIONS.isdisjoint(words)
-
-
-def _is_remedy(node: TreeNode) -> bool:
-    words = words_of(node.type_name)
-    return not node.children and words[:1] != [] and words[0] in _REMEDIES
+def _corrects(action: TreeNode, condition: TreeNode) -> bool:
+    """Whether the names say that an action corrects what a condition states: the verb is a remedy for this problem, and
+    both have the same object, as in `BlockFell` and `RecoverBlock`, or one of them has none."""
+    state, deed = words_of(condition.type_name), words_of(action.type_name)
+    if condition.children or action.children or not state or not deed or not _NEGATIONS.isdisjoint(state):
+        return False
+    objects, others = set(state[:-1]) - _VERBS, set(deed[1:])
+    return deed[0] in _REMEDIES.get(state[-1], ()) and not (objects and others and objects.isdisjoint(others))
 
 
 RULE = Rule(
