@@ -91,6 +91,7 @@ def test_an_optional_input_is_marked_by_a_comment(tmp_path: Path) -> None:
         ("closed", "open", "busy", "seconds", Severity.WARNING),
         ("closed", "emergency_stop", "has_failed", "floor", Severity.INFORMATION),
         ("waiting_for_light", "open", "ever_lit", "robot_x", Severity.INFORMATION),
+        ("closed", "docked", "has_failed", "floor", Severity.INFORMATION),
     ],
 )
 def test_names_say_that_a_state_is_an_end_and_that_a_variable_keeps_its_value(

@@ -46,13 +46,13 @@ class _Token(NamedTuple):
 
 class _Pair(NamedTuple):
     """Two parts that correspond to each other. `odd` contains the tokens in which they differ, as far as both have one,
-    with the other words exchanged; `kinds` the kinds of the tokens of the first part."""
+    with the other words exchanged; `known` the tokens of the first part that have a kind."""
 
     first: _Part
     second: _Part
     odd: tuple[_Token | None, _Token | None] | None
     place: Span
-    kinds: frozenset[str]
+    known: frozenset[str]
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -77,7 +77,9 @@ def _asymmetric(pairs: Sequence[_Pair]) -> Iterator[Finding]:
     (pair,) = asymmetric
     odd = [token.text for token in pair.odd or () if token is not None]
     # Whether a token should be symmetric is only known from a pair in which such a token is.
-    if not odd or not all(any(_KINDS.get(text) in known.kinds for known in symmetric) for text in odd):
+    if not odd or not all(any(_KINDS.get(text) in map(_KINDS.get, p.known) for p in symmetric) for text in odd):
+        return
+    if _are_directions(pair, symmetric):
         return
     other, own = ((token.text if token is not None else "") for token in pair.odd or ())
     what = f"has `{own}` where `{pair.first.name}` has `{other}`" if own and other else _missing(pair, own, other)
@@ -86,6 +88,14 @@ def _asymmetric(pairs: Sequence[_Pair]) -> Iterator[Finding]:
         "change one of them"
     )
     yield RULE.at(pair.place, message, related=[Related(pair.first.span, f"the part of `{pair.first.name}`")])
+
+
+def _are_directions(pair: _Pair, symmetric: Sequence[_Pair]) -> bool:
+    """Whether two parts differ in a sign, of which other pairs have both: as the wheels of a robot, which have the same
+    sign forwards and backwards, and opposite ones when the robot turns."""
+    signs = {token.text if token is not None else "" for token in pair.odd or ()}
+    seen = {sign for other in symmetric for sign in other.known & {"+", "-"} or {""}}
+    return signs <= {"+", "-", ""} and signs <= seen
 
 
 def _missing(pair: _Pair, own: str, other: str) -> str:
@@ -142,10 +152,10 @@ def _compared(text: str, first: _Part, second: _Part, words: tuple[str, str]) ->
     odd = left[begin : len(left) - end], right[begin : len(right) - end]
     if max(map(len, odd)) > 1 or len(left) < _MIN_TOKENS:
         return None
-    kinds = frozenset(_KINDS[token.text] for token in left if token.text in _KINDS)
+    known = frozenset(token.text for token in left if token.text in _KINDS)
     place = right[min(begin, len(right) - 1)].span
     tokens = (odd[0][0] if odd[0] else None, odd[1][0] if odd[1] else None)
-    return _Pair(first, second, tokens if any(odd) else None, place, kinds)
+    return _Pair(first, second, tokens if any(odd) else None, place, known)
 
 
 def _tokens(text: str, span: Span) -> list[_Token]:

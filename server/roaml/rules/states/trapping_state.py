@@ -55,28 +55,11 @@ def _idle(state: State) -> Iterator[Finding]:
 
 
 _ENDS = frozenset(
-    [
-        "aborted",
-        "broken",
-        "crashed",
-        "dead",
-        "done",
-        "emergency",
-        "empty",
-        "end",
-        "ended",
-        "error",
-        "failed",
-        "failure",
-        "fault",
-        "finished",
-        "halted",
-        "lost",
-        "off",
-        "shutdown",
-        "stopped",
-        "terminated",
-    ]
+    (
+        *("aborted", "broken", "crashed", "dead", "done", "emergency", "empty", "end", "ended", "error", "failed"),
+        *("failure", "fault", "finished", "halted", "lost", "off", "shutdown", "stopped", "terminated"),
+        *("arrived", "completed", "delivered", "docked", "landed", "parked", "reached", "succeeded"),
+    )
 )
 _STARTS = frozenset(["boot", "booting", "init", "initial", "initializing", "start", "starting", "startup", "unknown"])
 """Words in the names of states that are probably never left, or never entered again, intentionally."""
