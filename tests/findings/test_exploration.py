@@ -10,6 +10,7 @@ import pytest
 
 from fixture import write_files
 from roaml import api
+from roaml.diagnostics import Severity
 from roaml.explicit import space
 from roaml.project import exploration
 from rule_files import examples
@@ -76,3 +77,18 @@ def test_a_limit_ends_the_exploration_and_is_known(
     assert messages == []
     assert len(searches) == 1
     assert result.snapshot.checker.has_too_many_states(main)
+
+
+@pytest.mark.parametrize(("is_failing", "severity"), [(True, Severity.WARNING), (False, Severity.INFORMATION)])
+def test_a_condition_that_is_checked_too_early_matters_if_an_action_fails(
+    tmp_path: Path, is_failing: bool, severity: Severity
+) -> None:
+    text = examples(CODE, "Bad")[1].text
+    if not is_failing:
+        low = '<bt_tick target="ready" cond="level &lt; 10"><bt_return_status status="FAILURE" /></bt_tick>'
+        assert low in text
+        text = text.replace(low, low.replace("FAILURE", "RUNNING"))
+    write_files(tmp_path, text)
+    [found] = [d for d in api.check([str(tmp_path / "main.xml")]).diagnostics if d.code == CODE]
+    assert found.severity is severity
+    assert is_failing or "`ReactiveSequence`" in found.message

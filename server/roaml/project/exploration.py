@@ -200,8 +200,9 @@ def _never_ticked(
         ):
             continue
         is_missed = not _is_needed(system, by_number, reached, instance, before)
-        if is_missed and not (_has_failing_action(system, by_number, reached) and missed(instance)):
+        if is_missed and not missed(instance):
             continue
+        is_harmless = is_missed and not _has_failing_action(system, by_number, reached)
         node, earlier = _written(analysis, instance.source), _written(analysis, before.source)
         if node is None or earlier is None:
             continue
@@ -210,7 +211,15 @@ def _never_ticked(
         related = [Related(earlier.element.name_span, f"never returns {needed}")] if is_beside else []
         yield (
             instance.source.path,
-            never_ticked.finding(node, earlier, needed, related, is_instant=reached.is_instant, is_missed=is_missed),
+            never_ticked.finding(
+                node,
+                earlier,
+                needed,
+                related,
+                is_instant=reached.is_instant,
+                is_missed=is_missed,
+                is_harmless=is_harmless,
+            ),
         )
 
 

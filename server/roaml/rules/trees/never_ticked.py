@@ -28,24 +28,33 @@ def needed(plugin: str) -> str | None:
 
 
 def finding(
-    node: TreeNode, before: TreeNode, status: str, related: Iterable[Related], *, is_instant: bool, is_missed: bool
+    node: TreeNode,
+    before: TreeNode,
+    status: str,
+    related: Iterable[Related],
+    *,
+    is_instant: bool,
+    is_missed: bool,
+    is_harmless: bool,
 ) -> Finding:
     """The finding that a node is never ticked, because the sibling before it never returns a status.
 
     Args:
         is_instant: whether this is only known if all machines react at once.
         is_missed: whether the sibling would return the status if it were ticked again while later nodes run.
+        is_harmless: whether no action fails nevertheless, so that one check may be enough.
     """
     assumed = " if all machines react at once" if is_instant else ""
     name = before.name.value if before.name is not None else before.type_name
     remedy = "check what decides this status, when it is ticked, and whether an `Inverter` is missing or superfluous"
     if is_missed:
         remedy = (
-            "it would if it were ticked again while later nodes are running, of which one fails; use "
-            "`ReactiveSequence` or `ReactiveFallback` around it"
+            "it would if it were ticked again while later nodes are running; use `ReactiveSequence` or "
+            "`ReactiveFallback` around it if that matters"
         )
     message = f"no run of this system ticks this node{assumed}: `{name}` before it never returns {status}; {remedy}"
-    return RULE.at(node.element.name_span, message, related=related)
+    severity = Severity.INFORMATION if is_harmless else None
+    return RULE.at(node.element.name_span, message, severity=severity, related=related)
 
 
 RULE = Rule("never-ticked", Severity.WARNING, "No run of the system ticks a node of its tree.", whole=True)
