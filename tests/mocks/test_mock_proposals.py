@@ -136,6 +136,19 @@ def test_leaves_that_guard_others_take_no_time_and_let_them_run(
     assert {name: leaves[name] for name in proposed} == proposed
 
 
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        ("<WhileDoElse><Ready/><Go/><Dock/></WhileDoElse>", "and selects that node: mostly the one for SUCCESS"),
+        ("<WhileDoElse><Ready/><Go/></WhileDoElse>", "and mostly lets it run"),
+        ("<ReactiveSequence><Ready/><Go/></ReactiveSequence>", "and mostly lets it run"),
+    ],
+)
+def test_a_guard_that_selects_a_node_stops_none(tmp_path: Path, content: str, reason: str) -> None:
+    ready = next(line for line in lines(tree(tmp_path, content)) if line.startswith("Ready: 0.999 "))
+    assert ready.endswith(f"  # action: it is ticked again while a node behind it runs, {reason}")
+
+
 def test_events_of_the_world_are_proposed_unless_the_tree_sets_them(tmp_path: Path) -> None:
     nodes = "<GoalUpdatedController><Grasp/></GoalUpdatedController>"
     assert list(values(tree(tmp_path, nodes))) == ["GoalUpdatedController", "Grasp"]

@@ -25,6 +25,8 @@ CONDITION_PROBABILITY = 0.5
 GUARD_PROBABILITY = 0.999
 """The probability with which a guard lets the nodes behind it run at a tick."""
 _GUARDS = "it is ticked again while a node behind it runs, and mostly lets it run"
+_SELECTS = "it is ticked again while a node behind it runs, and selects that node: mostly the one for SUCCESS"
+"""Why a guard has its probability: it stops the nodes behind it, or changes between them, as in a WhileDoElse."""
 ACTION = Assumption(0.9, Fraction(1000), "no library describes it: a common action")
 """The assumption about an action of which nothing is known."""
 
@@ -222,7 +224,7 @@ def _assumed(node: ExecutedNode, kind: LeafKind, continuing: frozenset[int]) -> 
             return known
     if continuing and (node.known is None or kind is LeafKind.CONDITION):
         probability = GUARD_PROBABILITY if SUCCESS in continuing else 1 - GUARD_PROBABILITY
-        return Assumption(probability, Fraction(0), _GUARDS)
+        return Assumption(probability, Fraction(0), _SELECTS if len(continuing) > 1 else _GUARDS)
     if kind is LeafKind.CONDITION:
         return Assumption(CONDITION_PROBABILITY, Fraction(0), "no library describes it: both outcomes are as likely")
     if kind is LeafKind.SYNCHRONOUS:
