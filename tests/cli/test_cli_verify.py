@@ -129,6 +129,7 @@ def test_a_value_is_unknown_if_no_trace_is_decided(command: Command, tmp_path: P
     name = write(tmp_path, document(automaton("a", "s", [counts]), variables=[variable("x")], properties=goal))
     done = command("verify", name, "--max-steps", 5, "--method", "adaptive")
     assert "p: undecided: all 100 traces were cut after 5 steps: raise max-steps, or" in done.out
+    assert "the interval is wider" not in done.out, "there is none"
     few = command("verify", name, "--max-steps", 5, "--method", "adaptive", "--max-states", 2).out
     assert few.startswith("p: undecided: all 100 traces were cut after 5 steps: ")
     assert "note: the minimum of p over all schedulers is undecided" in few

@@ -265,7 +265,7 @@ def _estimated_lines(
         lines += [f"  {about}"] if about else []
     if estimated.is_interrupted:
         lines.append(f"  interrupted; {_SO_FAR if answer.tally.traces else _NOTHING_SO_FAR}")
-    elif answer.is_too_wide and answer.tally.traces:
+    elif answer.is_too_wide and answer.tally.undecided < answer.tally.traces:
         lines.append("  the interval is wider than requested (--epsilon)")
     return lines
 
