@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.expr.format import format_expr
+from roaml.expr.infer import constant
 from roaml.expr.operators import Operator, OperatorKind
 from roaml.expr.tree import Binary, Expr, is_draw, walk
 from roaml.jani import expressions as jani
@@ -16,6 +17,7 @@ from roaml.jani.properties import walk as walk_formula
 from roaml.model.property_file import WrittenProperty, WrittenScope
 from roaml.model.property_links import LinkedFile
 from roaml.model.syntax import Expression
+from roaml.model.values.evaluate import place_of
 from roaml.observers.properties import Pattern
 from roaml.rules.rule import MachineContext, PropertiesContext, Rule
 from roaml.rules.support.compared_numbers import required
@@ -31,6 +33,27 @@ def check(context: MachineContext) -> Iterator[Finding]:
     for value in context.typed.values:
         if isinstance(value.value, Expression) and not value.value.broken:
             yield from _repeated(value.value.tree)
+            yield from _equal_twice(value.value.tree)
+
+
+def _equal_twice(tree: Expr) -> Iterator[Finding]:
+    """Report a field that must be equal to a number and, in the same chain of `&&`, to something else: it is then the
+    other one that is compared with the number."""
+    nested: set[int] = set()
+    for node in walk(tree):
+        if not isinstance(node, Binary) or node.operator is not Operator.AND or id(node) in nested:
+            continue
+        numbers: dict[str, Expr] = {}
+        others: dict[str, Expr] = {}
+        for operand in _operands(node, nested):
+            if isinstance(operand, Binary) and operand.operator is Operator.EQUAL:
+                for tested, other in ((operand.left, operand.right), (operand.right, operand.left)):
+                    place = place_of(tested)
+                    if place is not None and place.startswith("_"):
+                        (others if constant(other) is None else numbers).setdefault(place, operand)
+        for place in sorted(numbers.keys() & others.keys()):
+            message = f"`{place}` must also be equal to something else in this `&&`; did you mean another field?"
+            yield RULE.at(numbers[place].span, message, related=[Related(others[place].span, "compared here, too")])
 
 
 def check_properties(file: LinkedFile) -> Iterator[Finding]:
@@ -167,7 +190,7 @@ def _finding(place: Span, earlier: Span, operator: str, what: str) -> Finding:
 RULE = Rule(
     "repeated-operand",
     Severity.WARNING,
-    "Two operands of `&&` or `||` are the same.",
+    "Two operands of `&&` or `||` are the same, or test the same field.",
     machine=check,
     properties=check_jani,
     xml_properties=check_properties,
