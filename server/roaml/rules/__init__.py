@@ -154,6 +154,7 @@ from roaml.rules.states import (
     equal_branches,
     event_beside_eventless,
     probability_sum,
+    reversed_limits,
     shadowed_branch,
     shadowed_transition,
     time_stops,
