@@ -87,7 +87,10 @@ def _sends(step: BehaviorStep, name: str) -> bool:
 
 
 def _leaves(behavior: Behavior, step: BehaviorStep, name: str, waiting: Collection[str]) -> bool:
-    """Whether a step leaves a state that waits for a response, or sends a request, without waiting for the response."""
+    """Whether a step leaves a state that waits for a response, or sends a request, without waiting for the response.
+    After the response to another request, such as one to stop, the server probably forgets the earlier one."""
+    if step.event is not None and step.event.part is ProtocolPart.RESPONSE:
+        return False
     before = behavior.configurations[step.source]
     begins = before.state in waiting and before.phase(Subject.RESPONSE, name) is Phase.AWAITED
     begins = begins or (_sends(step, name) and before.phase(Subject.RESPONSE, name) is None)
