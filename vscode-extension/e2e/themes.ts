@@ -94,7 +94,8 @@ export function walkthroughPictures(stage: Stage): void {
             await window.run("View: Toggle Panel Visibility");
             await window.openFile("main.xml");
             const toolbar = page.locator(".debug-toolbar");
-            await window.repeat(() => window.press("F5"), toolbar);
+            await window.pressBound("F5");
+            await toolbar.waitFor();
             await page
                 .getByText(/step \d+, /)
                 .first()
