@@ -92,8 +92,6 @@ export class ExitChips {
     /** Show the chips of a view, beside the map. */
     look(sight: Sight, width: number, height: number, map: Corner | undefined): void {
         const { top, bottom } = this.bandsOf(sight, width, height);
-        this.bands.top.classList.toggle("hidden", top === 0);
-        this.bands.bottom.classList.toggle("hidden", bottom === 0);
         const inner = { ...sight, y: sight.y + top / sight.scale };
         const named = exitsOf(this.lines, this.boxes, inner, width, height - top - bottom).filter(
             ({ node }) => this.label(node) !== "",
@@ -104,6 +102,7 @@ export class ExitChips {
             const own = named
                 .filter((exit) => exit.side === side)
                 .map((exit) => (isRow ? exit : { ...exit, at: exit.at + top }));
+            if (isRow) this.bands[side].classList.toggle("hidden", own.length === 0);
             if (own.length === 0) continue;
             const [low, high] = limits(side, isRow ? width : height, map);
             const sizeOf = (chip: Chip) => (isRow ? this.sizeOf(this.text(chip)) : HEIGHT);
