@@ -2,8 +2,8 @@
 """Findings about a text, as plain values.
 
 - A `Finding` is about one file and has no path: parsers and rules produce it, and it can be memoised.
-- A place in *another* file is identified by a `Symbol`, never by a span, so a memoised finding stays correct when the
-  other file is edited; `roaml.project` resolves the symbol when a `Diagnostic` is published.
+- A place in *another* file is identified by a `Symbol`, so a memoised finding stays correct when the other file is
+  edited; `roaml.project` resolves the symbol when a `Diagnostic` is published.
 """
 
 from __future__ import annotations
@@ -68,9 +68,10 @@ class Symbol(Record, frozen=True):
 
 
 class Related(Record, frozen=True):
-    """A further place that explains a finding: a span in the same file, or a symbol in any file."""
+    """A further place that explains a finding: a span in the same file, or a symbol in any file. Only a finding that is
+    computed again whenever a file changes may contain a location in this file."""
 
-    place: Span | Symbol
+    place: Span | Symbol | Location
     message: str
 
 

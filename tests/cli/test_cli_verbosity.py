@@ -56,7 +56,7 @@ def test_a_verbose_check_names_systems_that_are_too_large_to_be_explored(
     assert "too many states" not in command("check", main, "--verbose").err
     monkeypatch.setattr(exploration, "MAX_STATES", 1)
     assert "main.xml has too many states to be explored, so these" in command("check", main, "--verbose").err
-    assert "too many states" not in command("check", main, "--verbose", "--ignore", "never-ticked").err
+    assert "too many states" not in command("check", main, "--verbose", "--ignore", "never-ticked,never-taken").err
 
 
 def test_a_quiet_verification_writes_values_verdicts_and_warnings(command: Command, tmp_path: Path) -> None:

@@ -13,6 +13,8 @@ from roaml import api
 from roaml.diagnostics import Severity
 from roaml.explicit import space
 from roaml.project import exploration
+from roaml.project.settings import Settings
+from roaml.project.workspace import Workspace
 from rule_files import examples
 
 CODE = "never-ticked"
@@ -92,3 +94,47 @@ def test_a_condition_that_is_checked_too_early_matters_if_an_action_fails(
     [found] = [d for d in api.check([str(tmp_path / "main.xml")]).diagnostics if d.code == CODE]
     assert found.severity is severity
     assert is_failing or "`ReactiveSequence`" in found.message
+
+
+def test_findings_in_unchanged_files_remain_until_the_next_exploration(tmp_path: Path) -> None:
+    write_files(tmp_path, examples(CODE, "Bad")[0].text)
+    workspace = Workspace((str(tmp_path),), Settings())
+    tree, battery = str(tmp_path / "tree.xml"), str(tmp_path / "battery.ascxml")
+
+    def of(path: str, *, explores: bool = False) -> list[str]:
+        found = workspace.snapshot().checker.diagnostics(path, explores=explores)
+        return [d.message for d in found if d.code == CODE]
+
+    def change(path: str, old: str, new: str) -> None:
+        workspace.open(path, Path(path).read_text(encoding="utf-8").replace(old, new))
+
+    assert of(tree) == []
+    before = of(tree, explores=True)
+    assert len(before) == 1
+    change(battery, "level - 10", "level - 1")
+    assert of(tree) == before
+    change(battery, "level - 10", "level - no_such_variable")
+    assert of(tree, explores=True) == before
+    change(battery, "level - 10", "level - 90")
+    assert of(tree) == before
+    assert of(tree, explores=True) == []
+    workspace.close(battery)
+    assert of(tree, explores=True) == before
+    change(tree, "<Recharge />", "<Recharge /> ")
+    assert of(tree) == []
+
+
+def test_related_places_in_changed_files_are_left_out(tmp_path: Path) -> None:
+    write_files(tmp_path, examples("never-taken", "Bad")[0].text)
+    workspace = Workspace((str(tmp_path),), Settings())
+    dispenser, order = str(tmp_path / "dispenser.ascxml"), str(tmp_path / "order.ascxml")
+
+    def related(*, explores: bool = False) -> set[str]:
+        found = workspace.snapshot().checker.diagnostics(dispenser, explores=explores)
+        [finding] = [d for d in found if d.code == "never-taken"]
+        return {Path(place.location.path).name for place in finding.related}
+
+    assert related(explores=True) == {"dispenser.ascxml", "order.ascxml", "tree.xml"}
+    workspace.open(order, "\n" + Path(order).read_text(encoding="utf-8"))
+    assert related() == {"dispenser.ascxml", "tree.xml"}
+    assert related(explores=True) == {"dispenser.ascxml", "order.ascxml", "tree.xml"}

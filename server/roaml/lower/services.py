@@ -11,7 +11,7 @@ from roaml.model.system import Channel
 from roaml.roles import ProtocolPart
 from roaml.scxml.events import Role
 from roaml.scxml.model import Automaton, Send, State
-from roaml.scxml.names import SERVICE_HANDLER_PREFIX, safe_name, sanitise
+from roaml.scxml.names import SERVICE_HANDLER_PREFIX, handling, sanitise
 
 _PARTS = (ProtocolPart.REQUEST, ProtocolPart.RESPONSE)
 
@@ -24,7 +24,7 @@ def service_handler(service: Channel, program: TranslatableSystem) -> Automaton:
     waiting, processing = [], []
     for client in service.users:
         place = declared_at(client, program)
-        busy = f"processing_client_{safe_name(client.automaton.name)}"
+        busy = handling(client.automaton.name)
         asked = copied(request, sent_parameters(client, ProtocolPart.REQUEST), place)
         passed_on = Send(events.request, stored(request, place), place)
         waiting.append(on(events.request_of(client.automaton), busy, (*asked, passed_on), place))

@@ -85,7 +85,7 @@ class RuleRunner:
 
         Args:
             explores: whether the reachable states of its systems are explored. Otherwise the findings that need them
-                are contained if the systems have been explored as they are.
+                are contained if the systems have been explored as they are, or before other files were changed.
         """
         file = self.checked_file(path)
         if file is None:
@@ -93,8 +93,10 @@ class RuleRunner:
         known = [self._findings(subject) for subject in file.subjects]
         findings = dict.fromkeys(finding for of_system in known for finding in of_system if self._is_selected(finding))
         systems = dict.fromkeys(subject.system_path for subject in file.subjects)
-        explored = [self._explored(system, explores=explores) for system in systems if system is not None]
-        reached = _in_all(path, explored)
+        explored = {s: self._explored(s, explores=explores) for s in systems if s is not None}
+        reached = _in_all(
+            (self._before(system, path) if found is None else found.get(path, ()) for system, found in explored.items())
+        )
         known.append(reached)
         blamed = {f.span for f in findings if self._severity(f) >= Severity.WARNING}
         findings.update(dict.fromkeys(f for f in reached if f.span not in blamed and self._is_selected(f)))
@@ -102,7 +104,7 @@ class RuleRunner:
         linked = [subject.system for subject in file.subjects]
         if hidden and all(system is not None and system.complete for system in linked):
             of_all = [finding for of_system in known for finding in of_system]
-            unexplored = exploration.CODES if None in explored else frozenset[str]()
+            unexplored = exploration.CODES if None in explored.values() else frozenset[str]()
             unused = self._unused(file.source, of_all, hidden, unexplored)
             findings.update(dict.fromkeys(finding for finding in unused if self._is_selected(finding)))
         published = [(file.source, finding, self._severity(finding)) for finding in _visible(findings, hidden)]
@@ -138,9 +140,22 @@ class RuleRunner:
             self._contents[system] = exploration.content_of(self.analysis, system)
         content = self._contents[system]
         if explores:
-            return memo.get("exploration", system, content, lambda: self._explore(system))
+            found = memo.get("exploration", system, content, lambda: self._explore(system))
+            if found is not None or not self.errors(system):
+                memo.get("explored", system, content, lambda: found or {})
+            return found
         known: Mapping[str, tuple[Finding, ...]] | None = memo.known("exploration", system, content)
         return known
+
+    def _before(self, system: str, path: str) -> tuple[Finding, ...] | None:
+        """The findings in a file that followed from the reachable states of a system before other files were changed.
+        They are kept until the states are explored again, also while the system has errors; `None` if there were
+        none."""
+        last = self.analysis.memo.last("explored", system)
+        if last is None or path not in last[1]:
+            return None
+        content, found = last
+        return exploration.still_true(found[path], path, content, self.analysis.source)
 
     def has_too_many_states(self, system: str) -> bool:
         """Whether a system without errors is too large for the rules that need its reachable states."""
@@ -304,27 +319,32 @@ class RuleRunner:
             yield Diagnostic(
                 *(source.path, finding.code, severity, finding.span, finding.message),
                 fixes=tuple(laid_out(source, fix) for fix in finding.fixes),
-                related=tuple(_related(source, finding, places)),
+                related=tuple(_related(source, finding, places, self.analysis.source)),
                 tags=finding.tags,
                 facts=finding.facts,
                 source=source,
             )
 
 
-def _in_all(path: str, explored: Iterable[Mapping[str, tuple[Finding, ...]] | None]) -> tuple[Finding, ...]:
+def _in_all(explored: Iterable[tuple[Finding, ...] | None]) -> tuple[Finding, ...]:
     """The findings in a file that follow from the reachable states of all its systems whose states are known: another
     system may reach what one does not."""
-    known = [found.get(path, ()) for found in explored if found is not None]
+    known = [found for found in explored if found is not None]
     return tuple(finding for finding in known[0] if all(finding in other for other in known)) if known else ()
 
 
 def _related(
-    source: SourceFile, finding: Finding, places: Mapping[Symbol, tuple[Location, SourceFile]]
+    source: SourceFile,
+    finding: Finding,
+    places: Mapping[Symbol, tuple[Location, SourceFile]],
+    source_of: Callable[[str], SourceFile | None] = lambda _: None,
 ) -> Iterator[RelatedPlace]:
     """The related places of a finding. Symbols that no longer exist are left out."""
     for related in finding.related:
         if isinstance(related.place, Span):
             yield RelatedPlace(Location(source.path, related.place), related.message, source)
+        elif isinstance(related.place, Location):
+            yield RelatedPlace(related.place, related.message, source_of(related.place.path))
         elif related.place in places:
             location, text = places[related.place]
             yield RelatedPlace(location, related.message, text)

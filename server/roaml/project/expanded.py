@@ -79,6 +79,8 @@ class Expanded(Record, Generic[A], frozen=True, eq=False):
     def _related(self, text: ExpandedText | None, related: Related) -> Related:
         if isinstance(related.place, Symbol):
             return Related(self.symbol(related.place), related.message)
+        if isinstance(related.place, Location):
+            return Related(self.location(related.place), related.message)
         return related if text is None else Related(text.origin(related.place), related.message)
 
     def _fix(self, text: ExpandedText, fix: Fix) -> Fix | None:

@@ -13,8 +13,8 @@ then either. This smaller search comes first, and ends most checks: without a fi
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterator, Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, TypeAlias
 
 from roaml.diagnostics import Finding, Related
 from roaml.interruption import checkpoint
@@ -28,16 +28,19 @@ from roaml.model.tree import TreeNode
 from roaml.project.analysis import Analysis
 from roaml.project.optional_branches import ByNumber, ends_only_in_failure, is_required, reactive
 from roaml.project.translation import network_of
-from roaml.record import Record
+from roaml.record import Record, replace
+from roaml.rules.states import never_taken
 from roaml.rules.trees import never_ticked
 from roaml.scxml.names import STATUS_NAMES, TreeEventKind, read_tree_event, received_by
-from roaml.text import Location
+from roaml.text import Location, SourceFile, Span
 
 if TYPE_CHECKING:
     from roaml.jani.model import Model
+    from roaml.project.blame import Blame
+    from roaml.project.explored_steps import ClientRequests, ExploredSteps, ExploredWay
     from roaml.smc.model import ModelChecker
 
-CODES = frozenset((never_ticked.RULE.code,))
+CODES = frozenset((never_taken.RULE.code, never_ticked.RULE.code))
 """The codes of the rules that need an exploration."""
 MAX_PARTS = 10_000
 """The maximum number of parts of a translation that is explored (`roaml.model.size.Size.parts`)."""
@@ -52,11 +55,15 @@ class Reached(Record, frozen=True):
         events: the events that an automaton can receive -> whether it receives them in some state.
         statuses: number of a node of the tree -> the statuses that it returns in some state.
         is_instant: whether this is only known if machines react at once.
+        model: the model that was explored.
+        steps: the steps of all automata.
     """
 
     events: Mapping[str, bool]
     statuses: Mapping[int, frozenset[str]]
     is_instant: bool
+    model: Model
+    steps: Callable[[], ExploredSteps]
 
     @property
     def ticks(self) -> Mapping[int, bool]:
@@ -83,7 +90,7 @@ def findings_of(analysis: Analysis, path: str) -> Mapping[str, tuple[Finding, ..
     nodes = {instance.number: instance for instance in system.instances}
     missed = functools.cache(functools.partial(_is_missed, plain, path, nodes))
     for reached in _explored(plain, path):
-        known = list(_never_ticked(plain, system, nodes, reached, missed))
+        known = list(_merged(_all(plain, system, nodes, reached, missed)))
         if not known:
             break
     if known is None:
@@ -98,12 +105,38 @@ def findings_of(analysis: Analysis, path: str) -> Mapping[str, tuple[Finding, ..
     return {place: tuple(dict.fromkeys(findings)) for place, findings in found.items()}
 
 
-def content_of(analysis: Analysis, path: str) -> object:
+Content: TypeAlias = "tuple[tuple[SourceFile | None, ...], object]"
+"""The texts on which the findings of a system depend, and the data files."""
+
+
+def content_of(analysis: Analysis, path: str) -> Content:
     """What the findings of a system depend on, as a value that is compared."""
     expanded = analysis.expanded(path)
     data = () if expanded is None else expanded.expansion.data
     files = dict.fromkeys((*analysis.files_of(path), *analysis.interface_files_of(path)))
     return tuple(map(analysis.source, files)), data
+
+
+def still_true(
+    findings: Iterable[Finding], path: str, content: Content, now: Callable[[str], SourceFile | None]
+) -> tuple[Finding, ...]:
+    """The findings in a file that an exploration has found before other files of the system were changed; none if the
+    file was changed itself.
+
+    Args:
+        content: the content at the exploration.
+        now: path of a file -> its text now.
+    """
+    unchanged = {source.path for source in content[0] if source is not None and source == now(source.path)}
+    if path not in unchanged:
+        return ()
+    return tuple(
+        replace(finding, related=tuple(r for r in finding.related if _is_in(r, unchanged))) for finding in findings
+    )
+
+
+def _is_in(related: Related, paths: Collection[str]) -> bool:
+    return not isinstance(related.place, Location) or related.place.path in paths
 
 
 def _parts(size: Size) -> int:
@@ -134,8 +167,35 @@ def _explored(analysis: Analysis, path: str) -> Iterator[Reached]:
 
 
 def _reached(model: Model, *, is_instant: bool) -> Reached | None:
-    """What a model reaches; `None` if there are too many states, or if an undefined operation is executed, behind which
-    no states are known."""
+    """What a model reaches; `None` if it cannot be explored."""
+    searched = _searched(model)
+    if searched is None:
+        return None
+    events, returned = _events(*searched), _statuses(*searched)
+    return Reached(events, returned, is_instant, model, lambda: _steps(model, *searched))
+
+
+def _steps(model: Model, checker: ModelChecker, taken: bytes) -> ExploredSteps:
+    from roaml.project.explored_steps import ExploredSteps  # noqa: PLC0415 - see `_explored`
+
+    return ExploredSteps(model, _ways(checker, taken))
+
+
+def _while_handled(model: Model, requests: ClientRequests) -> ExploredSteps | None:
+    from roaml.project.request_context import steps_while_handled  # noqa: PLC0415 - only some findings need it
+
+    return steps_while_handled(model, requests, _ways_of)
+
+
+def _ways_of(model: Model) -> list[ExploredWay] | None:
+    """The steps of a model; `None` if it cannot be explored."""
+    searched = _searched(model)
+    return None if searched is None else list(_ways(*searched))
+
+
+def _searched(model: Model) -> tuple[ModelChecker, bytes] | None:
+    """A model checker, and for each way of an edge whether it is taken. `None` if there are too many states, or if an
+    undefined operation is executed, behind which no states are known."""
     from roaml.explicit.independence import can_be_reduced  # noqa: PLC0415
     from roaml.explicit.space import LimitError, StateLimits, explore  # noqa: PLC0415
     from roaml.smc.fault import FaultError  # noqa: PLC0415
@@ -151,8 +211,15 @@ def _reached(model: Model, *, is_instant: bool) -> Reached | None:
         return None
     if space.problem is not None:
         return None
-    taken = bytes(memoryview(space.search.taken))
-    return Reached(_events(checker, taken), _statuses(checker, taken), is_instant)
+    return checker, bytes(memoryview(space.search.taken))
+
+
+def _ways(checker: ModelChecker, taken: bytes) -> Iterator[ExploredWay]:
+    from roaml.project.explored_steps import ExploredWay  # noqa: PLC0415 - see `_explored`
+
+    legend, automata = checker.legend, checker.automata
+    for (edge, destination), (source, _), is_taken in zip(legend.ways, legend.moves, taken, strict=False):
+        yield ExploredWay(automata[legend.locations[source][0]], edge, destination, is_taken != 0)
 
 
 def _events(checker: ModelChecker, taken: bytes) -> Mapping[str, bool]:
@@ -178,7 +245,12 @@ def _statuses(checker: ModelChecker, taken: bytes) -> Mapping[int, frozenset[str
 
 
 def _never_ticked(
-    analysis: Analysis, system: System, by_number: ByNumber, reached: Reached, missed: Callable[[Instance], bool]
+    analysis: Analysis,
+    system: System,
+    by_number: ByNumber,
+    reached: Reached,
+    missed: Callable[[Instance], bool],
+    blame: Blame,
 ) -> Iterator[tuple[str, Finding]]:
     """The paths of files, and findings about nodes in them that are never ticked although their parents are. A place
     that several instances share is reported if none of them is ticked.
@@ -206,10 +278,10 @@ def _never_ticked(
         node, earlier = _written(analysis, instance.source), _written(analysis, before.source)
         if node is None or earlier is None:
             continue
-        # A finding refers to places in its own file; the root of another tree may be in another file.
-        is_beside = instance.source.path == before.source.path
-        related = [Related(earlier.element.name_span, f"never returns {needed}")] if is_beside else []
-        yield (
+        related = [Related(Location(before.source.path, earlier.element.name_span), f"never returns {needed}")]
+        effects = [*related, Related(Location(instance.source.path, node.element.name_span), "never ticked")]
+        cause = None if is_missed else blame.for_status(before, needed, effects)
+        yield cause or (
             instance.source.path,
             never_ticked.finding(
                 node,
@@ -241,6 +313,34 @@ def _is_missed(analysis: Analysis, path: str, nodes: ByNumber, instance: Instanc
     tick."""
     other = reactive(analysis, path, instance, nodes)
     return other is not None and any(again.ticks.get(instance.number, False) for again in _explored(other, path))
+
+
+def _all(
+    analysis: Analysis, system: System, nodes: ByNumber, reached: Reached, missed: Callable[[Instance], bool]
+) -> Iterator[tuple[str, Finding]]:
+    """The paths of files, and the findings in them."""
+    from roaml.project.blame import Blame  # noqa: PLC0415 - see `_explored`
+
+    blame = Blame(
+        analysis,
+        system,
+        reached.steps(),
+        is_instant=reached.is_instant,
+        steps_while_handled=lambda requests: _while_handled(reached.model, requests),
+    )
+    yield from _never_ticked(analysis, system, nodes, reached, missed, blame)
+    yield from blame.for_leaves([number for number, is_ticked in reached.ticks.items() if is_ticked])
+    yield from blame.for_clients()
+
+
+def _merged(found: Iterable[tuple[str, Finding]]) -> Iterator[tuple[str, Finding]]:
+    """Findings in files; those that differ only in their related places become one."""
+    known: dict[tuple[str, str, Span, str], Finding] = {}
+    for path, finding in found:
+        key = (path, finding.code, finding.span, finding.message)
+        related = known[key].related if key in known else ()
+        known[key] = replace(finding, related=tuple(dict.fromkeys((*related, *finding.related))))
+    return ((key[0], finding) for key, finding in known.items())
 
 
 def _written(analysis: Analysis, source: NodeSource) -> TreeNode | None:

@@ -50,6 +50,10 @@ class Memo:
         known = self._slots.get((computation, subject))
         return known[1] if known is not None and known[0] == key else None
 
+    def last(self, computation: str, subject: Hashable) -> tuple[Any, Any] | None:
+        """The key and the result of `computation` for `subject` that are stored; `None` if there are none."""
+        return self._slots.get((computation, subject))
+
     def inner(self, name: str) -> Memo:
         """The cache named `name` inside of this cache, for the analysis of other texts under the same paths."""
         if name not in self._inner:

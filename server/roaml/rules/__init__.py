@@ -153,6 +153,7 @@ from roaml.rules.states import (
     duplicate_state,
     equal_branches,
     event_beside_eventless,
+    never_taken,
     probability_sum,
     reversed_limits,
     shadowed_branch,

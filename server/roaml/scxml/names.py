@@ -303,6 +303,11 @@ _INTERFACE_EVENTS = tuple(
 )
 
 
+def handling(client: str) -> str:
+    """The location of the handler of a service while the server handles a request of the automaton `client`."""
+    return f"processing_client_{safe_name(client)}"
+
+
 def blackboard_request(tree: str) -> str:
     """The name of the event that asks for the values of the blackboard of a tree; `tree` is its name in the system, ""
     if it has none."""
