@@ -294,3 +294,53 @@ def test_protection_against_wrong_requests(title: str, severity: Severity, tmp_p
     [case] = [case for case in cases_of_rules() if (case.subject, case.title) == ("constant-condition", title)]
     diagnostics, _ = check_text(tmp_path, case.text)
     assert {d.severity for d in diagnostics if d.code == "constant-condition"} == {severity}
+
+
+ONCE = """
+-- main.xml --
+<roaml>
+    <parameters><max_time value="5" unit="s" /></parameters>
+    <behavior_tree>
+        <input type="bt.cpp-xml" src="tree.xml" />
+        <input type="bt-plugin-ascxml" src="once.ascxml" />
+    </behavior_tree>
+    <properties><input type="jani" src="properties.jani" /></properties>
+</roaml>
+-- properties.jani --
+{"properties": []}
+-- tree.xml --
+<root BTCPP_format="4"><BehaviorTree ID="Main"><Once><AlwaysSuccess /></Once></BehaviorTree></root>
+-- once.ascxml --
+<ascxml name="Once" version="1.0" initial="configured">
+    <bt_declare_port_in key="CHILDREN_COUNT" type="int8" />
+    <datamodel><data id="count" type="int8"><expr><bt_get_input key="CHILDREN_COUNT" /></expr></data></datamodel>
+    <state id="configured"><transition cond="CONDITION" target="ready" /><transition target="wrong" /></state>
+    <state id="wrong"><transition target="dead" /></state>
+    <state id="dead" />
+    <state id="ready">
+        <bt_tick target="ticked"><bt_tick_child id="0" /></bt_tick>
+        <bt_halt target="halting"><bt_halt_child id="0" /></bt_halt>
+    </state>
+    <state id="ticked">
+        <bt_child_status id="0" cond="_bt.status == SUCCESS" target="ready">
+            <bt_return_status status="SUCCESS" />
+        </bt_child_status>
+        <bt_child_status id="0" target="ready"><bt_return_status status="RUNNING" /></bt_child_status>
+    </state>
+    <state id="halting"><bt_child_halted id="0" target="ready"><bt_return_halted /></bt_child_halted></state>
+</ascxml>
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "severity"),
+    [
+        pytest.param(
+            "CONDITION", "count == 1", Severity.WARNING, id="a condition decides whether the state is entered"
+        ),
+        pytest.param('<transition cond="CONDITION" target="ready" />', "", Severity.ERROR, id="it is always entered"),
+    ],
+)
+def test_a_tick_in_a_dead_state(old: str, new: str, severity: Severity, tmp_path: Path) -> None:
+    diagnostics, _ = check_text(tmp_path, ONCE.replace(old, new))
+    assert [d.severity for d in diagnostics if d.code == "unanswered-tick"] == [severity]

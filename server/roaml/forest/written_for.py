@@ -20,7 +20,7 @@ _CPP = library(BEHAVIORTREE_CPP)
 OLD_ATTRIBUTES = ("__autoremap", "__shared_blackboard")
 _OLD_TAGS = (
     *("SubTreePlus", *_CPP.renamed, *(name for name, node in _CPP.nodes.items() if node.until)),
-    *(name for name in _CPP.absent if name.startswith("BlackboardCheck")),
+    *(name for name in _CPP.absent if name.startswith("BlackboardCheck") or name == "ManualSelector"),
 )
 
 

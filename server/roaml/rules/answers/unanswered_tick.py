@@ -10,6 +10,7 @@ from roaml.edit.elements import after, last_in
 from roaml.language import HL_SCXML
 from roaml.model.behavior.explore import Behavior
 from roaml.model.behavior.phases import TICK, Phase
+from roaml.model.machine import Chart
 from roaml.model.system import SystemAutomaton
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
@@ -83,7 +84,9 @@ def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Syste
                 f"a tick that arrives in the state `{waiting.name}` is never handled, so the tree waits for ever; "
             )
             message += "add a `<bt_tick>`"
-        severity = Severity.WARNING if waiting.needs_time or waiting.tree_status is Phase.ENDED else None
+        is_open = waiting.needs_time or waiting.tree_status is Phase.ENDED
+        is_open = is_open or waiting.name not in _without_conditions(behavior.chart)
+        severity = Severity.WARNING if is_open else None
         fixes = _take(context, waiting.state.element)
         yield RULE.at(waiting.span, message, *fixes, severity=severity)
     for state in running_without(behavior, ProtocolPart.BT_TICK):
@@ -93,6 +96,25 @@ def _not_taken(context: MachineContext, behavior: Behavior, automata: list[Syste
                 "other states; a tick that arrives there waits; add a `<bt_tick>` that returns RUNNING"
             )
             yield RULE.at(state.id.span, message, *_take(context, state.element), severity=Severity.WARNING)
+
+
+def _without_conditions(chart: Chart) -> set[str]:
+    """The states that a machine can enter without a condition. A condition decides about a handler, and about later
+    handlers of the same event. It may never hold, as one that tests the number of children."""
+    states = {state.id.value: state for state in chart.states if state.id is not None}
+    entered = {chart.initial.value} if chart.initial is not None else set(states)
+    waiting = [states[name] for name in entered & states.keys()]
+    while waiting:
+        conditional: set[object] = set()
+        for handler in waiting.pop().handlers:
+            event = handler.trigger, handler.event.value if handler.event is not None else ""
+            if handler.cond is not None:
+                conditional.add(event)
+            elif event not in conditional:
+                names = {to.state.value for to in handler.targets if to.state is not None} - entered
+                entered |= names
+                waiting += [states[name] for name in names & states.keys()]
+    return entered
 
 
 def _take(context: MachineContext, state: object) -> Iterator[Fix]:

@@ -66,7 +66,10 @@ def _misspelled(machine: Machine) -> Iterator[tuple[Element, Span]]:
                 yield element, element.name_span
             continue
         for attribute in element.attributes:
-            if attribute.name not in type_.attributes and close_names(attribute.name, type_.attributes, 1):
+            is_foreign = ":" in attribute.name  # the attribute of another tool, which has no meaning here
+            if is_foreign or attribute.name in type_.attributes:
+                continue
+            if close_names(attribute.name, type_.attributes, 1):
                 yield element, attribute.name_span
 
 

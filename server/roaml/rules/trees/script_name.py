@@ -30,7 +30,10 @@ def _untranslated(context: TreeContext) -> Iterator[Finding]:
         tree = next(
             tree for tree in context.file.trees if tree.element.span.start <= span.start < tree.element.span.end
         )
-        close = tuple(filter(None, (nearest_name(name, _created(tree)),)))
+        created = _created(tree)
+        if name in created:
+            continue  # by a node that cannot be translated, which another rule reports
+        close = tuple(filter(None, (nearest_name(name, created),)))
         hint = did_you_mean(close) or "; a script, a port or a `<SubTree>` of the tree must set it"
         yield RULE.at(span, f"{_NOTHING} `{name}`{hint}", *replacements(span, close), severity=Severity.ERROR)
 
