@@ -8,11 +8,14 @@ from __future__ import annotations
 import math
 import re
 from collections import defaultdict
+from pathlib import Path
 
 import pytest
 
+from checked import check_text, of_rule
+from roaml.diagnostics import Severity
 from roaml.libraries import library
-from roaml.libraries.node import Node, Port
+from roaml.libraries.node import FormerPort, Node, Port
 from roaml.roles import Direction, NodeKind
 
 NODES = tuple(library("nav2").nodes.values())
@@ -202,3 +205,22 @@ def test_results_are_written() -> None:
     for node in ("ComputeRoute", "ComputeAndTrackRoute"):
         assert {directions[node, port] for port in ("route", "path")} == {Direction.OUT}
     assert directions["PersistentSequence", "current_child_idx"] is Direction.INOUT
+
+
+FORMER = [(node, port) for node in NODES for port in node.former]
+
+
+@pytest.mark.parametrize(("node", "port"), FORMER, ids=[f"{node.name}.{port.name}" for node, port in FORMER])
+def test_former_ports_are_no_ports_and_warnings_keep_trees_executable(
+    node: Node, port: FormerPort, tmp_path: Path
+) -> None:
+    assert node.port(port.name) is None
+    assert port.release in ("Humble", "Iron", "Jazzy", "Kilted")
+    assert not port.now or node.port(port.now) is not None
+    tag = f'<{node.name} {port.name}="x"/>'
+    tree = f'<root><BehaviorTree ID="A"><Sequence><ComputePathToPose/>{tag}</Sequence></BehaviorTree></root>'
+    text = f"-- tree.xml --\n{tree}\n"
+    found = of_rule(check_text(tmp_path, text)[0], "unknown-port")
+    assert [(one.severity, f"ROS 2 {port.release} has it" in one.message) for one in found] == [
+        (Severity.WARNING, True)
+    ]

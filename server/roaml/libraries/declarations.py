@@ -9,7 +9,7 @@ from typing import Any
 
 from lxml import etree
 
-from roaml.libraries.node import Absent, Library, Node, Port, PortLimits, Renamed
+from roaml.libraries.node import Absent, FormerPort, Library, Node, Port, PortLimits, Renamed
 from roaml.roles import UNBOUNDED, Direction, NodeKind
 
 
@@ -53,6 +53,10 @@ def _node(element: Any, ports: tuple[Port, ...], library_name: str) -> Node:
         element.get("in-systems", ""),
         element.get("succeeds") == "true",
         library_name,
+        tuple(
+            FormerPort(port.get("name"), port.get("release"), port.get("now", ""))
+            for port in element.iterchildren("former")
+        ),
     )
 
 

@@ -71,6 +71,19 @@ class Port(Record, frozen=True, omit_defaults=True):
     written_by: tuple[str, ...] = ()
 
 
+class FormerPort(Record, frozen=True, omit_defaults=True):
+    """A port that a node had in an earlier release of its library.
+
+    Attributes:
+        release: a release of ROS 2 whose library has the port, such as `Humble`.
+        now: the port that replaces it, or "".
+    """
+
+    name: str
+    release: str
+    now: str = ""
+
+
 class Node(Record, frozen=True, dict=True, omit_defaults=True):
     """A node that trees can use.
 
@@ -86,6 +99,7 @@ class Node(Record, frozen=True, dict=True, omit_defaults=True):
         program_only: whether the translation of the node exists only for trees whose nodes are executed as the library
             executes them (docs/spec/nodes.md#library).
         in_systems: how the node differs in trees of systems, as a sentence, or "".
+        former: the ports that only earlier releases of the library have.
     """
 
     name: str
@@ -101,6 +115,7 @@ class Node(Record, frozen=True, dict=True, omit_defaults=True):
     in_systems: str = ""
     succeeds: bool = False
     behaviour: str = ""
+    former: tuple[FormerPort, ...] = ()
 
     @property
     def is_synchronous(self) -> bool:
@@ -113,6 +128,9 @@ class Node(Record, frozen=True, dict=True, omit_defaults=True):
 
     def port(self, name: str) -> Port | None:
         return self.port_by_name.get(name)
+
+    def former_port(self, name: str) -> FormerPort | None:
+        return next((port for port in self.former if port.name == name), None)
 
 
 class Renamed(Record, frozen=True, omit_defaults=True):

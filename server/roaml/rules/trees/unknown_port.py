@@ -10,8 +10,8 @@ from roaml.edit.elements import removal
 from roaml.forest.forest import Forest
 from roaml.forest.ports import probable_ports
 from roaml.forest.written_for import OLD_ATTRIBUTES
-from roaml.libraries import Node
-from roaml.libraries.node import EVENT_ATTRIBUTE
+from roaml.libraries import LIBRARIES, Node, library
+from roaml.libraries.node import EVENT_ATTRIBUTE, FormerPort
 from roaml.libraries.programs.assembly import reads_world
 from roaml.libraries.scripts import AFTERWARDS, CONDITIONS
 from roaml.model.system import CHILDREN_COUNT
@@ -21,6 +21,7 @@ from roaml.roles import SymbolKind
 from roaml.rules.rule import Rule, TreeContext, did_you_mean, listing, replacements
 from roaml.rules.support.forest import probably_meant, trees_of
 from roaml.suggest import are_similar
+from roaml.xml_syntax.tree import Attribute
 
 MAX_PORTS = 8
 """The maximum number of ports that a message lists."""
@@ -56,6 +57,8 @@ def _ports(context: TreeContext, trees: Forest, node: TreeNode, known: Node) -> 
             if CHILDREN_COUNT in names or not path:
                 message = f"`{CHILDREN_COUNT}` is set automatically and cannot be set here; remove it"
                 yield RULE.at(attribute.name_span, message, drop, related=related)
+        elif (former := known.former_port(attribute.name)) is not None:
+            yield _former(attribute, known, former, drop)
         elif attribute.name in probable if trees.system is None else not _is_port_in_system(setting, known):
             close = probable.get(attribute.name, ())
             hint = did_you_mean(close) or _known(names)
@@ -63,6 +66,20 @@ def _ports(context: TreeContext, trees: Forest, node: TreeNode, known: Node) -> 
             fixes = replacements(attribute.name_span, close) if close else (replace(drop, preferred=False),)
             message = f"`{known.name}` has no port `{attribute.name}`{hint}"
             yield RULE.at(attribute.name_span, message, *fixes, severity=severity, related=related)
+
+
+def _former(attribute: Attribute, known: Node, former: FormerPort, drop: Fix) -> Finding:
+    """The finding that only earlier releases of the library have a port: a warning, because the tree may be written for
+    such a release."""
+    name = known.library
+    version = next(other.version for other in map(library, LIBRARIES) if other.name == name)
+    message = f"`{known.name}` of {name} {version} has no port `{former.name}`; {name} of ROS 2 {former.release} has it"
+    if former.now:
+        message += f", and `{former.now}` replaces it"
+    # A change would break a tree for the earlier release.
+    fixes = replacements(attribute.name_span, (former.now,)) if former.now else (drop,)
+    optional = (replace(fix, preferred=False) for fix in fixes)
+    return RULE.at(attribute.name_span, message, *optional, severity=Severity.WARNING)
 
 
 def _is_port_in_system(setting: PortSetting, known: Node) -> bool:
