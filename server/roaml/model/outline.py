@@ -45,7 +45,7 @@ from roaml.model.message_constants import (
 )
 from roaml.model.port_checks import PortChoice, PortRefusal, port_choices, port_refusals
 from roaml.model.syntax import Expression, Name, PortRead, Value
-from roaml.model.value_types import TypedMachine, ValueUse, find_handle
+from roaml.model.value_types import HOLDING, TypedMachine, ValueUse, find_handle
 from roaml.model.waits import PortWait, port_waits
 from roaml.record import Record
 from roaml.roles import Direction, ProtocolPart, SymbolKind
@@ -54,13 +54,14 @@ from roaml.xml_syntax import Element
 
 class PortOutline(Record, frozen=True):
     """A port of a plugin. `type` is the type as written; `read` and `written` state whether the machine reads or writes
-    the port."""
+    the port, and `stored` whether it stores the value in a variable, a field or a parameter."""
 
     key: str
     type: str
     direction: Direction
     read: bool
     written: bool
+    stored: bool = False
 
 
 class SentField(Record, frozen=True):
@@ -281,6 +282,8 @@ def _declares_all_ports(machine: Machine) -> bool:
 
 def _ports(machine: Machine, typed: TypedMachine) -> tuple[PortOutline, ...]:
     read = {value.key.value for value in reads_of_ports(machine, typed) if value.key}
+    holders = (v.value for v in typed.values if v.use in (*HOLDING, ValueUse.PARAMETER))
+    stored = {_port_key(value) for value in holders if isinstance(value, PortRead)}
     written = {s.key.value for s in _executed(machine) if isinstance(s, SetOutput) and s.key}
     return tuple(
         PortOutline(
@@ -289,6 +292,7 @@ def _ports(machine: Machine, typed: TypedMachine) -> tuple[PortOutline, ...]:
             port.direction,
             port.key.value in read,
             port.key.value in written,
+            port.key.value in stored,
         )
         for port in machine.ports
         if port.key

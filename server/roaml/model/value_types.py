@@ -86,6 +86,8 @@ class ValueUse(enum.Enum):
 
 
 CONDITIONS = (ValueUse.CONDITION, ValueUse.BRANCH)
+HOLDING = (ValueUse.ASSIGNED, ValueUse.FIELD, ValueUse.OUTPUT, ValueUse.INITIAL)
+"""The uses that store a value in a variable or field with a type."""
 
 
 class BranchConditions(Record, frozen=True, eq=False):

@@ -12,7 +12,7 @@ from roaml.expr.tree import ArrayLiteral, Expr, Name, Number, ObjectLiteral, Str
 from roaml.expr.types import Array, Scalar, ScalarKind, Struct, Type, Unknown, fits, is_kind, is_number, leaves, unwrap
 from roaml.model.initial import WrongType
 from roaml.model.syntax import Expression, PortRead
-from roaml.model.value_types import TypedValue, ValueUse
+from roaml.model.value_types import HOLDING, TypedValue, ValueUse
 from roaml.model.vocabulary import DEFAULT_TYPES
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.divisors import possible_zeros
@@ -21,7 +21,6 @@ from roaml.rules.support.types import phrase
 from roaml.text import Span, TextEdit
 
 CHECKED = (ValueUse.ASSIGNED, ValueUse.FIELD, ValueUse.ARGUMENT, ValueUse.OUTPUT)
-HOLDING = (ValueUse.ASSIGNED, ValueUse.FIELD, ValueUse.OUTPUT, ValueUse.INITIAL)
 
 
 def check(context: MachineContext) -> Iterator[Finding]:

@@ -241,10 +241,24 @@ def _problem(trees: Forest, known: Node, port: Port, text: str) -> ConstantProbl
     _, plugin = _plugin(trees, known)
     declared = plugin.port(port.name) if plugin is not None else None
     if declared is not None and declared.type != ANY_TYPE:
-        return None if declared.direction is Direction.OUT else problem_of(text.strip(), declared)
+        if declared.direction is Direction.OUT:
+            return None
+        return problem_of(text.strip(), declared) or _too_long(trees, declared, text)
     if plugin is not None and (known.name.startswith("Switch") or _is_system_status(port, text)):
         return None
     return _as_library_reads(port.type, text)
+
+
+def _too_long(trees: Forest, port: PortOutline, text: str) -> ConstantProblem | None:
+    """The problem that a plugin stores a string with more bytes than a variable can hold; `None` if there is none. The
+    name of an interface is not stored."""
+    type_ = BASE_TYPES.get(port.type)
+    if trees.system is None or not port.stored or type_ is None or not is_kind(type_, ScalarKind.STRING):
+        return None
+    length, most = len(text.encode("utf-8", "replace")), trees.system.parameters.max_array_size
+    if length <= most:
+        return None
+    return ConstantProblem(f"has {length} bytes, but a string holds at most {most}; increase `max_array_size`")
 
 
 def _is_system_status(port: Port, text: str) -> bool:
