@@ -98,8 +98,7 @@ def mismatch(type_name: str, text: str) -> Mismatch | None:
         return None
     inner = element_type(name)
     if inner is not None:
-        wrong = (mismatch(inner, item.strip()) for item in text.split(";")) if text.strip() else ()
-        return next(filter(None, wrong), None)
+        return _elements(inner, text)
     text = text.strip()
     if name in _RANGES:
         return _integer(name, text)
@@ -113,6 +112,17 @@ def mismatch(type_name: str, text: str) -> Mismatch | None:
         known = ", ".join(f"`{status}`" for status in _STATUSES)
         return Mismatch(f"must be one of {known}", instead=upper if upper in _STATUSES else "")
     return None
+
+
+def _elements(inner: str, text: str) -> Mismatch | None:
+    """Why a text does not fit a list; `None` if it does. The elements are separated by semicolons."""
+    wrong = (mismatch(inner, item.strip()) for item in text.split(";")) if text.strip() else ()
+    first = next(filter(None, wrong), None)
+    meant = [item.strip() for item in text.replace(";", ",").split(",")]
+    if first is None or "," not in text or any(mismatch(inner, item) for item in meant):
+        return first
+    instead = ";".join(meant)
+    return Mismatch(f"must separate its elements by `;`: write `{instead}`", first.ignored, instead)
 
 
 def _integer(name: str, text: str) -> Mismatch | None:
