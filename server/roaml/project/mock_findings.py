@@ -30,6 +30,7 @@ def mock_findings(
     beside: Callable[[str, str], Iterable[str]],
     forest: Callable[[str], Forest | None],
     read: Callable[[str], SourceFile | None],
+    has_plugin: Callable[[str, str], bool],
 ) -> Iterator[Finding]:
     """The findings in a file of mocks. Mocks that contain parameters are not checked, because a system sets them. The
     names of the trees of a system are not checked. Files with data are checked if there is a tree beside the mocks,
@@ -39,6 +40,7 @@ def mock_findings(
         beside: returns the files beside a file with an extension.
         forest: returns the trees in a file that is not in a system; `None` if it cannot be read.
         read: returns the file with a path; `None` if it cannot be read.
+        has_plugin: whether a system that lists the tree with a path has a plugin for a type of nodes.
     """
     trees = forest(_tree_of(source.path))
     words = _words(source.path, beside, forest)
@@ -75,7 +77,7 @@ def mock_findings(
             yield UNMATCHED_MOCK.at(at, f"the mock `{mock.pattern}` {reason}", *fixes)
 
     if is_right and trees is not None:
-        yield from _missing(source, trees, mocks)
+        yield from _missing(source, trees, mocks, lambda type_: has_plugin(trees.path, type_))
 
 
 def _text(source: SourceFile | None) -> str | None:
@@ -89,13 +91,17 @@ def _repeated(source: SourceFile, mock: Mock, span: Span, earlier: Span) -> Find
     return REPEATED_MOCK.at(Span(span.start, span.start + len(mock.pattern)), message, fix, related=related)
 
 
-def _missing(source: SourceFile, trees: Forest, mocks: Sequence[Mock]) -> Iterator[Finding]:
-    """The finding that leaves of the tree have no mock, at the last mock."""
+def _missing(
+    source: SourceFile, trees: Forest, mocks: Sequence[Mock], has_plugin: Callable[[str], bool]
+) -> Iterator[Finding]:
+    """The finding that leaves of the tree have no mock, at the last mock. A leaf with a plugin in a system needs none,
+    because the mocks of a system are for the other leaves."""
     from roaml.lower.programs.refusal import TreeRefusal  # noqa: PLC0415 - most files with mocks have no such tree
     from roaml.mocks.proposal import completed_text, mockable_leaves  # noqa: PLC0415
 
     try:
         leaves = [leaf for leaf in mockable_leaves(trees, mocks) if leaf.is_missing]
+        leaves = [leaf for leaf in leaves if not all(has_plugin(n.own_type or n.type) for n in leaf.nodes)]
     except TreeRefusal:
         return
     if not leaves:

@@ -401,7 +401,11 @@ class _Reader:
         from roaml.project.mock_findings import mock_findings  # noqa: PLC0415 - few projects have mocks
 
         files = self.rooms.sources.files
-        return tuple(mock_findings(self.source, files.beside, self.rooms.linking.forest, files.text))
+        return tuple(mock_findings(self.source, files.beside, self.rooms.linking.forest, files.text, self._has_plugin))
+
+    def _has_plugin(self, tree: str, type_: str) -> bool:
+        linked = (self.rooms.linking.system(s) for s in self.rooms.systems.systems_of(tree) if s is not None)
+        return any(system.plugin(type_)[1] is not None for system in linked if system is not None)
 
     def _experiment_findings(self) -> tuple[Finding, ...]:
         from roaml.project.experiment_file import experiment_findings  # noqa: PLC0415 - few projects have experiments
