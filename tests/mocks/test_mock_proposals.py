@@ -57,6 +57,17 @@ def test_every_leaf_of_nav2_has_an_assumption() -> None:
         assert assumed.duration == 0 or not node.is_synchronous, node.name
 
 
+@pytest.mark.parametrize("condition", ["IsBatteryLow", "IsStuck"])
+def test_a_drive_usually_succeeds_behind_a_guard_against_what_is_rare(condition: str, tmp_path: Path) -> None:
+    guard = f"<Inverter><{condition}/></Inverter>"
+    path = tree(tmp_path, f'<ReactiveSequence>{guard}<NavigateToPose goal="{{goal}}"/></ReactiveSequence>')
+    rare = next(leaf.proposed for leaf in api.propose_mocks(str(path)) if leaf.proposed.pattern == condition)
+    drive = next(leaf.proposed for leaf in api.propose_mocks(str(path)) if leaf.proposed.pattern == "NavigateToPose")
+    checks = int(drive.duration / 1000 * 10)
+    assert checks >= 100
+    assert (1 - rare.probability) ** checks > 0.8
+
+
 def test_durations_come_from_the_ports(tmp_path: Path) -> None:
     content = """<Sequence>
       <Spin spin_dist="-3.14"/> <Wait wait_duration="2.5"/> <BackUp backup_dist="0.3" backup_speed="0.1"/>

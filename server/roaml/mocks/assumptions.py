@@ -53,6 +53,12 @@ def _fixed(probability: float, milliseconds: int, reason: str) -> Assumption:
     return Assumption(probability, Fraction(milliseconds), reason)
 
 
+def _once_in(seconds: int, what: str) -> Assumption:
+    """A condition for what is rare. Guards check it at every tick, so its probability follows from a time."""
+    reason = f"{what} once in {seconds} s, at {CHECKS_PER_SECOND} ticks per second"
+    return _fixed(1 / (CHECKS_PER_SECOND * seconds), 0, reason)
+
+
 _FIXED: Mapping[str, Assumption] = MappingProxyType(
     {
         "ComputePathToPose": _fixed(0.95, 200, _PLANS),
@@ -94,8 +100,8 @@ _FIXED: Mapping[str, Assumption] = MappingProxyType(
         "GoalUpdated": _fixed(0.01, 0, _NEW_GOAL),
         "GlobalUpdatedGoal": _fixed(0.01, 0, _NEW_GOAL),
         "GoalReached": _fixed(0.1, 0, "the goal is reached at one of many checks"),
-        "IsStuck": _fixed(0.01, 0, "a robot is rarely stuck"),
-        "IsBatteryLow": _fixed(0.01, 0, "a battery is rarely low"),
+        "IsStuck": _once_in(100, "a robot is stuck"),
+        "IsBatteryLow": _once_in(1000, "a battery becomes low"),
         "IsBatteryCharging": _fixed(0.1, 0, "a robot usually drives without a charger"),
         "TransformAvailable": _fixed(0.99, 0, "transforms are known soon after the start"),
         "InitialPoseReceived": _fixed(0.99, 0, "the pose is known soon after the start"),
