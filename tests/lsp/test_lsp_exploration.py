@@ -20,13 +20,13 @@ def bad_example() -> str:
 
 async def test_the_finding_follows_the_files(tmp_path: Path) -> None:
     write_files(tmp_path, bad_example())
-    main, tree = tmp_path / "main.xml", tmp_path / "tree.xml"
+    battery, tree = tmp_path / "battery.ascxml", tmp_path / "tree.xml"
     async with connect(tmp_path) as client:
         client.open(tree, tree.read_text(encoding="utf-8"))
-        text = main.read_text(encoding="utf-8")
-        client.open(main, text)
+        text = battery.read_text(encoding="utf-8")
+        client.open(battery, text)
         await client.until_codes(tree, CODE)
-        client.replace(main, text.replace('value="5"', 'value="20"'))
+        client.replace(battery, text.replace("level - 10", "level - 90"))
         await client.until_codes(tree)
-        client.replace(main, text)
+        client.replace(battery, text)
         await client.until_codes(tree, CODE)

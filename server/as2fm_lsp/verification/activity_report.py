@@ -7,7 +7,6 @@ from __future__ import annotations
 from typing import Any
 
 from roaml.smc.end import End
-from roaml.smc.program import FALSE
 from roaml.smc.run import Answer
 from roaml.smc.tally import Tally
 
@@ -66,13 +65,13 @@ def is_untested(answer: Answer) -> bool:
 
 
 def _ended_with_time(answer: Answer) -> int:
-    """The number of failed traces if all of them, and only they, have lasted until the end of time; otherwise 0."""
+    """The number of traces if all of them have failed and have lasted until the end of time; otherwise 0. If some have
+    passed, failed ones may never pass, however long the time is."""
     question, tally = answer.question, answer.tally
     ended = tally.ends.get(End.TIME)
-    if ended is None or question.is_reward or question.is_stuck or ended.count != answer.failures:
+    if ended is None or question.is_reward or question.is_stuck or not tally.traces == ended.count == answer.failures:
         return 0
-    # As many traces as have failed may also have passed at the end of time.
-    return answer.failures if ended.shortest == tally.shortest.get(FALSE) else 0
+    return answer.failures
 
 
 def open_at_end(tally: Tally) -> int:

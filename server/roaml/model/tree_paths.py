@@ -57,11 +57,16 @@ def label_of(system: System, instance: Instance) -> str:
     return f"{tree}/{instance.plugin}{named}" if tree else f"{instance.plugin}{named}"
 
 
+MAX_COMPARISONS = 10_000_000
+"""The maximum number of parts of paths that are compared to find the shortest paths of the nodes with one name."""
+
+
 def short_paths(system: System) -> Mapping[int, str]:
     """Number of a node -> the shortest text that identifies it in a `<bt_node>`: its name, or its name after as few
     parts of its path as necessary. Uses of trees are preferred to nodes.
 
-    If even the whole path is ambiguous, the text is the whole path.
+    If even the whole path is ambiguous, or if too many nodes in deep trees have the same name (`MAX_COMPARISONS`), the
+    text is the whole path.
     """
     by_name: dict[str, list[Instance]] = {}
     for instance in _instances(system):
@@ -69,8 +74,10 @@ def short_paths(system: System) -> Mapping[int, str]:
     paths: dict[int, str] = {}
     for name, instances in by_name.items():
         above = {instance.number: parts_above(system, instance) for instance in instances} if instances[1:] else {}
+        is_large = (len(above) * max(map(len, above.values()), default=0)) ** 2 > MAX_COMPARISONS
         for instance in instances:
-            path = _short_path(above[instance.number], above.values()) if above else ()
+            own = above.get(instance.number, ())
+            path = tuple(part.names[0] for part in own) if is_large else _short_path(own, above.values())
             paths[instance.number] = "/".join((*path, name))
     return paths
 

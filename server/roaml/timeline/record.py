@@ -27,6 +27,7 @@ from roaml.scxml.names import (
 )
 from roaml.simulation.session import Session
 from roaml.smc.record import TraceStep
+from roaml.views.event_words import interface_name
 from roaml.views.events import EventReader
 from roaml.views.shared_names import field_name
 
@@ -243,5 +244,6 @@ class Timeline:
                 self._held[part.instance] = sent  # it passes the call on
         receivers = tuple(self._lane_of[part.instance] for part in actors if part.instance in self._lane_of)
         if receivers:
-            name = field_name(event, "", self._names) or self._events.name(event)
+            name = field_name(event, "", self._names) or interface_name(event, self._automata)
+            name = name or self._events.name(event)
             self.messages.append(SentMessage(name, sent[0], number, sent[1], receivers))
