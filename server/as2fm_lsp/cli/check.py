@@ -25,7 +25,7 @@ from as2fm_lsp.outputs import STANDARD_OUTPUT_PATH, OutputFiles, outputs_of
 from roaml import api
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.project.configuration import find_settings
-from roaml.project.exploration import CODES
+from roaml.project.explored_findings import CODES
 from roaml.project.settings import SEVERITIES, Settings, ament_prefixes
 from roaml.record import replace
 from roaml.rules import BY_CODE

@@ -47,6 +47,12 @@ class TreeEffects:
         """The numbers of the statuses that a node can return at any tick."""
         return self._possible[instance.number].ever - {IDLE}
 
+    def needs(self, node: SystemAutomaton, child: int) -> bool:
+        """Whether a node returns SUCCESS only if the child with a number does, or never."""
+        instance, bound = self._of_automaton(node)
+        index = instance.children.index(child)
+        return bound.program is not None and SUCCESS not in self._without(node, {index}).answers
+
     def time_to_success(self, system: System, node: SystemAutomaton, waits: Mapping[int, int]) -> int:
         """The least time that passes until a node returns SUCCESS.
 
@@ -112,6 +118,12 @@ def tree_effects(system: System) -> TreeEffects:
     if "effects" not in known:
         known["effects"] = TreeEffects(system)
     return known["effects"]
+
+
+def succeeds_only_with(system: System, instance: Instance, child: int) -> bool:
+    """Whether a node of a library returns SUCCESS only if its child with a number does, or never."""
+    automaton = system.by_instance.get(instance.number)
+    return automaton is not None and not automaton.path and tree_effects(system).needs(automaton, child)
 
 
 def statuses(system: System, instance: Instance) -> frozenset[int]:

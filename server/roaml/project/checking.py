@@ -24,7 +24,7 @@ from roaml.json_syntax.brackets import deep_recursion
 from roaml.model.kinds import FileKind
 from roaml.model.machine import Dialect
 from roaml.model.property_links import LinkedFile
-from roaml.project import exploration
+from roaml.project import explored_findings
 from roaml.project.analysis import Analysis, Expanded
 from roaml.project.analysis.subjects import CheckedFile, Contexts, FileInSystem, Inspection
 from roaml.project.edits import laid_out
@@ -104,7 +104,7 @@ class RuleRunner:
         linked = [subject.system for subject in file.subjects]
         if hidden and all(system is not None and system.complete for system in linked):
             of_all = [finding for of_system in known for finding in of_system]
-            unexplored = exploration.CODES if None in explored.values() else frozenset[str]()
+            unexplored = explored_findings.CODES if None in explored.values() else frozenset[str]()
             unused = self._unused(file.source, of_all, hidden, unexplored)
             findings.update(dict.fromkeys(finding for finding in unused if self._is_selected(finding)))
         published = [(file.source, finding, self._severity(finding)) for finding in _visible(findings, hidden)]
@@ -131,13 +131,15 @@ class RuleRunner:
         """Path of a file -> the findings in it that follow from the reachable states of a system; `None` if the states
         are not known."""
         settings = self.settings
-        if settings.ignore >= exploration.CODES or (settings.select and not exploration.CODES & settings.select):
+        if settings.ignore >= explored_findings.CODES or (
+            settings.select and not explored_findings.CODES & settings.select
+        ):
             return {}
         memo = self.analysis.memo
         if not explores and not memo.holds("exploration", system):
             return None
         if system not in self._contents:
-            self._contents[system] = exploration.content_of(self.analysis, system)
+            self._contents[system] = explored_findings.content_of(self.analysis, system)
         content = self._contents[system]
         if explores:
             found = memo.get("exploration", system, content, lambda: self._explore(system))
@@ -155,7 +157,7 @@ class RuleRunner:
         if last is None or path not in last[1]:
             return None
         content, found = last
-        return exploration.still_true(found[path], path, content, self.analysis.source)
+        return explored_findings.still_true(found[path], path, content, self.analysis.source)
 
     def has_too_many_states(self, system: str) -> bool:
         """Whether a system without errors is too large for the rules that need its reachable states."""
@@ -165,7 +167,7 @@ class RuleRunner:
         if self.errors(system):
             return None
         try:
-            return exploration.findings_of(self.analysis, system)
+            return explored_findings.findings_of(self.analysis, system)
         except Exception as error:  # an internal error must not stop the rules
             _log_exception(error, "%s cannot be explored", system)
             return {system: (internal_error("the exploration of this system", error),)}

@@ -8,9 +8,13 @@ around it check their children again at every tick.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Mapping
 
+from roaml.libraries.programs.statuses import FAILURE, SUCCESS
 from roaml.model.expand import Instance, node_at
+from roaml.model.node_effects import statuses, succeeds_only_with
+from roaml.model.system import System
 from roaml.project.analysis import Analysis
 from roaml.text import SourceFile, TextEdit, apply_edits
 
@@ -25,42 +29,30 @@ _IN_TURN = {
     "AsyncFallback": "ReactiveFallback",
 }
 """Control nodes that continue with a running child -> those that tick the children before it again."""
-_SUCCEEDING_TOGETHER = frozenset(
-    (
-        "Sequence",
-        "AsyncSequence",
-        "SequenceWithMemory",
-        "ReactiveSequence",
-        "Delay",
-        "KeepRunningUntilFailure",
-        "Repeat",
-        "RetryUntilSuccessful",
-        "RunOnce",
-        "Timeout",
-    )
-)
-"""Nodes that succeed only if all their children do, or never end with the success of their child."""
-_NEVER_SUCCEEDING = frozenset(("ForceFailure", "Inverter", "KeepRunningUntilFailure"))
-"""Decorators whose success is not that of their child."""
 
 
-def is_required(instance: Instance, nodes: ByNumber) -> bool:
+def is_required(system: System, instance: Instance, nodes: ByNumber) -> bool:
     """Whether a tree succeeds only if a node does."""
-    return all(outer.plugin in _SUCCEEDING_TOGETHER for outer in _around(instance, nodes))
+    way = (instance, *_around(instance, nodes))
+    return all(succeeds_only_with(system, outer, child.number) for child, outer in itertools.pairwise(way))
 
 
-def ends_only_in_failure(nodes: ByNumber, statuses: Mapping[int, frozenset[str]], instance: Instance) -> bool:
-    """Whether the tree of a node ends, but never with success.
+def ends_only_in_failure(
+    system: System, nodes: ByNumber, returned: Mapping[int, frozenset[int]], instance: Instance
+) -> bool:
+    """Whether the tree of a node ends, but never with success, although its decorators pass success on.
 
     Args:
-        statuses: number of a node -> the statuses that it returns in some run.
+        returned: number of a node -> the numbers of the statuses that it returns in some run.
     """
     *_, root = (instance, *_around(instance, nodes))
     top = root
-    while len(top.children) == 1 and top.plugin not in _NEVER_SUCCEEDING:
+    while len(top.children) == 1:
+        if SUCCESS not in statuses(system, top) or not succeeds_only_with(system, top, top.children[0]):
+            return False
         top = nodes[top.children[0]]
-    known = statuses.get(root.number, frozenset())
-    return top.plugin not in _NEVER_SUCCEEDING and "FAILURE" in known and "SUCCESS" not in known
+    known = returned.get(root.number, frozenset())
+    return FAILURE in known and SUCCESS not in known
 
 
 def reactive(analysis: Analysis, path: str, instance: Instance, nodes: ByNumber) -> Analysis | None:

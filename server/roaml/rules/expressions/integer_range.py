@@ -18,6 +18,7 @@ from roaml.model.values.arriving import arriving_by_type
 from roaml.model.values.domain import Origin, ValueSet, between, interval, meet
 from roaml.model.values.evaluate import Evaluator, place_of
 from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.known_parts import conjuncts
 from roaml.rules.support.retype import as_type, wide_enough
 from roaml.rules.support.written import written
 from roaml.text import Span, TextEdit
@@ -128,7 +129,7 @@ def _is_limited(context: MachineContext, value: TypedValue, chart: ChartValues, 
     holding += [handler.cond] if handler.cond is not None else []
     low, high = INTEGER_RANGES[type_.name]
     own = written(context, value.value.tree)
-    for comparison in (part for condition in holding for part in _conjuncts(condition.tree)):
+    for comparison in (part for condition in holding for part, holds in conjuncts(condition.tree, True) if holds):
         smaller, greater = _sides(comparison)
         same, other = (smaller, greater) if above else (greater, smaller)
         if same is None or other is None or written(context, same) != own:
@@ -195,14 +196,6 @@ def _is_changed(value: TypedValue, handler: Handler) -> bool:
     used = {place_of(n) for n in walk(value.value.tree)} - {None}
     assigned = (s for target in handler.targets for s in statements(target.body) if isinstance(s, Assign))
     return any(s.value is not value.value and s.location and place_of(s.location.tree) in used for s in assigned)
-
-
-def _conjuncts(tree: Expr) -> Iterator[Expr]:
-    if isinstance(tree, Binary) and tree.operator is Operator.AND:
-        yield from _conjuncts(tree.left)
-        yield from _conjuncts(tree.right)
-    else:
-        yield tree
 
 
 def _sides(tree: Expr) -> tuple[Expr | None, Expr | None]:

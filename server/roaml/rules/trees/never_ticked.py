@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The rule `never-ticked`, which never_ticked.md describes. `roaml.project.exploration` reports it,
+"""The rule `never-ticked`, which never_ticked.md describes. `roaml.project.explored_findings` reports it,
 because it needs all reachable states of a system."""
 
 from __future__ import annotations

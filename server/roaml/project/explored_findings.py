@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a check finds in the states that a whole system can reach.
+
+A system without errors is translated and explored (`roaml.project.exploration`). Nothing is reported about a system
+that is too large.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from typing import TypeAlias
+
+from roaml.diagnostics import Finding, Related
+from roaml.model.expand import Instance
+from roaml.model.size import Size
+from roaml.model.system import System
+from roaml.project.analysis import Analysis
+from roaml.project.exploration import Reached, explored, while_handled
+from roaml.project.optional_branches import ByNumber
+from roaml.project.unticked import is_missed, never_ticked_nodes
+from roaml.record import replace
+from roaml.rules.states import never_taken
+from roaml.rules.trees import never_ticked
+from roaml.text import Location, SourceFile, Span
+
+CODES = frozenset((never_taken.RULE.code, never_ticked.RULE.code))
+"""The codes of the rules that need an exploration."""
+MAX_PARTS = 10_000
+"""The maximum number of parts of a translation that is explored (`roaml.model.size.Size.parts`)."""
+
+
+def findings_of(analysis: Analysis, path: str) -> Mapping[str, tuple[Finding, ...]] | None:
+    """Path of a file -> the findings in it, for a system without errors; `None` if the system is too large to be
+    explored."""
+    expanded = analysis.expanded(path)
+    plain = analysis if expanded is None else expanded.analysis
+    system, size = plain.system(path), plain.size_of_translation(path)
+    if system is None or size is None or not system.instances:
+        return {}
+    if _parts(size) > MAX_PARTS:
+        return None
+    known: list[tuple[str, Finding]] | None = None
+    nodes = {instance.number: instance for instance in system.instances}
+    missed = functools.cache(functools.partial(is_missed, plain, path, nodes))
+    for reached in explored(plain, path):
+        known = list(_merged(_all(plain, system, nodes, reached, missed)))
+        if not known:
+            break
+    if known is None:
+        return None
+    found: dict[str, list[Finding]] = {}
+    for place, finding in known:
+        if expanded is None:
+            found.setdefault(place, []).append(finding)
+        else:
+            source = expanded.location(Location(place, finding.span)).path
+            found.setdefault(source, []).append(expanded.finding(place, finding))
+    return {place: tuple(dict.fromkeys(findings)) for place, findings in found.items()}
+
+
+Content: TypeAlias = "tuple[tuple[SourceFile | None, ...], object]"
+"""The texts on which the findings of a system depend, and the data files."""
+
+
+def content_of(analysis: Analysis, path: str) -> Content:
+    """What the findings of a system depend on, as a value that is compared."""
+    expanded = analysis.expanded(path)
+    data = () if expanded is None else expanded.expansion.data
+    files = dict.fromkeys((*analysis.files_of(path), *analysis.interface_files_of(path)))
+    return tuple(map(analysis.source, files)), data
+
+
+def still_true(
+    findings: Iterable[Finding], path: str, content: Content, now: Callable[[str], SourceFile | None]
+) -> tuple[Finding, ...]:
+    """The findings in a file that an exploration has found before other files of the system were changed; none if the
+    file was changed itself.
+
+    Args:
+        content: the content at the exploration.
+        now: path of a file -> its text now.
+    """
+    unchanged = {source.path for source in content[0] if source is not None and source == now(source.path)}
+    if path not in unchanged:
+        return ()
+    return tuple(
+        replace(finding, related=tuple(r for r in finding.related if _is_in(r, unchanged))) for finding in findings
+    )
+
+
+def _is_in(related: Related, paths: Collection[str]) -> bool:
+    return not isinstance(related.place, Location) or related.place.path in paths
+
+
+def _parts(size: Size) -> int:
+    return sum(share.count for share in size.parts)
+
+
+def _all(
+    analysis: Analysis, system: System, nodes: ByNumber, reached: Reached, missed: Callable[[Instance], bool]
+) -> Iterator[tuple[str, Finding]]:
+    """The paths of files, and the findings in them."""
+    from roaml.project.blame import Blame  # noqa: PLC0415 - the search for causes is imported only if a system is explored
+
+    blame = Blame(
+        analysis,
+        system,
+        reached.steps(),
+        is_instant=reached.is_instant,
+        steps_while_handled=lambda requests: while_handled(reached.model, requests),
+    )
+    yield from never_ticked_nodes(analysis, system, nodes, reached, missed, blame)
+    yield from blame.for_leaves([number for number, is_ticked in reached.ticks.items() if is_ticked])
+    yield from blame.for_clients()
+
+
+def _merged(found: Iterable[tuple[str, Finding]]) -> Iterator[tuple[str, Finding]]:
+    """Findings in files; those that differ only in their related places become one."""
+    known: dict[tuple[str, str, Span, str], Finding] = {}
+    for path, finding in found:
+        key = (path, finding.code, finding.span, finding.message)
+        related = known[key].related if key in known else ()
+        known[key] = replace(finding, related=tuple(dict.fromkeys((*related, *finding.related))))
+    return ((key[0], finding) for key, finding in known.items())
