@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The rule `never-taken`, which never_taken.md describes. `roaml.project.explored_findings` reports it, because it needs
-all reachable states of a system."""
+"""The rule `never-taken`, which never_taken.md describes. `roaml.project.explored_findings` reports it, because it
+needs all reachable states of a system."""
 
 from __future__ import annotations
 
