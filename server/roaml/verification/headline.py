@@ -93,10 +93,11 @@ def _asked_extreme(computed: Computed) -> str:
 
 
 def exact_text(computed: Computed) -> str:
-    """An exact value with four significant digits; `< 1` if it would be shown as 1 although a trace fails."""
-    text = _rounded(computed.asked_value()[1], 4)
-    is_probability = not computed.question.is_reward and is_minimised(computed.question)
-    return "< 1" if text == "1" and is_probability and computed.exact.fails else text
+    """An exact value with four significant digits; `almost 1` for a smaller probability that would be shown as 1."""
+    bounds, value = computed.asked_value()
+    text = _rounded(value, 4)
+    is_below_one = bounds.upper < 1 or (is_minimised(computed.question) and computed.exact.fails)
+    return "almost 1" if text == "1" and is_below_one and not computed.question.is_reward else text
 
 
 def of_answer(answer: Answer, choices: Choices | None = None) -> Headline:
