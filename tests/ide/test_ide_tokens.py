@@ -132,7 +132,8 @@ def test_tokens_of_all_models_are_in_order_and_on_one_line() -> None:
     for model in (*systems(), *snippets()[::5]):
         texts = {path: text[: len(text) // 2] for path, text in model.texts.items()}
         for result in (
-            api.check([model.main], model.ros_paths, Settings(ignore=CODES), version) for version in (model.texts, texts)
+            api.check([model.main], model.ros_paths, Settings(ignore=CODES), version)
+            for version in (model.texts, texts)
         ):
             for path in result.files:
                 tokens = semantic_tokens(result.snapshot.analysis, path)

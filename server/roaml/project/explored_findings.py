@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from roaml.diagnostics import Finding, Related
 from roaml.model.expand import Instance
@@ -17,12 +17,13 @@ from roaml.model.size import Size
 from roaml.model.system import System
 from roaml.project.analysis import Analysis
 from roaml.project.exploration import Reached, explored, while_handled
-from roaml.project.optional_branches import ByNumber
-from roaml.project.unticked import is_missed, never_ticked_nodes
 from roaml.record import replace
 from roaml.rules.states import never_taken
 from roaml.rules.trees import never_ticked
 from roaml.text import Location, SourceFile, Span
+
+if TYPE_CHECKING:
+    from roaml.project.optional_branches import ByNumber
 
 CODES = frozenset((never_taken.RULE.code, never_ticked.RULE.code))
 """The codes of the rules that need an exploration."""
@@ -40,6 +41,8 @@ def findings_of(analysis: Analysis, path: str) -> Mapping[str, tuple[Finding, ..
         return {}
     if _parts(size) > MAX_PARTS:
         return None
+    from roaml.project.unticked import is_missed  # noqa: PLC0415 - imported only if a system is explored
+
     known: list[tuple[str, Finding]] | None = None
     nodes = {instance.number: instance for instance in system.instances}
     missed = functools.cache(functools.partial(is_missed, plain, path, nodes))
@@ -102,6 +105,7 @@ def _all(
 ) -> Iterator[tuple[str, Finding]]:
     """The paths of files, and the findings in them."""
     from roaml.project.blame import Blame  # noqa: PLC0415 - the search for causes is imported only if a system is explored
+    from roaml.project.unticked import never_ticked_nodes  # noqa: PLC0415
 
     blame = Blame(
         analysis,
