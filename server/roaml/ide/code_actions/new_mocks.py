@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence, Set
 from fractions import Fraction
 from functools import partial
@@ -16,7 +17,7 @@ from roaml.mocks.system_mocks import PlannedMock, all_defaults, inputs, plan
 from roaml.model.expand import ROOT_NUMBER
 from roaml.model.system import System
 from roaml.model.tree import TreeNode
-from roaml.model.tree_paths import instance_of, nodes_called, short_paths
+from roaml.model.tree_paths import instance_of, short_paths
 from roaml.project.analysis import Analysis
 from roaml.project.edits import in_layout
 from roaml.project.paths import folder_of, name_of, split_name
@@ -149,9 +150,11 @@ def _properties_text(system: System, leaves: Set[str]) -> str:
     ticked, except siblings with equal names."""
     ports: list[str] = []
     guarantees: list[str] = []
-    for number, text in short_paths(system).items():
+    paths = short_paths(system)
+    uses = Counter(paths.values())
+    for number, text in paths.items():
         plugin = instance_of(system, number).plugin
-        if len(nodes_called(system, text)) != 1:
+        if uses[text] != 1:
             continue  # siblings with equal names cannot be told apart
         if number == ROOT_NUMBER:
             status = '            <state_var id="status" type="int32" field="status" expr="0" />\n'
