@@ -231,6 +231,36 @@ def test_what_users_read(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert re.search(r"raising IsReady \(.*tree\.xml:\d+\) from 0\.5 to 0\.51 adds 0\.0075[;\n]", text)
 
 
+@pytest.mark.parametrize(
+    ("content", "models", "is_named"),
+    [
+        ("<Script code='speed := 0.5'/><Dock v='{speed}'/>", "", True),
+        ("<SetBlackboard output_key='speed' value='0.5'/><Dock v='{speed}'/>", "", True),
+        ("<Script code='speed := 0.5'/><Dock v='{speed}'/>", "<input_port name='v'/>", False),
+        ("<Script code='speed := 0.5'/><Dock v='{speed}'/>", "<output_port name='v'/>", False),
+        ("<Script code='speed := 0.5'/><Dock v='{other}'/>", "", False),
+        ("<Dock v='{speed}'/>", "", False),
+    ],
+)
+def test_an_entry_that_a_mock_overwrites_is_named(
+    content: str, models: str, is_named: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    model = f"<TreeNodesModel><Action ID='Dock'>{models}</Action></TreeNodesModel>" if models else ""
+    path = tmp_path / "tree.xml"
+    body = f"<Sequence>{content}<ScriptCondition code='speed &lt; 1.0'/></Sequence>"
+    path.write_text(
+        f"<root BTCPP_format='4'><BehaviorTree ID='A'>{body}</BehaviorTree>{model}</root>", encoding="utf-8"
+    )
+    run(["verify", str(path), "--mock", "Dock: 0.75 in 1 s"])
+    printed = capsys.readouterr()
+    assert "for at most 600 s" in printed.out, printed.err
+    says = (
+        "the mock of `Dock` overwrites the entry `speed`, which the tree sets: declare its port `v` as `<input_port>`"
+    )
+    assert (says in printed.out) is is_named
+    assert ("overwrites" in printed.out) is is_named
+
+
 def test_a_tree_that_cannot_succeed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """No leaf has an influence, and that the tree may not end within 600 s has no probability worth a line."""
     path = tree(tmp_path, "<KeepRunningUntilFailure><Drive/></KeepRunningUntilFailure>")

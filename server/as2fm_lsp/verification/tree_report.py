@@ -79,6 +79,11 @@ def assumptions(mocked: MockedTree) -> str:
     if mocked.assumed:
         names = ", ".join(f"`{node.name}`" for node in mocked.assumed)
         text += f"; at each tick, the event of {names} has the probability {EVENT_PROBABILITY:g} (no mock)"
+    for entry, (type_, port) in mocked.overwritten.items():
+        text += (
+            f"; the mock of `{type_}` overwrites the entry `{entry}`, which the tree sets: declare its port `{port}` "
+            "as `<input_port>` in `<TreeNodesModel>` if it only reads the entry"
+        )
     return text
 
 

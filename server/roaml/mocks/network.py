@@ -101,12 +101,15 @@ class MockedTree(Record, frozen=True, eq=False):
     Attributes:
         leaves: the leaves that are replaced by mocks, including those that always succeed.
         assumed: the nodes that depend on the world and have no mock; their event has `EVENT_PROBABILITY`.
+        overwritten: the names of entries that the tree sets and that mocks also write, because no model declares the
+            ports, each with the type of the leaf and the port.
     """
 
     tree: ExecutedTree
     network: Network
     leaves: tuple[MockedLeaf, ...]
     assumed: tuple[ExecutedNode, ...]
+    overwritten: Mapping[str, tuple[str, str]]
     options: MockOptions
 
 
@@ -140,6 +143,7 @@ class _Builder:
         self.options = options
         self.leaves: list[MockedLeaf] = []
         self.assumed: list[ExecutedNode] = []
+        self.overwritten: dict[str, tuple[str, str]] = {}
         self.programs: dict[int, NodeProgram | None] = {}
 
     def build(self) -> MockedTree:
@@ -181,7 +185,7 @@ class _Builder:
         network = Network(tuple(members), MAX_TEXT_LENGTH, 2, clock_step([timer]), reaction_time)
         self.leaves.reverse()
         self.assumed.reverse()
-        return MockedTree(self.tree, network, tuple(self.leaves), tuple(self.assumed), self.options)
+        return MockedTree(self.tree, network, tuple(self.leaves), tuple(self.assumed), self.overwritten, self.options)
 
     # ------------------------------------------------------------------- nodes
 
@@ -267,6 +271,8 @@ class _Builder:
                 values = board.values[entry]
                 is_bool = declared is not None and port_type(declared) == "bool"
                 written.append((board.entries[entry], (0, 1) if is_bool else values))
+                if declared is None and entry in board.assigned:
+                    self.overwritten.setdefault(entry, (node.own_type or node.type, port))
             elif entry is not None and writes and entry in board.flags:
                 written += [(flag, (1,)) for flag in board.flags[entry]]
         return written

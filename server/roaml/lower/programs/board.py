@@ -44,6 +44,7 @@ class Board(Record, frozen=True, eq=False):
         texts: the entries of texts that constants of `SetBlackboard` set.
         read: the names of the entries that programs and scripts read.
         written: the names of the entries that nodes and scripts write.
+        assigned: the names of the entries that scripts and `SetBlackboard` write.
         computed: the names of the entries that scripts compute from entries, such as counters, or that the programs of
             nodes write, such as the elements of loops.
         in_system: whether the tree is part of a system.
@@ -57,6 +58,7 @@ class Board(Record, frozen=True, eq=False):
     texts: StoredTexts
     read: frozenset[str]
     written: frozenset[str]
+    assigned: frozenset[str]
     computed: frozenset[str]
     in_system: bool
     version: Version
@@ -149,6 +151,7 @@ class _Reader(Record):
     readers: set[str] = field(default_factory=set)
     stored: set[str] = field(default_factory=set)
     writers: set[str] = field(default_factory=set)
+    assigned: set[str] = field(default_factory=set)
     computed: set[str] = field(default_factory=set)
     texts: dict[str, list[str]] = field(default_factory=dict)
     mentioned: dict[str, list[int | float | str]] = field(default_factory=dict)
@@ -208,6 +211,7 @@ class _Reader(Record):
                 continue
             if node.type == "SetBlackboard" and port == "output_key":
                 if entry is None or self.typed is not None:
+                    self.assigned.add(entry or node.frame.entry(text.strip()))
                     self.writers.add(entry or node.frame.entry(text.strip()))
                 continue
             if node.type == "SetBlackboard" and port == "value":
@@ -288,6 +292,7 @@ class _Reader(Record):
                 continue
             full = node.frame.entry(expr.target.name)
             self.writers.add(full)
+            self.assigned.add(full)
             self.stored.add(full)  # a computed value must be stored
             if _is_computed(expr):
                 self.computed.add(full)
@@ -343,8 +348,21 @@ class _Reader(Record):
                 flags.setdefault(name, []).append(flag_of[number])
         values = {name: self.values(name, entry.kind) for name, entry in entries.items()}
         observers = {name: tuple(known) for name, known in flags.items()}
-        used = frozenset(self.readers), frozenset(self.writers), frozenset(self.computed)
-        return Board(entries, observers, flag_of, values, texts, *used, self.typed is not None, self.tree.version)
+        read, written = frozenset(self.readers), frozenset(self.writers)
+        assigned, computed = frozenset(self.assigned), frozenset(self.computed)
+        return Board(
+            entries,
+            observers,
+            flag_of,
+            values,
+            texts,
+            read,
+            written,
+            assigned,
+            computed,
+            self.typed is not None,
+            self.tree.version,
+        )
 
     def stored_texts(self) -> StoredTexts:
         if self.typed is not None:
