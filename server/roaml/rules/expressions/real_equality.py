@@ -11,7 +11,7 @@ from roaml.expr.operators import Operator
 from roaml.expr.tree import Binary, Call, Expr, Member, Name, is_draw, walk
 from roaml.model.syntax import Expression
 from roaml.model.value_types import TypedValue
-from roaml.model.values.domain import ANYTHING, ValueSet
+from roaml.model.values.domain import ANYTHING, Origin, ValueSet
 from roaml.rules.rule import MachineContext, Rule
 from roaml.text import TextEdit
 
@@ -45,9 +45,24 @@ def _is_exact(context: MachineContext, value: TypedValue, problem: RealEquality)
         return True
     if all(side is not None and side.only is not None for side in sides):
         return not any(_is_rounded(values.at(side)) for side in (problem.left, problem.right) if _is_computed(side))
+    if any(_is_limit(*pair) for pair in (sides, sides[::-1])) and not any(
+        map(_is_computed, (problem.left, problem.right))
+    ):
+        return True
     whole = any(side is not None and isinstance(side.value, int | float) and side.value % 1 == 0 for side in sides)
     passed_on = any(values.at(side) == ANYTHING and not _is_computed(side) for side in (problem.left, problem.right))
     return whole and passed_on
+
+
+def _is_limit(known: ValueSet | None, limit: ValueSet | None) -> bool:
+    """Whether values are limited to a number with which they are compared, as by `Math.min(level, 1.0)`: it is not
+    rounded."""
+    if known is None or limit is None or not isinstance(limit.value, int | float):
+        return False
+    return (known.low, known.low_from) == (limit.value, Origin.REACHED) or (known.high, known.high_from) == (
+        limit.value,
+        Origin.REACHED,
+    )
 
 
 def _is_constant(expr: Expr) -> bool:

@@ -127,6 +127,10 @@ def _compared_with_sent(
         return
     if known.value is not None:
         return  # machines that represent the environment often send one value only
+    if isinstance(number.value, str):
+        return  # a text that is like no other is a guard against texts of other machines; `never_sent` finds the others
+    if node.operator is Operator.EQUAL and _names_all_sent(context, place, chart, node, field, known):
+        return  # what is sent is distinguished already, so the comparison is a guard against other numbers
     if node.operator is Operator.EQUAL and isinstance(constant, Name) and constant.name.isupper():
         return  # nor do they send all values of an enumeration, such as errors
     sides = (reached(known), number) if field is node.left else (number, reached(known))
@@ -145,6 +149,20 @@ def _compared_with_sent(
             yield ConstantPart(node.span, f"this comparison is always true: {what}", is_true=True)
 
 
+def _names_all_sent(
+    context: MachineContext, place: ValuePlace, values: ChartValues, node: Binary, field: Expr, known: ValueSet
+) -> bool:
+    """Whether other comparisons with the same field name each number that machines send."""
+    name = place_of(field)
+    named: set[object] = set()
+    for other in _comparisons(context, place):
+        for side, constant in ((other.left, other.right), (other.right, other.left)):
+            number = values.at(constant)
+            if other is not node and other.operator is Operator.EQUAL and place_of(side) == name and number is not None:
+                named.add(number.value)
+    return bool(known.only) and named >= set(known.only or ())
+
+
 def _is_highest_level(
     context: MachineContext, place: ValuePlace, values: ChartValues, node: Binary, field: Expr
 ) -> bool:
@@ -156,14 +174,9 @@ def _is_highest_level(
         return False
     if (level.value - interval(met).high if is_upper else interval(met).low - level.value) <= 1:
         return False
-    trees = [
-        v.value.tree
-        for v in context.typed.values
-        if v.use in CONDITIONS and v.place.chart is place.chart and isinstance(v.value, Expression)
-    ]
-    for other in (n for tree in trees for n in walk(tree) if isinstance(n, Binary) and n is not node):
+    for other in _comparisons(context, place):
         for side, limit in ((other.left, other.right), (other.right, other.left)):
-            if name is None or place_of(side) != name or other.operator.kind is not OperatorKind.ORDER:
+            if other is node or name is None or place_of(side) != name or other.operator.kind is not OperatorKind.ORDER:
                 continue
             known, number = values.at(side), values.at(limit)
             if _is_upper_limit(other, side) is not is_upper or known is None or number is None or number.value is None:
@@ -172,6 +185,13 @@ def _is_highest_level(
             if compared(other.operator, *sides) != FALSE:
                 return True
     return False
+
+
+def _comparisons(context: MachineContext, place: ValuePlace) -> Iterator[Binary]:
+    """The operations with two sides in the conditions of the chart that contains `place`."""
+    for value in context.typed.values:
+        if value.use in CONDITIONS and value.place.chart is place.chart and isinstance(value.value, Expression):
+            yield from (node for node in walk(value.value.tree) if isinstance(node, Binary))
 
 
 def _is_upper_limit(node: Binary, field: Expr) -> bool:
