@@ -19,6 +19,11 @@ VERSION_3 = """<root main_tree_to_execute="Main">
             <SubTree ID="Inner" target="place" speed="4" __shared_blackboard="false"/>
             <Parallel success_threshold="1" failure_threshold="2"><AlwaysSuccess/><AlwaysSuccess/></Parallel>
             <Parallel threshold="1"><AlwaysSuccess/><AlwaysSuccess/></Parallel>
+            <SetBlackboard value="a &amp; b" output_key="text"/>
+            <BlackboardCheckInt value_A="{place}" value_B="-2" return_on_mismatch="RUNNING"><Go/></BlackboardCheckInt>
+            <Decorator ID="BlackboardCheckString" return_on_mismatch="SUCCESS"
+                value_A="a &amp; b"
+                value_B="{text}"><Go/></Decorator>
         </SequenceStar>
     </BehaviorTree>
     <BehaviorTree ID="Inner"><Go target="{target}" speed="{speed}"/></BehaviorTree>
@@ -34,6 +39,10 @@ VERSION_4 = """<root BTCPP_format="4" main_tree_to_execute="Main">
             <SubTree ID="Inner" target="{place}" speed="4"/>
             <Parallel success_count="1" failure_count="2"><AlwaysSuccess/><AlwaysSuccess/></Parallel>
             <Parallel success_count="1"><AlwaysSuccess/><AlwaysSuccess/></Parallel>
+            <SetBlackboard value="a &amp; b" output_key="text"/>
+            <Precondition if="place == -2" else="RUNNING"><Go/></Precondition>
+            <Decorator ID="Precondition" else="SUCCESS"
+                if="'a &amp; b' == text"><Go/></Decorator>
         </SequenceWithMemory>
     </BehaviorTree>
     <BehaviorTree ID="Inner"><Go target="{target}" speed="{speed}"/></BehaviorTree>

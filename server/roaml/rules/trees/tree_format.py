@@ -17,11 +17,15 @@ from roaml.regex import regex
 from roaml.rules.rule import Rule, TreeContext
 from roaml.text import Edit, Span, TextEdit, computed
 from roaml.xml_syntax import Attribute, Element
+from roaml.xml_syntax.escapes import escape
 
 CURRENT = "4"
 _YES = ("1", "true", "True", "TRUE")
 _SHARING = ("__shared_blackboard", "__autoremap")
 _NAME = regex(r"[A-Za-z_]\w*\Z", re.ASCII)
+_ENTRY = regex(r"\{(@?[A-Za-z_]\w*)\}\Z", re.ASCII)
+_LITERAL = regex(r"-?\d+(\.\d+)?\Z|true\Z|false\Z", re.ASCII)
+_CHECKS = frozenset(name for name, type_ in CPP.nodes.items() if type_.until and name.startswith("BlackboardCheck"))
 _PARALLEL = {"success_threshold": "success_count", "failure_threshold": "failure_count", "threshold": "success_count"}
 
 
@@ -108,6 +112,35 @@ def _node(context: TreeContext, node: TreeNode) -> Iterator[Edit]:
         for attribute in node.element.attributes:
             if attribute.name in _PARALLEL:
                 yield TextEdit(attribute.name_span, _PARALLEL[attribute.name])
+    elif name in _CHECKS:
+        yield from _precondition(context, node, is_text=name == "BlackboardCheckString")
+
+
+def _precondition(context: TreeContext, node: TreeNode, *, is_text: bool) -> Iterator[Edit]:
+    """The edits that replace a `BlackboardCheck…` by a `Precondition`; none if a script cannot contain a value."""
+    element = node.element
+    first, second, status = (element.get(port) for port in ("value_A", "value_B", "return_on_mismatch"))
+    if first is None or second is None or node.plugin is None:
+        return
+    left, right = (_operand(attribute.value.strip(), is_text=is_text) for attribute in (first, second))
+    if left is None or right is None:
+        return
+    yield from (
+        rename_tag(element, "Precondition").edits if node.compact else (TextEdit(node.plugin.span, "Precondition"),)
+    )
+    yield TextEdit(first.span, f'if="{escape(f"{left} == {right}")}"')
+    yield removal(context.source.text, second.span)
+    if status is not None:
+        yield TextEdit(status.name_span, "else")
+
+
+def _operand(value: str, *, is_text: bool) -> str | None:
+    """A value of a port as an operand of a script; `None` if a script cannot express it."""
+    if match := _ENTRY.match(value):
+        return match[1]
+    if is_text:
+        return None if "'" in value else f"'{value}'"
+    return value if _LITERAL.match(value) else None
 
 
 def _subtree(context: TreeContext, node: TreeNode) -> Iterator[Edit]:
