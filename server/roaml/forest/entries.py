@@ -219,10 +219,12 @@ def _uses(forest: Forest, path: str, own: str, node: TreeNode) -> Iterator[Use]:
     given = {setting.key.value for setting in node.ports}
     for port, text in forest.defaults.get(plugin.value, {}).items() if plugin is not None else ():
         entry = entry_named(port, text)
-        if port in given or entry is None:
+        if port in given or plugin is None:
             continue
-        assert plugin is not None
-        if is_call:
+        if entry is None:
+            if is_call:
+                yield Use(path, plugin.value, port, port, node, plugin.span, False, True, into=True, is_default=True)
+        elif is_call:
             yield Use(path, own, entry, port, node, plugin.span, False, False, False, remaps=True, is_default=True)
         elif forest.system is not None:
             yield _of_port(forest, Use(path, own, entry, port, node, plugin.span, is_default=True))

@@ -46,7 +46,11 @@ def check(context: MachineContext | TreeContext | SystemContext) -> Iterator[Fin
     if isinstance(context, MachineContext):
         for element, span in _misspelled(context.machine):
             texts_at.setdefault(span, []).extend(_of_machine(context, element))
+    reported: set[tuple[str, ...]] = set()
     for span, texts in texts_at.items():
+        if tuple(texts) in reported:
+            continue  # the same node, or the same mistake, elsewhere in this file
+        reported.add(tuple(texts))
         if texts and _is_unresolved(context, span):
             reason, advice = "because a listed plugin cannot be read", "fix the errors of that plugin first"
             yield RULE.at(span, f"not checked, {reason}: {_listing(texts)}; {advice}")
@@ -184,7 +188,8 @@ def _causes(context: MachineContext | TreeContext | SystemContext, system: Syste
 
 
 def _questions(system: System, interface: Callable[[str, str], InterfaceType | NotFound]) -> Iterator[_Question]:
-    for name in sorted({i.plugin for i in system.instances if system.plugin(i.plugin, i.tree)[1] is None}):
+    unknown = {i.plugin for i in system.instances if system.plugin(i.plugin, i.tree)[1] is None}
+    for name in () if system.plugins_known else sorted(unknown):  # otherwise `unknown-node` answers it
         yield _Question(GapAct.PLUGIN, name, f"whether the plugin `{name}` exists")
     for topic in system.topics.values():
         if not topic.users and not system.is_observed(topic_message(topic.name)):
