@@ -344,3 +344,22 @@ ONCE = """
 def test_a_tick_in_a_dead_state(old: str, new: str, severity: Severity, tmp_path: Path) -> None:
     diagnostics, _ = check_text(tmp_path, ONCE.replace(old, new))
     assert [d.severity for d in diagnostics if d.code == "unanswered-tick"] == [severity]
+
+
+def test_a_halt_before_the_response(tmp_path: Path) -> None:
+    """The response of a server that answers at once is there before the tree can halt the node."""
+    case = next(c for c in cases_of_rules() if c.subject == "outstanding-response" and c.title == "a halt")
+    slow = "\n".join(line for line in case.text.splitlines() if "^" not in line)
+    at_once = slow.replace(
+        'name="motor" target="ready"><ros_service_send_response name="open" /></ros_rate_callback>',
+        'name="motor" target="opening" />',
+    ).replace(
+        'name="open" target="opening" />',
+        'name="open" target="ready"><ros_service_send_response name="open" /></ros_service_handle_request>',
+    )
+    severities = {}
+    for name, text in (("slow", slow), ("at once", at_once)):
+        (tmp_path / name).mkdir()
+        diagnostics, _ = check_text(tmp_path / name, text)
+        severities[name] = [d.severity for d in diagnostics if d.code == "outstanding-response"]
+    assert severities == {"slow": [Severity.WARNING], "at once": [Severity.INFORMATION]}

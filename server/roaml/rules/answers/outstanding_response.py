@@ -8,13 +8,12 @@ from collections.abc import Collection, Iterator
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.model.behavior.duties import forward
 from roaml.model.behavior.explore import Behavior, BehaviorStep
-from roaml.model.behavior.instants import promises, server_of
 from roaml.model.behavior.phases import Phase, ProtocolEvent, Subject
 from roaml.model.machine import Handler, State
 from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.answers import behaviors
+from roaml.rules.support.answers import answers_at_once, behaviors
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -35,7 +34,7 @@ def _of_client(context: MachineContext, behavior: Behavior, name: str) -> Iterat
         return
     left = {n for n in range(behavior.size) if _is_left(behavior, n, name, waiting.keys())}
     kept = [step for step in behavior.steps if step.source in left and step.target in left]
-    takes_time = _takes_time(context, name)
+    takes_time = not answers_at_once(context, ProtocolEvent(ProtocolPart.RESPONSE, name))
     reported: set[Handler] = set()
     for step in behavior.steps:
         if step.handler in reported or not _leaves(behavior, step, name, waiting.keys()):
@@ -53,8 +52,7 @@ def _of_client(context: MachineContext, behavior: Behavior, name: str) -> Iterat
                 Related(overtaking[0].handler.element.name_span, "sends the next request"),
                 Related(waiting[later].element.name_span, "takes the earlier response"),
             ]
-            is_sure = takes_time or step.event is None or step.event.part is ProtocolPart.BT_HALT
-            is_sure = is_sure or (_sends(step, name) and _passes(behavior, step))
+            is_sure = takes_time or step.event is None or (_sends(step, name) and _passes(behavior, step))
             severity = None if is_sure else Severity.INFORMATION
             yield RULE.at(step.handler.element.name_span, message, related=related, severity=severity)
 
@@ -102,13 +100,6 @@ def _passes(behavior: Behavior, step: BehaviorStep) -> bool:
     name = behavior.configurations[step.target].state
     entered = next((state for state in behavior.chart.states if state.id is not None and state.id.value == name), None)
     return entered is not None and all(h.trigger is None for h in entered.handlers) and bool(entered.handlers)
-
-
-def _takes_time(context: MachineContext, name: str) -> bool:
-    """Whether the server of a service may send its response later than at once."""
-    response = ProtocolEvent(ProtocolPart.RESPONSE, name)
-    servers = [server_of(context.system, a, response) for a in context.automata] if context.system is not None else []
-    return any(server is not None and any(promises(server, response)) for server in servers)
 
 
 RULE = Rule(

@@ -6,13 +6,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
-from roaml.model.behavior.phases import Duty, DutyKind
+from roaml.model.behavior.phases import Duty, DutyKind, ProtocolEvent
 from roaml.model.gaps import InterfaceAct
-from roaml.model.machine import Declaration, RosSend, State
+from roaml.model.machine import Declaration, Handler, RosSend, State
 from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule
-from roaml.rules.support.answers import behaviors
+from roaml.rules.support.answers import answers_at_once, behaviors
 from roaml.rules.support.interfaces import declared
 
 _HANDLES = InterfaceAct(SymbolKind.ACTION_SERVER, ProtocolPart.CANCEL)
@@ -61,7 +61,7 @@ def _rejected(context: MachineContext) -> Iterator[Finding]:
                 for configuration in behavior.configurations
                 if configuration.owes(Duty(DutyKind.RESULT, declaration.handle.value))
             }
-            waiting = [s for s in behavior.chart.states if s.id and s.id.value in executing and _waits(s)]
+            waiting = [s for s in behavior.chart.states if s.id and s.id.value in executing and _waits(context, s)]
             rejecting = [state for state in waiting if not _handles_cancel(context, state, declaration)]
             if len(rejecting) == 1 and len(waiting) > 1 and rejecting[0].id is not None:
                 name = rejecting[0].id.value
@@ -72,10 +72,19 @@ def _rejected(context: MachineContext) -> Iterator[Finding]:
                 yield RULE.at(rejecting[0].id.span, message)
 
 
-def _waits(state: State) -> bool:
-    """Whether a machine stays in a state until something arrives."""
+def _waits(context: MachineContext, state: State) -> bool:
+    """Whether a machine stays in a state until something arrives that takes time."""
     handlers = [handler for handler in state.handlers if handler.effective]
-    return bool(handlers) and all(handler.trigger is not None for handler in handlers)
+    is_left = any(handler.trigger is None or _arrives_at_once(context, handler) for handler in handlers)
+    return bool(handlers) and not is_left
+
+
+def _arrives_at_once(context: MachineContext, handler: Handler) -> bool:
+    """Whether a handler takes the response of a service that always answers at once."""
+    service = find_handle(context.machine, handler) if handler.trigger is ProtocolPart.RESPONSE else None
+    if service is None or service.handle is None:
+        return False
+    return answers_at_once(context, ProtocolEvent(ProtocolPart.RESPONSE, service.handle.value))
 
 
 def _handles_cancel(context: MachineContext, state: State, declaration: Declaration) -> bool:

@@ -16,7 +16,7 @@ from roaml.language import HL_SCXML
 from roaml.language.validate import misspelled_attribute
 from roaml.model.behavior.duties import Possible, always, is_suspicious, untaken
 from roaml.model.behavior.explore import Behavior, BehaviorStep, Fault, FaultKind, explore
-from roaml.model.behavior.instants import Instants, is_readable
+from roaml.model.behavior.instants import Instants, is_readable, promises, server_of
 from roaml.model.behavior.phases import HALT, Duty, DutyKind, Phase, ProtocolEvent
 from roaml.model.machine import Handler, If, Machine, RosSend, State, Statement, statements
 from roaml.model.obligations.losses import Loss, losses, waiting_behind
@@ -49,6 +49,12 @@ ELEMENTS = {
     ProtocolPart.GOAL: ("ros_action_accept_goal", "ros_action_reject_goal"),
     ProtocolPart.RESULT: ("ros_action_succeed", "ros_action_aborted", "ros_action_canceled"),
 }
+
+
+def answers_at_once(context: MachineContext, response: ProtocolEvent) -> bool:
+    """Whether no server that sends a response to the machine may send it later than at once."""
+    servers = [server_of(context.system, a, response) for a in context.automata] if context.system is not None else []
+    return not any(server is not None and any(promises(server, response)) for server in servers)
 
 
 def behaviors(context: MachineContext) -> Iterator[Behavior]:
