@@ -3,14 +3,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from roaml.expr.infer import constant
 from roaml.expr.operators import MIRRORED, OPPOSITE, Operator
 from roaml.expr.tree import Binary, Expr, Index, Name
 from roaml.model.machine import Assign, Chart, Statement
+from roaml.model.syntax import Expression
 from roaml.model.values.analyse import ChartValues
-from roaml.model.values.domain import interval
+from roaml.model.values.domain import Origin, interval
 from roaml.model.values.evaluate import place_of
-from roaml.rules.support.blocks import blocks, counts, sets
+from roaml.rules.support.blocks import Block, blocks, counts, sets, target
 from roaml.rules.support.known_parts import Conditions, conjuncts
 
 
@@ -22,16 +25,33 @@ def ends_in_time(chart: Chart, values: ChartValues, append: Index, holding: Cond
     adding = [b for b in all_blocks if any(_appends(s, array) for s in b.statements)]
     if array is None or not adding:
         return False
-    for condition, holds in holding:
-        for comparison, value in conjuncts(condition.tree, holds):
-            counter, steps = _steps(values, comparison, value)
-            if counter is None or steps is None or steps[1] > room:
-                continue
-            counting = [b for b in all_blocks if any(counts(s, counter, steps[0]) for s in b.assigned(counter))]
-            setting = [b for b in all_blocks if b.assigned(counter) and b not in counting]
-            if all(b in counting for b in adding) and all(sets(b.statements, array) for b in setting):
-                return True
+    compared = (_steps(values, *part) for condition, holds in holding for part in conjuncts(condition.tree, holds))
+    for counter, steps in (*compared, *_counted(values, adding[0])):
+        if counter is None or steps is None or steps[1] > room:
+            continue
+        counting = [b for b in all_blocks if any(counts(s, counter, steps[0]) for s in b.assigned(counter))]
+        setting = [b for b in all_blocks if b.assigned(counter) and b not in counting]
+        if all(b in counting for b in adding) and all(sets(b.statements, array) for b in setting):
+            return True
     return False
+
+
+def _counted(values: ChartValues, block: Block) -> Iterator[tuple[str, tuple[int, float]]]:
+    """The variables that a block counts, whose values conditions of other states limit: each with its step, and with
+    the number of values that it has before it is counted."""
+    for statement in block.statements:
+        counter = target(statement) if isinstance(statement, Assign) else None
+        tree = (
+            statement.value.tree if isinstance(statement, Assign) and isinstance(statement.value, Expression) else None
+        )
+        if counter is None or not isinstance(tree, Binary):
+            continue
+        known = [
+            interval(at) for side in (tree.left, tree.right) if place_of(side) == counter and (at := values.at(side))
+        ]
+        for bounds in known:
+            if max(bounds.low_from, bounds.high_from) is Origin.REACHED:
+                yield counter, (1 if counts(statement, counter, 1) else -1, bounds.high - bounds.low + 1)
 
 
 def _appends(statement: Statement, array: str | None) -> bool:
