@@ -134,12 +134,14 @@ def _severity(trees: Forest) -> Severity | None:
 
 def _may_be(known: Node | None, node: TreeNode) -> bool:
     """Whether a node is a leaf like `known`, or has children like it, and sets no ports that `known` does not have
-    unless it also sets one that it has."""
+    unless it also sets one that it has. A leaf without ports is none that needs ports."""
     if known is None:
         return True
     if not (known.children[1] > 0 if node.children else known.children[0] == 0):
         return False
-    return not node.ports or any(known.port(setting.key.value) is not None for setting in node.ports)
+    if not node.ports:
+        return bool(node.children) or not any(port.required for port in known.ports)
+    return any(known.port(setting.key.value) is not None for setting in node.ports)
 
 
 def _has_children_of(node: TreeNode, known: Node) -> bool:
