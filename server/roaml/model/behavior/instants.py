@@ -383,6 +383,18 @@ def can_arrive_again(
     return False
 
 
+def may_be_sent_repeatedly(system: System, receiver: SystemAutomaton, event: ProtocolEvent) -> bool:
+    """Whether an automaton may send `event`, which `receiver` receives, more than once."""
+    if is_clock(system, receiver, event) or may_be_sent(system, receiver, event):
+        return True
+    for sender, sent_event in senders(system, receiver, event):
+        repeats = [dict(chart.repeats).get(sent_event) for chart in sender.outline.charts]
+        known = [needs for needs in repeats if needs is not None]
+        if not known or any(known) or not is_readable(system, sender):
+            return True
+    return False
+
+
 class _Again(Record, frozen=True, eq=False):
     """What can happen while one chart stays in one state (`can_arrive_again`).
 

@@ -10,6 +10,7 @@ from roaml.expr.infer import constant
 from roaml.expr.operators import Operator
 from roaml.expr.tree import ArrayLiteral, Binary, Call, Conditional, Expr, Member, Name, Number, ObjectLiteral, walk
 from roaml.expr.types import INTEGER_RANGES, Array, Scalar, ScalarKind, Struct, Type, is_kind, unwrap
+from roaml.model.behavior.instants import may_be_sent_repeatedly
 from roaml.model.machine import Assign, Handler, Statement, statements
 from roaml.model.syntax import Expression
 from roaml.model.value_types import TypedValue, ValueUse
@@ -17,9 +18,11 @@ from roaml.model.values.analyse import ChartValues, analyse
 from roaml.model.values.arriving import arriving_by_type
 from roaml.model.values.domain import Origin, ValueSet, between, interval, meet
 from roaml.model.values.evaluate import Evaluator, place_of
+from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.known_parts import conjuncts
 from roaml.rules.support.retype import as_type, wide_enough
+from roaml.rules.support.triggers import received_event
 from roaml.rules.support.written import written
 from roaml.text import Span, TextEdit
 
@@ -67,7 +70,9 @@ def _computed(context: MachineContext, value: TypedValue) -> Iterator[Finding]:
             continue  # another assignment is the cause
         if low <= bound <= high or origin is Origin.ASSUMED or (origin is Origin.WIDENED and high > MAX_COUNTED):
             continue
-        if origin is Origin.WIDENED and _is_limited_next(context, value, chart, above=above):
+        if origin is Origin.WIDENED and (
+            _is_limited_next(context, value, chart, above=above) or _arrives_once(context, value.place.handler)
+        ):
             continue
         if _is_limited(context, value, chart, above=above):
             continue
@@ -170,6 +175,17 @@ def _is_limited_next(context: MachineContext, value: TypedValue, chart: ChartVal
     )
 
 
+def _arrives_once(context: MachineContext, handler: Handler | None) -> bool:
+    """Whether a handler takes a message or event that each of its senders sends at most once, so that it is not taken
+    again and again."""
+    if context.system is None or handler is None or handler.trigger not in (ProtocolPart.MESSAGE, ProtocolPart.EVENT):
+        return False
+    event = received_event(context.machine, handler)
+    return event is not None and not any(
+        may_be_sent_repeatedly(context.system, automaton, event) for automaton in context.automata
+    )
+
+
 def _leaves(chart: ChartValues, later: Handler, state: str, name: str, limit: int, *, above: bool) -> bool:
     """Whether a handler leaves a state, or assigns a variable, once the variable reaches a value within `limit`."""
     stays = [target for target in later.targets if target.state is None or target.state.value == state]
@@ -210,7 +226,7 @@ def _sides(tree: Expr) -> tuple[Expr | None, Expr | None]:
 
 def _early(context: MachineContext, value: TypedValue, tree: Expr) -> ValueSet | None:
     """The values of an expression in the first passes of a loop."""
-    arriving = arriving_by_type(context.machine, context.interface)
+    arriving = context.values.arriving if context.system else arriving_by_type(context.machine, context.interface)
     chart = analyse(context.machine, context.typed, arriving, is_bounded=True).charts.get(value.place.chart.scope)
     values = chart.at(tree) if chart is not None else None
     return interval(values) if values is not None else None

@@ -10,9 +10,9 @@ from roaml.model.behavior.instants import can_arrive_again
 from roaml.model.behavior.phases import ProtocolEvent
 from roaml.model.machine import Chart, Handler, State
 from roaml.model.triggers import Trigger, trigger
-from roaml.model.value_types import find_handle
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.triggers import received_event
 from roaml.rules.support.words import words_of
 
 _IGNORED = (ProtocolPart.MESSAGE, ProtocolPart.EVENT)
@@ -108,7 +108,7 @@ def _lost(context: MachineContext, number: int, state: State, reached: list[Stat
             if handler.trigger not in _IGNORED or key is None or key in handled or key in seen:
                 continue
             seen.add(key)
-            event = _event(context, handler)
+            event = received_event(context.machine, handler)
             if event is not None and any(_repeats(context, number, event, i) for i in range(len(context.automata))):
                 yield other, handler
 
@@ -116,15 +116,6 @@ def _lost(context: MachineContext, number: int, state: State, reached: list[Stat
 def _repeats(context: MachineContext, number: int, event: ProtocolEvent, automaton: int) -> bool:
     assert context.system is not None
     return can_arrive_again(context.system, context.automata[automaton], number, event, frozenset())
-
-
-def _event(context: MachineContext, handler: Handler) -> ProtocolEvent | None:
-    if handler.trigger is ProtocolPart.EVENT:
-        return ProtocolEvent(ProtocolPart.EVENT, handler.event.value) if handler.event else None
-    declaration = find_handle(context.machine, handler)
-    if declaration is None or declaration.handle is None:
-        return None
-    return ProtocolEvent(ProtocolPart.MESSAGE, declaration.handle.value)
 
 
 def _reached(chart: Chart) -> list[State]:

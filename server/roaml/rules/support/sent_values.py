@@ -22,7 +22,7 @@ from roaml.rules.rule import MachineContext, close_names
 from roaml.rules.support.compared_numbers import reached
 from roaml.rules.support.constant_conditions import ConstantPart
 from roaml.rules.support.message_constants import wrong_fields
-from roaml.rules.support.ranges import is_validation
+from roaml.rules.support.ranges import is_validation, pairs
 from roaml.rules.support.received_lengths import length_never_sent
 from roaml.text import Span, TextEdit
 
@@ -144,6 +144,8 @@ def _compared_with_sent(
             message = f"this comparison is never true: {what}"
             yield ConstantPart(node.span, message, is_true=False, severity=severity)
     elif result == TRUE and node.operator is not Operator.NOT_EQUAL:
+        if any(node is limit.node for pair in pairs(tree, Operator.AND) for limit in pair):
+            return  # a part of a range, as in a comparison with a tolerance
         conditions = chart.conditions.get(tree.span)
         if conditions is None or (node is tree and conditions.alone == TRUE):
             yield ConstantPart(node.span, f"this comparison is always true: {what}", is_true=True)

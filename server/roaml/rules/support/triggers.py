@@ -6,8 +6,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from roaml.model.behavior.explore import condition_facts
+from roaml.model.behavior.phases import ProtocolEvent
 from roaml.model.machine import Chart, Handler, Machine, State
 from roaml.model.triggers import Trigger, chooses, trigger
+from roaml.model.value_types import find_handle
+from roaml.roles import ProtocolPart
 from roaml.rules.support.conditions import covered
 
 
@@ -39,3 +42,13 @@ def has_shadowed(machine: Machine, chart: Chart, handler: Handler) -> bool:
         for handlers in groups
         if handler in handlers
     )
+
+
+def received_event(machine: Machine, handler: Handler) -> ProtocolEvent | None:
+    """The event or message that a handler receives; `None` if its name is missing."""
+    if handler.trigger is ProtocolPart.EVENT:
+        return ProtocolEvent(ProtocolPart.EVENT, handler.event.value) if handler.event else None
+    declaration = find_handle(machine, handler)
+    if declaration is None or declaration.handle is None:
+        return None
+    return ProtocolEvent(ProtocolPart.MESSAGE, declaration.handle.value)
