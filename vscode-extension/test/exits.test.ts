@@ -4,8 +4,17 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { Picture } from "../src/pictures/contract";
-import { bandsOf, chipsOf, cornersOf, exitsOf, inARow, NO_BANDS, type DrawnLine } from "../src/pictures/view/exits";
-import { mapCorner, withoutCuts } from "../src/pictures/view/find";
+import {
+    bandsOf,
+    chipsOf,
+    cornersOf,
+    exitsOf,
+    hasVisibleEnd,
+    inARow,
+    NO_BANDS,
+    type DrawnLine,
+} from "../src/pictures/view/exits";
+import { beside, trimsOf } from "../src/pictures/view/find";
 import { edgesOf } from "../src/pictures/view/surroundings";
 
 const SIGHT = { x: 0, y: 0, scale: 1 };
@@ -46,13 +55,31 @@ test("a line that ends at a node just behind the border has an exit there", () =
 
 test("lines without a visible end, with two, or that end at a label have no exit", () => {
     const lines = [
-        line(0, 2, "M 50 40 L 50 -20 L 80 -20 L 80 40"),
+        line(0, 2, "M 50 40 L 50 20 L 80 20 L 80 40"),
         line(1, 1, "M 50 300 L 50 0"),
         line(0, 1, "M 50 60 L 50 90"),
         // This line ends at a label that names its target.
         { ...line(1, 0, "M 50 300 L 50 280"), points: [...cornersOf("M 50 300 L 50 280")] },
     ];
     assert.deepEqual(exitsOf(lines, BOXES, SIGHT, 100, 100), []);
+});
+
+test("a line between two visible ends that leads outside has an exit at both places", () => {
+    const exits = exitsOf([line(0, 2, "M 50 40 L 50 -20 L 130 -20 L 130 50 L 90 50")], BOXES, SIGHT, 100, 100);
+    assert.deepEqual(
+        exits.map(({ side, at, node, isOut }) => [side, at, node, isOut]),
+        [
+            ["top", 50, 2, true],
+            ["right", 50, 0, false],
+        ],
+    );
+});
+
+test("a line leads only through a window that shows neither of its ends, nor a part of them", () => {
+    const through = line(1, 1, "M 50 300 L 50 0");
+    assert.ok(!hasVisibleEnd(through, BOXES, SIGHT, 100, 100));
+    assert.ok(hasVisibleEnd(through, BOXES, SIGHT, 100, 310));
+    assert.ok(hasVisibleEnd(line(0, 1, ""), BOXES, SIGHT, 100, 100));
 });
 
 test("neighbouring exits of a direction share a chip, which names each node once, the nearest first", () => {
@@ -63,26 +90,26 @@ test("neighbouring exits of a direction share a chip, which names each node once
         15,
     );
     assert.deepEqual(
-        chips.map(({ at, isOut, exits }) => [at, isOut, exits.map(({ node }) => node)]),
+        chips.map(({ from, to, way, exits }) => [from, to, way, exits.map(({ node }) => node)]),
         [
-            [17.5, true, [2, 1]],
-            [15, false, [4]],
-            [30, true, [3]],
+            [10, 25, "out", [2, 1]],
+            [15, 15, "in", [4]],
+            [30, 30, "out", [3]],
         ],
     );
 });
 
-test("lines to the same node share a chip, unless they are far from each other", () => {
-    const exit = (at: number, node: number) =>
-        ({ side: "bottom", at, edge: at, node, isOut: true, distance: at }) as const;
-    const chips = chipsOf([exit(10, 1), exit(90, 1), exit(400, 1)], 15);
-    assert.deepEqual(
-        chips.map(({ at, exits }) => [at, exits.map(({ node }) => node)]),
-        [
-            [50, [1]],
-            [400, [1]],
-        ],
-    );
+test("a chip for the lines of one node reaches from the first to the last, unless others are between them", () => {
+    const exit = (at: number, node: number, isOut = true) =>
+        ({ side: "bottom", at, edge: at, node, isOut, distance: at }) as const;
+    const named = (...exits: Parameters<typeof chipsOf>[0]) =>
+        chipsOf(exits, 15).map(({ from, to, way, exits: own }) => [from, to, way, own.map(({ node }) => node)]);
+    assert.deepEqual(named(exit(10, 1), exit(90, 1), exit(400, 1, false)), [[10, 400, "both", [1]]]);
+    assert.deepEqual(named(exit(10, 1), exit(90, 2), exit(400, 1)), [
+        [10, 10, "out", [1]],
+        [90, 90, "out", [2]],
+        [400, 400, "out", [1]],
+    ]);
 });
 
 test("chips cover the sides at which the drawing goes on", () => {
@@ -95,27 +122,31 @@ test("chips cover the sides at which the drawing goes on", () => {
     assert.ok(inside.top > 0 && inside.left > 0 && inside.right > 0);
 });
 
-test("the first view cuts off no row if a little other scale or place avoids it", () => {
+test("the first view is smaller at its sides so that it cuts off nothing", () => {
     const rows = Array.from({ length: 20 }, (_, row) => ({ x: 100, y: row * 60, width: 80, height: 30 }));
-    const drawing = { width: 300, height: 1200 };
-    for (const y of [-24, 300])
-        for (let height = 400; height < 460; height += 7) {
-            const sight = { x: -50, y, scale: 1 };
-            const bands = (view: typeof sight) => bandsOf(view, drawing, 400, height);
-            const found = withoutCuts(sight, drawing, rows, 400, height, bands);
-            const { top, bottom } = bands(found);
-            const [upper, lower] = [found.y + top / found.scale, found.y + (height - bottom) / found.scale];
-            const cut = rows.filter((row) => [upper, lower].some((at) => row.y < at && row.y + row.height > at));
-            assert.deepEqual(cut, [], `from ${y}, height ${height}`);
-            assert.ok(found.scale >= 0.9 && found.scale <= 1);
-            if (y < 0) assert.equal(found.y * found.scale, y);
-        }
-    // What fits as a whole is not changed.
-    const whole = { x: 0, y: -10, scale: 1 };
-    assert.deepEqual(
-        withoutCuts(whole, drawing, rows, 400, 1300, () => NO_BANDS),
-        whole,
-    );
+    for (let height = 400; height < 460; height += 7) {
+        const frame = { sight: { x: 0, y: 7, scale: 1 }, width: 140, height };
+        const { top, bottom, left, right } = trimsOf(rows, frame);
+        const [upper, lower] = [7 + top, 7 + height - bottom];
+        const cut = rows.filter((row) => [upper, lower].some((at) => row.y < at && row.y + row.height > at));
+        assert.deepEqual(cut, [], `height ${height}`);
+        assert.equal(left, 0);
+        assert.ok(right > 40 && bottom < 40);
+    }
+    // What fits as a whole is not changed, and what is much too large is cut off.
+    const all = { sight: { x: 0, y: -10, scale: 1 }, width: 400, height: 1300 };
+    assert.deepEqual(trimsOf(rows, all), NO_BANDS);
+    const large = [{ x: 20, y: 0, width: 1000, height: 1000 }];
+    assert.deepEqual(trimsOf(large, { ...all, width: 500, height: 500 }), NO_BANDS);
+});
+
+test("the part of a window beside its bands", () => {
+    const bands = { top: 10, bottom: 20, left: 30, right: 40 };
+    assert.deepEqual(beside({ x: 5, y: 6, scale: 2 }, 200, 100, bands), {
+        sight: { x: 20, y: 11, scale: 2 },
+        width: 130,
+        height: 70,
+    });
 });
 
 test("chips in a row do not overlap, and stay near their lines and inside", () => {
@@ -126,17 +157,6 @@ test("chips in a row do not overlap, and stay near their lines and inside", () =
         { at: 195, size: 30 },
     ];
     assert.deepEqual(inARow(row, 4, 200, 4), [4, 48, 140, 170]);
-});
-
-test("the map is smaller where it would cover something", () => {
-    const map = { width: 100, height: 100 };
-    const wall = { x: 40, y: -1000, width: 120, height: 2000 };
-    assert.equal(mapCorner(SIGHT, [], 200, 200, map).shrink, 1);
-    const beside = mapCorner(SIGHT, [{ ...wall, x: 90, width: 20 }], 200, 200, map);
-    assert.ok(beside.shrink < 1 && beside.shrink > 0.4);
-    assert.equal(beside.width, 100 * beside.shrink + 24);
-    // If each covers something, it is the smallest one.
-    assert.equal(mapCorner(SIGHT, [wall], 200, 200, map).shrink, 0.4);
 });
 
 test("the lines of a node leave it, also through a choice, or enter it", () => {

@@ -27,18 +27,16 @@ export interface Exit {
     readonly distance: number;
 }
 
-/** The height of the bands with the chips at the upper and the lower side of a window, in pixels. */
+/** The height of the bands with chips above and below a picture, and the width of those beside it, in pixels. */
 const BAND = 24;
-
-/** The usual width of a chip, in pixels. */
-const CHIP = 110;
+export const CHIP = 120;
 
 /** The sizes of what covers a window at its sides, in pixels. */
 export type Bands = Readonly<Record<Side, number>>;
 
 export const NO_BANDS: Bands = { top: 0, bottom: 0, left: 0, right: 0 };
 
-/** What chips cover: the sides at which the drawing goes on. */
+/** The bands for chips: at the sides at which the drawing goes on. */
 export function bandsOf(
     { x, y, scale }: Sight,
     drawn: { readonly width: number; readonly height: number },
@@ -53,10 +51,29 @@ export function bandsOf(
     };
 }
 
+/** Whether a line has a visible end in a window. */
+export function hasVisibleEnd(
+    { source, target }: DrawnLine,
+    boxes: ReadonlyMap<number, Box>,
+    { x, y, scale }: Sight,
+    width: number,
+    height: number,
+): boolean {
+    return [boxes.get(source), boxes.get(target)].some(
+        (box) =>
+            box &&
+            box.x + box.width > x &&
+            box.x < x + width / scale &&
+            box.y + box.height > y &&
+            box.y < y + height / scale,
+    );
+}
+
 /** A line ends at its node if it is not farther from it, in pixels of the drawing; others end at their labels. */
 const AT_NODE = 12;
 
-/** The places where lines leave a window, of those that have exactly one visible end. */
+/** The places where lines leave a window: of those that have one visible end, and both places of those that have two but
+ * lead outside between them. */
 export function exitsOf(
     lines: readonly DrawnLine[],
     boxes: ReadonlyMap<number, Box>,
@@ -67,59 +84,80 @@ export function exitsOf(
     const seen = ({ x: px, y: py }: Point): Point => ({ x: (px - x) * scale, y: (py - y) * scale });
     const middle = (box: Box): Point => seen({ x: box.x + box.width / 2, y: box.y + box.height / 2 });
     const isVisible = ({ x: px, y: py }: Point) => px >= 0 && px <= width && py >= 0 && py <= height;
+    const inside = (point: Point): Point => ({ x: within(point.x, 0, width), y: within(point.y, 0, height) });
     return lines.flatMap(({ edge, source, target, points }) => {
         const [from, to] = [boxes.get(source), boxes.get(target)];
-        if (!from || !to || isVisible(middle(from)) === isVisible(middle(to))) return [];
-        const isOut = isVisible(middle(from));
-        const [first, last] = [points[0], points.at(-1)];
-        if (!isOut && last && distanceTo(to, last) > AT_NODE) return [];
-        const path = (isOut ? points.toReversed() : points).map(seen);
-        const other = middle(isOut ? to : from);
-        const exitAt = (side: Side, entry: Point): Exit => {
+        if (!from || !to) return [];
+        const exitAt = (isOut: boolean, side: Side, entry: Point): Exit => {
+            const other = middle(isOut ? to : from);
             const distance = Math.hypot(other.x - entry.x, other.y - entry.y);
             const at = side === "top" || side === "bottom" ? entry.x : entry.y;
             return { side, at, edge, node: isOut ? target : source, isOut, distance };
         };
-        for (const [index, start] of path.entries()) {
-            const end = path[index + 1];
+        const isOut = isVisible(middle(from));
+        const path = points.map(seen);
+        if (isOut && isVisible(middle(to))) {
+            return [true, false].flatMap((way) => {
+                const outside = (way ? path : path.toReversed()).find((point) => !isVisible(point));
+                if (!outside) return [];
+                const entry = inside(outside);
+                return [exitAt(way, sideOf(outside, entry), entry)];
+            });
+        }
+        if (!isOut && !isVisible(middle(to))) return [];
+        const [first, last] = [points[0], points.at(-1)];
+        if (!isOut && last && distanceTo(to, last) > AT_NODE) return [];
+        const inwards = isOut ? path.toReversed() : path;
+        for (const [index, start] of inwards.entries()) {
+            const end = inwards[index + 1];
             if (!end) break;
-            const entry = { x: within(start.x, 0, width), y: within(start.y, 0, height) };
+            const entry = inside(start);
             if (!isBetween(entry, start, end)) continue;
             if (entry.x === start.x && entry.y === start.y) {
                 const isAtNode =
                     index === 0 && first && last && distanceTo(isOut ? to : from, isOut ? last : first) <= AT_NODE;
                 const side = isAtNode ? sideNear(entry, width, height) : undefined;
                 if (!side) break; // its end is visible
-                return [exitAt(side, entry)];
+                return [exitAt(isOut, side, entry)];
             }
-            const isVertical = entry.x === start.x;
-            const side = isVertical ? (start.y < 0 ? "top" : "bottom") : start.x < 0 ? "left" : "right";
-            return [exitAt(side, entry)];
+            return [exitAt(isOut, sideOf(start, entry), entry)];
         }
         return [];
     });
 }
 
-/** Exits that share a chip, the nearest node first; `at` is in their middle. */
+/** The side of a window at which a line to a place outside crosses it. */
+function sideOf(outside: Point, crossing: Point): Side {
+    if (crossing.x === outside.x) return outside.y < crossing.y ? "top" : "bottom";
+    return outside.x < crossing.x ? "left" : "right";
+}
+
+/** Exits that share a chip, the nearest node first. The lines are between `from` and `to`. */
 export interface Chip {
     readonly side: Side;
-    readonly at: number;
-    readonly isOut: boolean;
+    readonly from: number;
+    readonly to: number;
+    /** Whether the lines lead out of the view, or into it, or both. */
+    readonly way: "out" | "in" | "both";
     readonly exits: readonly Exit[];
 }
 
-/** Lines to the same node at this distance share a chip, in pixels. */
+/** Lines of a direction to the same node at this distance share a chip, in pixels. */
 const SAME_NODE = 160;
 
 /** The exits at one side of a window, grouped so that neighbours of a direction within a distance share a chip, and those
- * that lead to the same node if they are not far from each other. */
+ * that lead to the same node if they are not far from each other, or if no other one is between them. */
 export function chipsOf(exits: readonly Exit[], distance: number): Chip[] {
     const groups: Exit[][] = [];
     for (const exit of exits.toSorted((one, other) => one.at - other.at)) {
-        const group = groups.findLast(([first]) => first?.isOut === exit.isOut);
-        const first = group?.[0];
+        const previous = groups.at(-1);
+        if (previous?.every(({ node }) => node === exit.node)) {
+            previous.push(exit);
+            continue;
+        }
+        const group = groups.findLast((others) => others.every(({ isOut }) => isOut === exit.isOut));
         const isSame = group?.some(({ node, at }) => node === exit.node && exit.at - at <= SAME_NODE);
-        if (group && first && (isSame || exit.at - first.at <= distance)) group.push(exit);
+        if (group && (isSame || exit.at - (group[0]?.at ?? -Infinity) <= distance)) group.push(exit);
         else groups.push([exit]);
     }
     return groups.flatMap((group) => {
@@ -128,8 +166,9 @@ export function chipsOf(exits: readonly Exit[], distance: number): Chip[] {
         const nodes = new Set<number>();
         const own = group.toSorted((one, other) => one.distance - other.distance);
         const different = own.filter(({ node }) => !nodes.has(node) && nodes.add(node));
-        const { side, isOut } = first;
-        return [{ side, at: (first.at + last.at) / 2, isOut, exits: different }];
+        const isMixed = group.some(({ isOut }) => isOut !== first.isOut);
+        const way = isMixed ? "both" : first.isOut ? "out" : "in";
+        return [{ side: first.side, from: first.at, to: last.at, way, exits: different }];
     });
 }
 

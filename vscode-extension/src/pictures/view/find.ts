@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Navigation in a picture: by arrow keys, by search, and by zooming. */
 
-import type { Bands } from "./exits";
+import { NO_BANDS, SIDES, type Bands, type Side } from "./exits";
 import { DIRECTIONS, type Box, type Drawing, type DrawnNode, type Picture, type Point } from "../contract";
 
 export type Arrow = "ArrowUp" | "ArrowDown" | "ArrowLeft" | "ArrowRight";
@@ -55,12 +55,9 @@ export interface Sight extends Point {
     readonly scale: number;
 }
 
-const MARGIN = 24;
+const MARGIN = 16;
 /** The minimum legible scale: the smallest texts have 12 px, and need at least 11 px on the screen. */
 const LEGIBLE = 11 / 12;
-/** The minimum scale at which a whole drawing, or its whole width, is shown rather than a part of it: its smallest texts
- * have 9 px. */
-const WHOLE = 0.75;
 type Area = Pick<Drawing, "width" | "height">;
 
 function scaleOf(drawing: Area, width: number, height: number): number {
@@ -73,34 +70,16 @@ export function fit(drawing: Area, width: number, height: number): Sight {
     return at(drawing, width, height, Math.max(0.05, scaleOf(drawing, width, height)));
 }
 
-/** The view that shows a whole drawing, or at least its whole width, if this needs little zoom, otherwise as much of it
- * as is legible, or at least has a scale, beginning at its start. */
+/** The view that shows a whole drawing if it is legible, otherwise as much of it as is legible, or at least has a scale,
+ * beginning at its start. */
 export function fitLegibly(drawing: Area, width: number, height: number, least = LEGIBLE): Sight {
-    const { scale, strip } = firstScale(drawing, width, height, least);
-    return at(drawing, width - strip, height, scale);
-}
-
-/** The scale of the first view, and the width of a strip at the right side for the map of a drawing whose height does not
- * fit, in pixels; 0 if there is no need or no space for it. */
-function firstScale(
-    drawing: Area,
-    width: number,
-    height: number,
-    least: number,
-): { readonly scale: number; readonly strip: number } {
-    const whole = scaleOf(drawing, width, height);
-    if (whole >= WHOLE) return { scale: whole, strip: 0 };
-    const scaleBeside = (strip: number) => Math.min(least, (width - 2 * MARGIN - strip) / Math.max(1, drawing.width));
-    const strip = mapOf(drawing, LARGEST_MAP.width, LARGEST_MAP.height).width + MAP_DISTANCE;
-    const isBeside = scaleBeside(0) > scaleBeside(2 * strip) && scaleBeside(strip) >= WHOLE;
-    const across = scaleBeside(isBeside ? strip : 0);
-    return { scale: Math.max(whole, across >= WHOLE ? across : least), strip: isBeside ? strip : 0 };
+    return at(drawing, width, height, Math.max(least, scaleOf(drawing, width, height)));
 }
 
 /** The size of the largest map of a drawing, in pixels. */
-export const LARGEST_MAP: Area = { width: 150, height: 190 };
+export const LARGEST_MAP: Area = { width: 110, height: 190 };
 /** The distance of the map from what is beside it, with its border, in pixels. */
-export const MAP_DISTANCE = 24;
+export const MAP_DISTANCE = 12;
 
 /** The view at a scale. A drawing that is smaller than the window is centred; others are shown from their start. */
 function at(drawing: Area, width: number, height: number, scale: number): Sight {
@@ -112,19 +91,17 @@ function at(drawing: Area, width: number, height: number, scale: number): Sight 
 export const OUTLINE = DIRECTIONS.indexOf("outline");
 
 /**
- * The index of the drawing that fits a window best: it is legible as a whole, or with little zoom, or at least in its
- * whole width; of several others, the one of which the window shows the largest part. An outline is used only if no other drawing is legible as a
+ * The index of the drawing that fits a window best: it is legible as a whole, or at least in its whole width; of several
+ * others, the one of which the window shows the largest part. An outline is used only if no other drawing is legible as a
  * whole. `least` is the minimum legible scale.
  */
 export function bestDrawing(drawings: readonly Area[], width: number, height: number, least = LEGIBLE): number {
     const rank = (drawing: Area): readonly number[] => {
         const scale = scaleOf(drawing, width, height);
-        const isFirst = drawings.indexOf(drawing) < OUTLINE;
-        if (scale >= least) return [2, Number(isFirst), scale];
-        if (scale >= WHOLE) return [1, Number(isFirst), scale];
-        const first = firstScale(drawing, width, height, least).scale;
-        const across = Math.min(1, (width - 2 * MARGIN) / (drawing.width * first));
-        const along = Math.min(1, (height - 2 * MARGIN) / (drawing.height * first));
+        if (scale >= least) return [1, Number(drawings.indexOf(drawing) < OUTLINE), scale];
+        const beside = width - gutter(mapOf(drawing, LARGEST_MAP.width, LARGEST_MAP.height));
+        const across = Math.min(1, (beside - 2 * MARGIN) / (drawing.width * least));
+        const along = Math.min(1, (height - 2 * MARGIN) / (drawing.height * least));
         return [0, Number(across === 1), across * along];
     };
     let best = 0;
@@ -159,86 +136,24 @@ export function reveal(sight: Sight, box: Box, width: number, height: number): S
     return { ...sight, x: inside(sight.x, box.x, box.width, w), y: inside(sight.y, box.y, box.height, h) };
 }
 
-/** A corner of the window, and the size of what covers it, in pixels. */
-export interface Corner extends Area {
-    readonly isLeft: boolean;
-    readonly isTop: boolean;
+/** The width that the map needs beside a picture, in pixels. */
+export function gutter(map: Area): number {
+    return map.width + 2 * MAP_DISTANCE;
 }
 
-/** The corners of a window; the earlier ones are preferred. What is at the start of a drawing counts more. */
-const CORNERS = [
-    { isLeft: false, isTop: false, weight: 1 },
-    { isLeft: true, isTop: false, weight: 1.3 },
-    { isLeft: false, isTop: true, weight: 1.3 },
-    { isLeft: true, isTop: true, weight: 2 },
-] as const;
+/** The part of a window that bands at its sides do not cover. */
+export interface Frame {
+    readonly sight: Sight;
+    readonly width: number;
+    readonly height: number;
+}
 
-/**
- * The corner of the window in which something of a given size covers the smallest area of boxes of the drawing, and this
- * area.
- */
-export function emptiestCorner(
-    sight: Sight,
-    boxes: readonly Box[],
-    width: number,
-    height: number,
-    size: Area,
-): Corner & { readonly covered: number } {
-    const [w, h] = [size.width / sight.scale, size.height / sight.scale];
-    const common = (low: number, length: number, other: number, otherLength: number) =>
-        Math.max(0, Math.min(low + length, other + otherLength) - Math.max(low, other));
-    const covered = ({ isLeft, isTop, weight }: (typeof CORNERS)[number]) => {
-        const x = sight.x + (isLeft ? 0 : width / sight.scale - w);
-        const y = sight.y + (isTop ? 0 : height / sight.scale - h);
-        return boxes.reduce(
-            (sum, box) => sum + weight * common(x, w, box.x, box.width) * common(y, h, box.y, box.height),
-            0,
-        );
+export function beside(sight: Sight, width: number, height: number, bands: Bands): Frame {
+    return {
+        sight: pan(sight, bands.left, bands.top),
+        width: width - bands.left - bands.right,
+        height: height - bands.top - bands.bottom,
     };
-    const areas = CORNERS.map(covered);
-    const least = Math.min(...areas);
-    const { isLeft, isTop } = CORNERS[areas.indexOf(least)] ?? CORNERS[0];
-    return { ...size, isLeft, isTop, covered: least };
-}
-
-/** The factors by which the map is smaller where the largest one would cover something. */
-const SHRINKS = [1, 0.75, 0.55, 0.4] as const;
-
-/**
- * The corner of the window for a map with its distance from what is beside it, and the factor by which the map is smaller:
- * the largest map that covers nothing, otherwise the smallest one, where it covers the least.
- */
-export function mapCorner(
-    sight: Sight,
-    boxes: readonly Box[],
-    width: number,
-    height: number,
-    map: Area,
-): Corner & { readonly shrink: number } {
-    const corners = SHRINKS.map((shrink) => {
-        const size = { width: map.width * shrink + MAP_DISTANCE, height: map.height * shrink + MAP_DISTANCE };
-        return { ...emptiestCorner(sight, boxes, width, height, size), shrink };
-    });
-    const smallest = corners.reduce((one, other) => (other.shrink < one.shrink ? other : one));
-    return corners.find(({ covered }) => covered === 0) ?? smallest;
-}
-
-/**
- * The view moved by the minimum distance so that a box is not below something in a corner of the window. If there is no
- * space beside it, the box is moved above or below it.
- */
-export function besideCorner(sight: Sight, box: Box, width: number, height: number, corner: Corner): Sight {
-    const [left, top] = [(box.x - sight.x) * sight.scale, (box.y - sight.y) * sight.scale];
-    const [w, h] = [box.width * sight.scale, box.height * sight.scale];
-    const covered = {
-        x: corner.isLeft ? corner.width - left : left + w - (width - corner.width),
-        y: corner.isTop ? corner.height - top : top + h - (height - corner.height),
-    };
-    if (covered.x <= 0 || covered.y <= 0) return sight;
-    const fitsBeside = w <= width - corner.width;
-    return fitsBeside
-        ? pan(sight, corner.isLeft ? -covered.x : covered.x, 0)
-        : pan(sight, 0, corner.isTop ? -covered.y : covered.y);
 }
 
 /** The view moved so that a point of the drawing is in the middle of the window. */
@@ -341,64 +256,36 @@ export function withStart<B extends Box>(box: B): B {
     return { ...box, x: box.x - left, y: box.y - top, width: box.width + left, height: box.height + top };
 }
 
-/** The factors and the distances in pixels by which a first view is changed so that it cuts off fewer boxes, the smallest
- * changes first. */
-const FACTORS = [1, 0.99, 1.01, 0.98, 1.02, 0.97, 1.03, 0.96, 1.04, 0.95, 1.05, 0.94, 0.93, 0.92, 0.91, 0.9] as const;
-const DISTANCES = [0, 10, -10, 20, -20, 30, -30] as const;
+/** The most by which a first view is smaller at each side so that it cuts off no boxes, in pixels. */
+const TRIMS: Bands = { top: 60, bottom: 100, left: 60, right: 150 };
 
-/**
- * The view that is a little larger, smaller, higher or lower so that it cuts off the fewest boxes. If it begins at the
- * upper side of the drawing, it does so still.
- *
- * @param bands what covers the window at its sides, at a view.
- */
-export function withoutCuts(
-    sight: Sight,
-    drawing: Area,
-    boxes: readonly Box[],
-    width: number,
-    height: number,
-    bands: (sight: Sight) => Bands,
-): Sight {
-    const views = FACTORS.filter((factor) => factor === 1 || isFirstScale(sight.scale * factor)).flatMap((factor) => {
-        const scale = sight.scale * factor;
-        const isWider = factor > 1 && drawing.width * scale > width - 2 * MARGIN;
-        if (isWider && drawing.width * sight.scale <= width - 2 * MARGIN) return [];
-        const start = MARGIN / sight.scale - MARGIN / scale;
-        const x =
-            drawing.width * scale <= width ? sight.x + (width / sight.scale - width / scale) / 2 : sight.x + start;
-        if (sight.y <= 0) return drawing.height * sight.scale <= height ? [] : [{ scale, x, y: sight.y + start }];
-        const y = sight.y + (height / sight.scale - height / scale) / 2;
-        return DISTANCES.map((distance) => ({ scale, x, y: y + distance / scale }));
-    });
-    let best = sight;
-    let least = cuts(sight, boxes, width, height, bands(sight));
-    for (const view of views) {
-        const count = cuts(view, boxes, width, height, bands(view));
-        if (count < least) [least, best] = [count, view];
+/** By how much a view is made smaller at its sides, so that these cut off as few boxes as possible, in pixels. */
+export function trimsOf(boxes: readonly Box[], { sight, width, height }: Frame): Bands {
+    const seen = boxes.map((box) => ({
+        left: (box.x - sight.x) * sight.scale,
+        right: (box.x + box.width - sight.x) * sight.scale,
+        top: (box.y - sight.y) * sight.scale,
+        bottom: (box.y + box.height - sight.y) * sight.scale,
+    }));
+    const trims: Record<Side, number> = { ...NO_BANDS };
+    for (const side of SIDES) {
+        const [low, high] = [trims.left, width - trims.right];
+        const [upper, lower] = [trims.top, height - trims.bottom];
+        const isRow = side === "top" || side === "bottom";
+        const near = seen
+            .filter((box) => (isRow ? box.right > low && box.left < high : box.bottom > upper && box.top < lower))
+            .map((box): readonly [number, number] => {
+                if (side === "top") return [box.top, box.bottom];
+                if (side === "left") return [box.left, box.right];
+                return side === "bottom"
+                    ? [height - box.bottom, height - box.top]
+                    : [width - box.right, width - box.left];
+            });
+        const cut = (trim: number) => near.filter(([start, end]) => start < trim && end > trim).length;
+        const places = [0, ...near.map(([, end]) => end + 1).filter((end) => end > 0 && end <= TRIMS[side])];
+        trims[side] = places.sort(ascending).reduce((best, place) => (cut(place) < cut(best) ? place : best));
     }
-    return best;
-}
-
-function isFirstScale(scale: number): boolean {
-    return scale >= WHOLE && scale <= 1;
-}
-
-/** The number of boxes that are cut off by the sides of a window, or by what covers these. */
-function cuts({ x, y, scale }: Sight, boxes: readonly Box[], width: number, height: number, bands: Bands): number {
-    const [right, lower] = [x + width / scale, y + height / scale];
-    const inner = {
-        left: x + bands.left / scale,
-        right: right - bands.right / scale,
-        upper: y + bands.top / scale,
-        lower: lower - bands.bottom / scale,
-    };
-    return boxes.filter((box) => {
-        const isOut = box.x >= right || box.x + box.width <= x || box.y >= inner.lower;
-        if (isOut || box.y + box.height <= inner.upper) return false;
-        const isAcross = box.x < inner.left || box.x + box.width > inner.right;
-        return isAcross || box.y < inner.upper || box.y + box.height > inner.lower;
-    }).length;
+    return trims;
 }
 
 function ascending(one: number, other: number): number {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /** A small map of a drawing that is larger than the view. A click or a drag moves the visible part. */
 
-import type { Box, Drawing, Picture, Point } from "../contract";
+import type { Drawing, Picture, Point } from "../contract";
 import { toneOf } from "./words";
-import { LARGEST_MAP, centered, mapCorner, mapOf, visiblePart } from "./find";
-import type { Corner, MapScale, Sight } from "./find";
+import { LARGEST_MAP, centered, mapOf, visiblePart } from "./find";
+import type { MapScale, Sight } from "./find";
 import { element } from "./scene";
 
 /** A smaller window has no space for a map, in pixels. */
@@ -17,20 +17,7 @@ export class Minimap {
     private scale: MapScale | undefined;
     private view = { width: 0, height: 0 };
     private sight: Sight = { x: 0, y: 0, scale: 1 };
-    private isHidden = true;
-    private boxes: (part: Box) => readonly Box[] = () => [];
-    /** The corner of the window with the map. It is chosen when the map appears, and kept while the view moves. */
-    private corner: (Corner & { readonly shrink: number }) | undefined;
-
-    /** Whether the pointer is on the map, which then has its full size. */
-    private isPointed = false;
-
     constructor(move: (sight: Sight) => void) {
-        for (const type of ["pointerenter", "pointerleave"] as const)
-            this.svg.addEventListener(type, () => {
-                this.isPointed = type === "pointerenter";
-                this.look(this.sight, this.view.width, this.view.height);
-            });
         const center = (event: PointerEvent) => {
             const point = this.pointAt(event);
             if (point) move(centered(this.sight, point, this.view.width, this.view.height));
@@ -46,10 +33,9 @@ export class Minimap {
         });
     }
 
-    /** Draw the nodes of a picture. `boxes` gives what the map should not cover in a part of the drawing. */
-    show(picture: Picture, drawing: Drawing, boxes: (part: Box) => readonly Box[]): void {
+    /** Draw the nodes of a picture. */
+    show(picture: Picture, drawing: Drawing): void {
         this.drawing = drawing;
-        this.boxes = boxes;
         this.svg.setAttribute("viewBox", `0 0 ${drawing.width} ${drawing.height}`);
         const parents = new Set(picture.nodes.map(({ parent }) => parent));
         this.svg.replaceChildren(
@@ -63,11 +49,6 @@ export class Minimap {
         );
     }
 
-    /** Choose the corner of the map again, at the next look. */
-    settle(): void {
-        this.corner = undefined;
-    }
-
     /** Show which part is visible. The map is hidden if all of the drawing is visible. */
     look(sight: Sight, width: number, height: number): void {
         this.sight = sight;
@@ -76,29 +57,15 @@ export class Minimap {
         const part = visiblePart(sight, this.drawing, width, height);
         const isWhole = part.width >= this.drawing.width && part.height >= this.drawing.height;
         const isSmall = width < SMALLEST_WINDOW.width || height < SMALLEST_WINDOW.height;
-        this.isHidden = isWhole || isSmall;
-        this.svg.classList.toggle("hidden", this.isHidden);
-        if (this.isHidden) this.settle();
-        else this.draw(this.drawing, part);
-    }
-
-    private draw(drawing: Drawing, part: Box): void {
-        const { width, height } = this.view;
-        const [most, highest] = [Math.min(LARGEST_MAP.width, width / 4), Math.min(LARGEST_MAP.height, height / 2)];
-        const largest = mapOf(drawing, most, highest);
-        this.corner ??= mapCorner(this.sight, this.boxes(part), width, height, largest);
-        const shrink = this.isPointed ? 1 : this.corner.shrink;
-        this.scale = mapOf(drawing, most * shrink, highest * shrink);
-        place(this.svg, { width: this.scale.width, height: this.scale.height });
+        this.scale = isWhole || isSmall ? undefined : mapOf(this.drawing, LARGEST_MAP.width, LARGEST_MAP.height);
+        this.svg.classList.toggle("hidden", !this.scale);
+        if (this.scale) place(this.svg, { width: this.scale.width, height: this.scale.height });
         place(this.frame, { ...part });
-        const { isLeft, isTop } = this.corner;
-        this.svg.classList.toggle("is-left", isLeft);
-        this.svg.classList.toggle("is-top", isTop);
     }
 
-    /** The corner of the window that the map covers; undefined if it is hidden. */
-    get covered(): Corner | undefined {
-        return this.isHidden ? undefined : this.corner;
+    /** The size of the map; undefined if it is hidden. */
+    get size(): MapScale | undefined {
+        return this.scale;
     }
 
     /** Emphasise nodes, such as those that a search has found. */
@@ -108,8 +75,7 @@ export class Minimap {
     }
 
     clear(): void {
-        this.drawing = undefined;
-        this.isHidden = true;
+        this.drawing = this.scale = undefined;
         this.svg.classList.add("hidden");
         this.svg.replaceChildren();
     }

@@ -22,7 +22,7 @@ import {
 } from "../contract";
 import {
     amongOthers,
-    besideCorner,
+    beside,
     bestDrawing,
     fit,
     fitLegibly,
@@ -35,19 +35,21 @@ import {
     reveal,
     search,
     shifts,
+    trimsOf,
     withStart,
-    withoutCuts,
     zoom,
+    type Frame,
     type PlacedNodes,
     type Sight,
 } from "./find";
 import { breakpointOf } from "../breakpoints";
 import { filled, isOf, paint, shareOf, summaryOf } from "./coverage";
 import { ExitChips } from "./exitChips";
+import { NO_BANDS, type Bands } from "./exits";
 import { Minimap } from "./minimap";
 import { MockPane } from "./mocks";
 import { menuOf } from "./menu";
-import { element, inkOf, labelsOf, pngData, sceneOf, spoken, type Scene } from "./scene";
+import { element, labelsOf, pngData, sceneOf, spoken, type Scene } from "./scene";
 import { shownActivity, shownId } from "./shown";
 import { legendOf, type LegendEntry } from "./words";
 import { edgesOf, markEdges, type NodeEdges } from "./surroundings";
@@ -111,6 +113,9 @@ export class PictureView {
     private shown = 0;
     /** Whether the user has changed the visible part, by scrolling or zooming. */
     private moved = false;
+    /** What covers the picture at its sides, beside the chips and the map so that a first view cuts off nothing. */
+    private bands = NO_BANDS;
+    private trims = NO_BANDS;
     private scene: Scene | undefined;
     private sight: Sight = { x: 0, y: 0, scale: 1 };
     private selected = -1;
@@ -251,7 +256,7 @@ export class PictureView {
         this.scene?.root.remove();
         this.scene = sceneOf(picture, drawing, words);
         this.svg.append(this.scene.root);
-        this.minimap.show(picture, drawing, (part) => this.inked(drawing, part));
+        this.minimap.show(picture, drawing);
         this.svg.setAttribute("aria-label", picture.title);
         this.svg.setAttribute("aria-description", words.help);
         for (const [index, group] of this.scene.nodes) group.id = `${this.prefix}-node${index}`;
@@ -260,7 +265,7 @@ export class PictureView {
         this.pointed = undefined;
         this.offerOutline();
         this.showCoverage(picture, drawing, words);
-        this.look(this.sight);
+        this.look(this.sight, this.trims);
         this.showActivity(this.activity);
         this.showBreakpoints();
         if (this.input.value !== "") this.search();
@@ -325,13 +330,30 @@ export class PictureView {
 
     // ------------------------------------------------------------------- looking
 
-    private look(sight: Sight): void {
+    /** Show a view. `trims` are the sizes by which it is smaller at its sides. */
+    private look(sight: Sight, trims = NO_BANDS): void {
         this.sight = sight;
+        this.trims = trims;
         const { x, y, scale } = sight;
         this.scene?.root.setAttribute("transform", `scale(${scale}) translate(${-x} ${-y})`);
         const { width, height } = this.svg.getBoundingClientRect();
+        this.bands = sumOf(this.bandsAt(sight), trims);
+        this.exits.look(sight, width, height, this.bands, this.minimap.size);
+    }
+
+    /** The bands at the sides of a view. */
+    private bandsAt(sight: Sight): Bands {
+        const { width, height } = this.svg.getBoundingClientRect();
         this.minimap.look(sight, width, height);
-        this.exits.look(sight, width, height, this.minimap.covered);
+        return this.exits.bandsOf(sight, width, height, this.minimap.size);
+    }
+
+    /** Show the view that is chosen for the part of the window beside the bands. */
+    private lookBeside(choose: (frame: Frame) => Sight): void {
+        const { width, height } = this.svg.getBoundingClientRect();
+        const { left, top } = this.bands;
+        const chosen = pan(choose(beside(this.sight, width, height, this.bands)), -left, -top);
+        if (chosen.x !== this.sight.x || chosen.y !== this.sight.y) this.look(chosen);
     }
 
     fit(): void {
@@ -341,19 +363,29 @@ export class PictureView {
     }
 
     private fitLegibly(): void {
+        const { drawing } = this;
+        if (!drawing) return;
         const { width, height } = this.svg.getBoundingClientRect();
-        if (!this.drawing) return;
-        this.minimap.settle();
-        const sight = fitLegibly(this.drawing, width, height, this.least);
-        const boxes = this.innermost(this.drawing);
+        const boxes = this.innermost(drawing);
+        const start = fitLegibly(drawing, width, height, this.least);
+        let sight = start;
+        let bands = this.bandsAt(start);
+        // A view beside bands may show another part, which needs further bands.
+        for (let pass = 0; pass < 2; pass++) {
+            const frame = beside(start, width, height, bands);
+            sight = pan(this.firstView(drawing, boxes, frame), -bands.left, -bands.top);
+            bands = largerOf(bands, this.bandsAt(sight));
+        }
+        const shown = beside(sight, width, height, this.bandsAt(sight));
+        this.look(sight, trimsOf([...boxes, ...this.labels], shown));
+    }
+
+    /** The first view of a drawing that does not fit into a window. */
+    private firstView(drawing: Drawing, boxes: readonly Box[], { width, height }: Frame): Sight {
+        const sight = fitLegibly(drawing, width, height, this.least);
         const first = this.firstBox(sight, width, height);
-        const chosen = first
-            ? this.amongOthers(sight, this.drawing, first, width, height)
-            : this.picture?.kind === "ros"
-              ? fullest(sight, this.drawing, boxes, width, height)
-              : sight;
-        const bands = (view: Sight) => this.exits.bandsOf(view, width, height);
-        this.look(withoutCuts(chosen, this.drawing, [...boxes, ...this.labels], width, height, bands));
+        if (first) return this.amongOthers(sight, drawing, first, width, height);
+        return this.picture?.kind === "ros" ? fullest(sight, drawing, boxes, width, height) : sight;
     }
 
     /** The view that shows a node with as many others as possible, first of all those to which its edges lead. */
@@ -368,11 +400,6 @@ export class PictureView {
 
     private get labels(): readonly Box[] {
         return this.scene ? labelsOf(this.scene) : [];
-    }
-
-    /** The boxes of nodes, labels, and pieces of the lines in a part of the drawing. */
-    private inked(drawing: Drawing, part: Box): readonly Box[] {
-        return [...this.innermost(drawing), ...(this.scene ? inkOf(this.scene, part) : [])];
     }
 
     /** The nodes that contain no others. */
@@ -424,8 +451,7 @@ export class PictureView {
         const id = picture.nodes[node]?.id;
         const targets = new Set(picture.edges.filter(({ source }) => source === id).map(({ target }) => target));
         const others = drawing.nodes.filter(({ index }) => targets.has(picture.nodes[index]?.id ?? ""));
-        const { width, height } = this.svg.getBoundingClientRect();
-        this.look(follow(this.sight, drawing, box, others, width, height));
+        this.lookBeside(({ sight, width, height }) => follow(sight, drawing, box, others, width, height));
         this.reveal(node);
     }
 
@@ -435,14 +461,11 @@ export class PictureView {
         this.look(zoom(this.sight, factor, about ?? { x: width / 2, y: height / 2 }));
     }
 
-    /** Move the drawing so that a node is visible, and not below the map. */
+    /** Move the drawing so that a node is visible, and not below a band. */
     private reveal(node: number): void {
-        const box = this.drawing?.nodes.find((candidate) => candidate.index === node);
-        const { width, height } = this.svg.getBoundingClientRect();
+        const box = this.box(node);
         if (!box) return;
-        this.look(reveal(this.sight, box, width, height));
-        const map = this.minimap.covered;
-        if (map) this.look(besideCorner(this.sight, box, width, height, map));
+        this.lookBeside(({ sight, width, height }) => reveal(sight, box, width, height));
     }
 
     // ------------------------------------------------------------------ choosing
@@ -920,6 +943,24 @@ export class PictureView {
         const direction = DIRECTIONS[this.shown];
         if (this.picture && direction) this.post({ type: "save", format, direction, theme: theme() });
     }
+}
+
+function sumOf(one: Bands, other: Bands): Bands {
+    return {
+        top: one.top + other.top,
+        bottom: one.bottom + other.bottom,
+        left: one.left + other.left,
+        right: one.right + other.right,
+    };
+}
+
+function largerOf(one: Bands, other: Bands): Bands {
+    return {
+        top: Math.max(one.top, other.top),
+        bottom: Math.max(one.bottom, other.bottom),
+        left: Math.max(one.left, other.left),
+        right: Math.max(one.right, other.right),
+    };
 }
 
 /** Draw the outline of a node thick for a moment, because its look has changed. */

@@ -63,26 +63,8 @@ export function spoken(groups: readonly SVGGElement[]): SVGGElement {
     return group;
 }
 
-/** The distance of the pieces of a line, and their size, in pixels of the drawing. */
-const PIECE = { distance: 12, size: 6 };
-
 export function labelsOf({ root }: Scene): Box[] {
     return [...root.querySelectorAll<SVGGElement>(".label")].map((label) => label.getBBox());
-}
-
-/** The boxes of the labels, and of small pieces of the lines that may be in a part of the drawing. */
-export function inkOf(scene: Scene, part: Box): Box[] {
-    const isIn = ({ x, y, width, height }: Box) =>
-        x <= part.x + part.width && x + width >= part.x && y <= part.y + part.height && y + height >= part.y;
-    const labels = labelsOf(scene).filter(isIn);
-    const lines = [...scene.root.querySelectorAll<SVGPathElement>("path.line")].filter((line) => isIn(line.getBBox()));
-    const pieces = lines.flatMap((line) =>
-        Array.from({ length: Math.ceil(line.getTotalLength() / PIECE.distance) }, (_, number) => {
-            const { x, y } = line.getPointAtLength(number * PIECE.distance);
-            return { x: x - PIECE.size / 2, y: y - PIECE.size / 2, width: PIECE.size, height: PIECE.size };
-        }),
-    );
-    return [...labels, ...pieces];
 }
 
 /** Hide the lines of edges whose text has the same name from screen readers. */
