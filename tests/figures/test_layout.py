@@ -414,7 +414,7 @@ def test_rows_of_long_lines_fit_a_window() -> None:
     nodes = {str(number): Extent(110, 40) for number in range(100)}
     links = [Link(str(n), str(n + 1), Extent(60, 25)) for n in range(99)]
     width, height = layered(nodes, links, LayoutDirection.RIGHT, 1.8).size
-    assert 900 < width <= 1250
+    assert 900 < width <= 1180
     assert height / width < 3
 
 

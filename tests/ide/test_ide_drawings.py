@@ -17,10 +17,11 @@ from ide_models import load
 
 from roaml import api
 from roaml.figures.drawing import Drawing, Group, Outline, Polyline, Shape, TextItem
-from roaml.figures.geometry import Point
+from roaml.figures.geometry import Box, Point
 from roaml.figures.layout import LayoutDirection
 from roaml.figures.svg import svg_file
 from roaml.ide.diagrams import OUTLINE_WIDTHS, DiagramKind, Picture, draw, draw_for, draw_outline, picture_of
+from roaml.ide.diagrams.drawings.start import start_beside
 from roaml.project.analysis import Analysis
 from roaml.project.settings import Settings
 from roaml.record import replace
@@ -267,3 +268,45 @@ def test_states_that_no_transition_leaves_have_a_double_border(tmp_path: Path) -
         if group.node is not None and isinstance(item, Shape) and item.role == "card"
     }
     assert outlines == {"a": Outline.ROUNDED, "b": Outline.DOUBLE}
+
+
+STAR = """\
+<ascxml name="Robot" version="1.0" initial="hub">
+    <state id="hub">
+{transitions}
+    </state>
+{states}
+</ascxml>
+"""
+
+
+@pytest.mark.parametrize("direction", LayoutDirection)
+def test_the_dot_is_beside_the_initial_state(tmp_path: Path, direction: LayoutDirection) -> None:
+    names = [f"state{number}" for number in range(20)]
+    text = STAR.format(
+        transitions="\n".join(f'<transition event="{name}" target="{name}"/>' for name in names),
+        states="\n".join(f'<state id="{name}"/>' for name in names),
+    )
+    picture, _ = machine(tmp_path, text)
+    drawing = draw(DiagramKind.MACHINE, picture, direction)
+    start = next(group for group in drawing.groups if group.role == "start")
+    line, dot = start.items
+    assert isinstance(line, Polyline)
+    assert isinstance(dot, Shape)
+    (begin, end), hub = line.points, drawing.nodes[0]
+    assert abs(begin.x - end.x) + abs(begin.y - end.y) < 40
+    assert hub.grown(1).contains(Box(end.x, end.y, 0, 0))
+    labels = [
+        item.box for group in drawing.groups for item in group.items if isinstance(item, Shape) and item is not dot
+    ]
+    assert not any(box.overlaps(dot.box.grown(10)) for box in labels)
+
+
+def test_no_dot_covers_anything() -> None:
+    state = Box(100, 100, 60, 30)
+    found = start_beside(state, [Box(110, 40, 40, 30)], LayoutDirection.DOWN)
+    assert found is not None
+    dot, route = found
+    assert dot.right < state.x  # above the state is no space
+    assert route.parts[0][-1] == Point(100, 115)
+    assert start_beside(state, [Box(0, 0, 300, 300)], LayoutDirection.DOWN) is None

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import enum
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 
 from roaml.figures.geometry import Box, Extent, Point
@@ -55,6 +55,13 @@ class Route(Record, frozen=True):
     def moved(self, dx: float, dy: float) -> Route:
         parts = tuple(tuple(Point(x + dx, y + dy) for x, y in part) for part in self.parts)
         return Route(parts, self.label.moved(dx, dy) if self.label else None)
+
+    @property
+    def pieces(self) -> Iterator[Box]:
+        """The areas of the straight pieces of the line."""
+        for part in self.parts:
+            for a, b in pairwise(part):
+                yield Box(min(a.x, b.x), min(a.y, b.y), abs(a.x - b.x), abs(a.y - b.y))
 
     @property
     def length(self) -> float:

@@ -23,9 +23,9 @@ from roaml.figures.layout.tracks import assign_tracks
 from roaml.figures.layout.vertices import Vertex, VertexKind
 from roaml.record import Record, field
 
-LAYER_DISTANCE = 30.0
-TRACK_MARGIN = 18.0
-TRACK_DISTANCE = 10.0
+LAYER_DISTANCE = 26.0
+TRACK_MARGIN = 14.0
+TRACK_DISTANCE = 9.0
 """Distances between layers, in pixels: the minimum distance of two layers; of a track from a layer; of two tracks."""
 MAX_RATIO = 2.5
 """The ratio of the sides of a part above which it is wrapped. Frames and headings are added to parts, so it is smaller

@@ -20,7 +20,7 @@ TURN = 16.0
 APART = 20.0
 """Distances in pixels: of two neighbours in a column; of a turn or a channel from nodes and labels; of the link back
 from other links."""
-WINDOW, MAX_RATIO = 1250.0, 2.8
+WINDOW, MAX_RATIO = 1180.0, 4.5
 """The desired maximum length of a column, in pixels, and the maximum ratio of width to height that it may cause."""
 MAX_DOT = 12.0
 """The maximum size of a first node that is drawn above the first column, in pixels: the dot before an initial state."""

@@ -22,8 +22,8 @@ class Vertex(Record, frozen=True):
     size: Extent
 
 
-NODE_DISTANCE = 20.0
-LABEL_DISTANCE = 14.0
+NODE_DISTANCE = 18.0
+LABEL_DISTANCE = 12.0
 LINE_DISTANCE = 14.0
 """Distances between neighbours in a layer, in pixels: of two nodes, of a label from a node or line or of a node from a
 line, of two lines."""

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import pairwise
 
 from roaml.figures.drawing import TextItem
 from roaml.figures.geometry import Box
@@ -33,12 +32,12 @@ class LineNames:
 
     def __init__(self, solid: Sequence[Box], routes: Sequence[Route], width: float, height: float) -> None:
         self._page = Box(0.0, 0.0, width, height)
-        self._taken = [*solid, *(piece.grown(_GAP) for route in routes for piece in _pieces(route))]
+        self._taken = [*solid, *(piece.grown(_GAP) for route in routes for piece in route.pieces)]
 
     def place(self, name: str, route: Route) -> TextItem | None:
         """The text near the middle of the longest piece that has space, first above it; `None` if none has."""
         width = text_width(name, SMALL) + 2 * _PADDING
-        level = [piece for piece in _pieces(route) if not piece.height and piece.width >= width + 2 * _FROM_ENDS]
+        level = [piece for piece in route.pieces if not piece.height and piece.width >= width + 2 * _FROM_ENDS]
         for piece in sorted(level, key=lambda piece: -piece.width):
             for top in (piece.y - _GAP - HEIGHT - 0.5, piece.y + _GAP + 0.5):
                 row = Box(piece.x, top, piece.width, HEIGHT)
@@ -49,12 +48,6 @@ class LineNames:
                         self._taken.append(box.grown(_PADDING))
                         return TextItem(name, x + _PADDING, box.bottom - 3.5, SMALL, "text")
         return None
-
-
-def _pieces(route: Route) -> Iterator[Box]:
-    for part in route.parts:
-        for a, b in pairwise(part):
-            yield Box(min(a.x, b.x), min(a.y, b.y), abs(a.x - b.x), abs(a.y - b.y))
 
 
 def _places(piece: Box, width: float) -> Iterator[float]:

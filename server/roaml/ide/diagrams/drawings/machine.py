@@ -20,11 +20,13 @@ from roaml.figures.assembly import moved
 from roaml.figures.drawing import Drawing, Group, Item, Outline, Polyline, Shape, Tone
 from roaml.figures.geometry import Box, Extent
 from roaml.figures.layout import Boxes, Layout, LayoutDirection, Link, Route, nested
+from roaml.figures.layout.graph import at_origin
 from roaml.figures.layout.packing import shelves
 from roaml.ide.diagrams.diagram import DetailKind, DiagramEdge, DiagramNodeKind, EdgeKind, Picture
 from roaml.ide.diagrams.drawings.cards import Card, Row, TextLine, is_shortened, paragraph, title
 from roaml.ide.diagrams.drawings.changes import is_marked, kind_of, signed, tone_of
 from roaml.ide.diagrams.drawings.glyphs import die
+from roaml.ide.diagrams.drawings.start import DOT, start_beside
 
 CARD_WIDTH, LABEL_WIDTH = 260.0, 210.0
 """The maximum widths of lines of text in cards and labels, in pixels."""
@@ -40,7 +42,7 @@ _SHORTENINGS = 2
 """How often such lines are searched: without them, others are in different places."""
 _OUTCOME_INDENT = 10.0
 """The distance of the outcomes of a choice in a card from the transition to it, in pixels."""
-_JUNCTION, _DIE, _DOT = 14.0, 9.0, 10.0
+_JUNCTION, _DIE = 14.0, 9.0
 _START = "start"
 _FRAME_MARGIN = 18.0
 _ASPECT = {LayoutDirection.RIGHT: 1.8, LayoutDirection.DOWN: 0.8}
@@ -176,11 +178,7 @@ class _Chart:
         initial = next((name for name in cards if self._picture.nodes[self._index[name]].initial), None)
         parents = {name: parent for name, parent in self._parents.items() if parent in self._framed}
         if initial is not None:
-            sizes[_START] = Extent(_DOT, _DOT)
             sizes[initial] = cards[initial].size
-            links.append(Link(_START, initial))
-            if initial in parents:
-                parents[_START] = parents[initial]
         for name in self._index:
             if name in self._framed:
                 continue
@@ -202,6 +200,8 @@ class _Chart:
                 links.append(Link(source, target, label.size if label.rows else None))
         boxes = Boxes(parents, {name: cards[name].size for name in self._framed})
         layout = nested(sizes, links, boxes, direction, _ASPECT[direction])
+        if initial is not None:
+            layout = _with_start(layout, sizes, links, boxes, initial, direction)
         start, routes = (None, layout.routes) if initial is None else (layout.routes[0], layout.routes[1:])
         places = [layout.nodes[_stub(index)] if index in far else route.label for index, route in enumerate(routes)]
         return _Arranged(layout, cards, bundles, labels, places, start, routes)
@@ -331,6 +331,32 @@ def _label(edges: Sequence[tuple[int, DiagramEdge]], target: str) -> Card:
         lines = paragraph(f"→ {target}", LABEL_WIDTH, "title", bold=True)
         rows.append(Row(lines, _tone(edges), _kinds(edges), tuple(index for index, _ in edges)))
     return Card(tuple(rows), padding=LABEL_PADDING)
+
+
+def _with_start(
+    layout: Layout,
+    sizes: Mapping[str, Extent],
+    links: Sequence[Link],
+    boxes: Boxes,
+    initial: str,
+    direction: LayoutDirection,
+) -> Layout:
+    """The layout with the dot before the initial state; the line from it is the first route. If there is no space
+    beside the state, or if the state is in a frame, the dot is a further node."""
+    if initial not in boxes.parents:
+        solid = [box for name, box in layout.nodes.items() if name != initial]
+        solid += [route.label for route in layout.routes if route.label]
+        solid += [piece for route in layout.routes for piece in route.pieces]
+        found = start_beside(layout.nodes[initial], solid, direction)
+        if found:
+            return at_origin({**layout.nodes, _START: found[0]}, (found[1], *layout.routes))
+    parents = dict(boxes.parents)
+    if initial in parents:
+        parents[_START] = parents[initial]
+    with_start = {_START: Extent(DOT, DOT), **sizes}
+    return nested(
+        with_start, [Link(_START, initial), *links], Boxes(parents, boxes.headings), direction, _ASPECT[direction]
+    )
 
 
 def _stub(index: int) -> str:
