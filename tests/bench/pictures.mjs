@@ -159,7 +159,8 @@ const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", arg
 const jobs = JSON.parse(await text(process.stdin));
 for (const theme of Object.keys(COLORS)) {
     const colorScheme = theme === "dark" || theme === "high-contrast" ? "dark" : "light";
-    const context = await browser.newContext({ viewport: SIZE, colorScheme, reducedMotion: "reduce" });
+    const contrast = theme.startsWith("high-contrast") ? "more" : "no-preference";
+    const context = await browser.newContext({ viewport: SIZE, colorScheme, contrast, reducedMotion: "reduce" });
     const background = COLORS[theme]["editor-background"];
     const file = path.join(folder, `page.${theme}.html`);
     fs.writeFileSync(file, page(theme));

@@ -13,6 +13,8 @@ from pathlib import Path
 import pytest
 
 from as2fm_lsp.cli.main import run
+from roaml.figures.svg import CHANGE_STYLES
+from roaml.figures.themes import style_sheet
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -73,6 +75,11 @@ def test_formats(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert "+ 0.7" in texts
     _, html, _ = called(capsys, *asked, "--format=html")
     assert html.count("<svg") == 2
+    after = html.rpartition("</svg>")[2]  # rules of the same weight hold if they are the last ones
+    assert (
+        f"@media (prefers-contrast: more) and (prefers-color-scheme: dark) {{\n{style_sheet('high-contrast', CHANGE_STYLES)}"
+        in after
+    )
     assert "<tr class='changed'><td>block_dropped</td>" in html
     assert "<th>expected</th>" not in html, "there is no expectation"
     assert "<code>arm.ascxml</code>" in html

@@ -17,6 +17,7 @@ from roaml.experiments.enough import Met
 from roaml.experiments.points import ExperimentPoint, PointKind
 from roaml.experiments.results import ESTIMATE_NOTE, UNKNOWN_EXTREME, cell, exact_note
 from roaml.figures.plot import page
+from roaml.figures.svg import CHANGE_STYLES
 from roaml.ide.diagrams.changes import PartChange
 from roaml.ide.diagrams.diagram import Change
 from roaml.record import Record
@@ -136,7 +137,7 @@ def _html(report: ComparisonReport) -> str:
         listed = "".join(f"<li>{_SIGNS[change.change]} {marked(change.text)}</li>" for change in changes)
         figure = f"<figure>{pictures[title].svg()}</figure>" if title in pictures else ""
         parts.append(f"<h2>{escape(title)}</h2>{figure}<ul>{listed}</ul>")
-    return page(report.title, "\n".join(parts))
+    return page(report.title, "\n".join(parts), CHANGE_STYLES)
 
 
 def _html_row(value: ValueChange, shown: int) -> str:

@@ -21,7 +21,7 @@ from roaml.figures.pdf import pdf_file
 from roaml.figures.scales import Scale, ScaleKind, number_label, scale_of
 from roaml.figures.svg import PLOT_STYLES, svg_file
 from roaml.figures.text import LINE_HEIGHT, MEDIUM, SMALL, text_width, wrap
-from roaml.figures.themes import AUTOMATIC, THEMES
+from roaml.figures.themes import AUTOMATIC, THEMES, contrast_style
 from roaml.record import Record, replace
 
 WIDTH, HEIGHT = 560.0, 300.0
@@ -167,20 +167,25 @@ def plot_pdf(plot: LinePlot | HeatMap) -> bytes:
 
 
 def plot_page(title: str, plots: Sequence[LinePlot | HeatMap], body: str = "") -> str:
-    """The text of an HTML page with plots, which is light, or dark if the reader prefers dark colors.
+    """The text of an HTML page with plots, in the colors of `page`.
 
     Args:
         body: HTML that follows the plots.
     """
     figures = "".join(f"<figure>{plot_svg(plot)}</figure>\n" for plot in plots)
-    return page(title, f"{figures}{body}")
+    return page(title, f"{figures}{body}", PLOT_STYLES)
 
 
-def page(title: str, body: str) -> str:
-    """The text of an HTML page, which is light, or dark if the reader prefers dark colors."""
+def page(title: str, body: str, styles: tuple[str, ...]) -> str:
+    """The text of an HTML page, which is light, or dark if the reader prefers dark colors, and has a high contrast if
+    the reader prefers that.
+
+    Args:
+        styles: the names of the style sheets of the pictures in the body.
+    """
     return (
         f'<!doctype html>\n<html lang="en"><meta charset="utf-8"><title>{escape(title)}</title>\n{_PAGE_STYLE}'
-        f"<h1>{escape(title)}</h1>\n{body}</html>\n"
+        f"<h1>{escape(title)}</h1>\n{body}\n<style>\n{contrast_style(styles)}{_PAGE_CONTRAST}</style></html>\n"
     )
 
 
@@ -191,6 +196,12 @@ _PAGE_STYLE = f"""\
 </style>
 """
 """The background of pages is that of their pictures."""
+_PAGE_CONTRAST = """\
+@media (prefers-contrast: more) {
+th, td { border-bottom-color: currentColor; } .changed td { background: none; }
+.changed td:first-child { box-shadow: inset 4px 0 currentColor; }
+}
+"""
 _PAGE_STYLE += """\
 <meta name="viewport" content="width=device-width"><meta name="color-scheme" content="light dark">
 <style>

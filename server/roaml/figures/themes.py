@@ -92,6 +92,19 @@ def file_style(theme: str, names: tuple[str, ...]) -> str:
     return f"{style_sheet('light', names)}@media (prefers-color-scheme: dark) {{\n{dark}}}\n"
 
 
+def contrast_style(names: tuple[str, ...]) -> str:
+    """What follows the pictures of a page, whose theme is `AUTOMATIC`, for readers who prefer a high contrast."""
+
+    def rules(theme: str) -> str:
+        background = THEMES[theme]["background"]
+        return f"{style_sheet(theme, names)}:root {{ background: {background}; }}\n.paper {{ fill: {background}; }}\n"
+
+    return (
+        f"@media (prefers-contrast: more) {{\n{rules('high-contrast-light')}}}\n"
+        f"@media (prefers-contrast: more) and (prefers-color-scheme: dark) {{\n{rules('high-contrast')}}}\n"
+    )
+
+
 @cache
 def style_sheet(theme: str, names: tuple[str, ...]) -> str:
     """The style sheet of a file, with the colors of a theme. A rule that uses a tone is written once for every tone.

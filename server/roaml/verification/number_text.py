@@ -6,12 +6,17 @@ from __future__ import annotations
 
 import math
 
+_ROUNDING = 1e-12
+"""The difference from 1 that sums of numbers with 16 digits may have by rounding."""
+
 
 def number(value: float, digits: int = 6) -> str:
     """A value with `digits` significant digits. A value that is not 1, but would be rounded to 1, is written as a
-    difference, such as `1 - 2.3e-08`."""
+    difference, such as `1 - 2.3e-08`, or as `almost 1` if the difference may be a rounding error."""
     if math.isinf(value):
         return "∞" if value > 0 else "-∞"
+    if 0 < abs(1 - value) < _ROUNDING:
+        return "almost 1"
     text = f"{value:.{digits}g}"
     return f"1 {'-' if value < 1 else '+'} {abs(1 - value):.2g}" if text == "1" and value != 1 else text
 

@@ -285,6 +285,10 @@ tbody th {{ font-weight: normal; color: #666; }} tbody .who {{ color: inherit; }
 ul {{ margin: .2em 0 0; padding-left: 1.2em; }} pre {{ background: #f6f8fa; padding: 1em; overflow: auto; }}
 @media (prefers-color-scheme: dark) {{ body, thead th {{ background: #0d1117; color: #e6edf3; }}
 tbody th, small {{ color: #9aa4af; }} .at {{ background: #10243f; }} pre {{ background: #161b22; }} }}
+@media (prefers-contrast: more) {{ body, thead th, .at, pre {{ background: #fff; color: #000; }}
+tbody th, small {{ color: inherit; }} th, td {{ border-color: currentColor; }} .at {{ border-left: 3px solid; }} }}
+@media (prefers-contrast: more) and (prefers-color-scheme: dark) {{
+body, thead th, .at, pre {{ background: #000; color: #fff; }} }}
 </style></head><body><h1>{title}</h1>
 {body}
 </body></html>
