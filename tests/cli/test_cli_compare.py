@@ -111,6 +111,19 @@ def test_the_same(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert status == 0
 
 
+def test_models_without_a_structure_are_not_called_the_same(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The structure of JANI models is not compared."""
+    for version in ("old", "new"):
+        assert run(["translate", f"{version}/main.xml", "-o", f"{version}.jani"]) == 0
+    capsys.readouterr()
+    for format_ in ("text", "markdown", "html"):
+        text = called(capsys, "old.jani", "new.jani", "--property=block_dropped", f"--format={format_}")[1]
+        assert "structure was not compared" in text
+        assert "structure is the same" not in text
+    text = called(capsys, "old.jani", "new.jani", "--property=block_dropped", "--format=json")[1]
+    assert json.loads(text)["structure_compared"] is False
+
+
 @pytest.mark.parametrize(
     ("expected", "fail_on", "status"),
     [(">= 0.4", "expectation", 1), (">= 0.2", "expectation", 0), (">= 0.2", "value", 1), (">= 0.6", "expectation", 0)],

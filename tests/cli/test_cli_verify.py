@@ -94,7 +94,7 @@ def test_expectations_decide_the_exit_status(command: Command, tmp_path: Path) -
     (judged,) = rows(missed.out)["heads"]["expectations"]
     assert judged == {"expected": "≥ 0.4", "met": False, "certain": True, "under_uniform_choices_only": False}
     exactly = rows(command("verify", name, "--expect", "heads >= 0.4", "--format", "json").out)["heads"]
-    assert exactly["expectations"] == [{**judged, "not_met": "by the value, which is 0.3"}]
+    assert exactly["expectations"] == [{**judged, "not_met": "the value is 0.3"}]
     assert command("verify", name, "--expect", "heads = 0.3").status == 0
     assert command("verify", name, "--expect", "heads = 0.305").status == 1
     assert command("verify", name, "--expect", "heads = 0.305", "--method", "adaptive").status == 1, "exact at the end"
@@ -249,7 +249,7 @@ def test_a_value_that_is_almost_1_is_not_1(command: Command, tmp_path: Path) -> 
     done = command("verify", name, "--expect", "p >= 1", "--exhaustive")
     amount = r"fails with a probability of at most 2e-16|fails, but too rarely to compute how often"
     assert re.match(rf"p: almost 1 \(({amount})\) for all", done.out)
-    assert "expected ≥ 1: NOT MET by an example trace; the value is less than 1" in done.out
+    assert "expected ≥ 1: NOT MET: the value is less than 1, as an example trace shows" in done.out
     assert done.status == 1
     assert "expected ≥ 0.99: met" in command("verify", name, "--expect", "p >= 0.99", "--exhaustive").out
 
@@ -669,9 +669,11 @@ def test_schedulers(command: Command, tmp_path: Path) -> None:
     result = rows(command("verify", name, *options, "--format", "json").out)["heads"]
     assert result["least"]["probability"] == pytest.approx(0.3, abs=0.05)
     assert result["greatest"]["probability"] == pytest.approx(0.8, abs=0.05)
-    assert command("verify", name, *options).out.startswith("heads: minimum probability found 0.")
+    assert command("verify", name, *options).out.startswith("heads: minimum with the best scheduler found: about 0.")
     out = command("verify", name, *options[:-1], "Pmax=? [ F x=1 ]").out
-    assert re.match(r"Pmax.*: maximum probability found 0\.(.|\n)*\nPmax.*: minimum probability found 0\.", out)
+    assert re.match(
+        r"Pmax.*: maximum with the best scheduler found: about 0\.(.|\n)*\nPmax.*: minimum with the best", out
+    )
 
 
 def test_expected_rewards(command: Command, tmp_path: Path) -> None:
@@ -790,15 +792,20 @@ def test_constants_without_value_and_other_kinds_of_models(command: Command, tmp
     assert (done.status, "`x` has no initial value, its type has no bounds" in done.err) == (1, True)
 
 
-def test_several_initial_states(command: Command, tmp_path: Path) -> None:
-    written = coin()
+@pytest.mark.parametrize("type_", ["dtmc", "mdp"])
+def test_several_initial_states(command: Command, tmp_path: Path, type_: str) -> None:
+    """A model without nondeterminism, except for its initial states, has no words for schedulers."""
+    is_chain = type_ == "dtmc"
+    written = coin(type_=type_)
     row = written["variables"][0]
     del row["initial-value"]
     row["type"] = {"kind": "bounded", "base": "int", "lower-bound": 0, "upper-bound": 1}
     expression = written["properties"][0]["expression"]
     name = write(tmp_path, written)
     done = command("verify", name, "--exhaustive")
-    assert "  the scheduler chooses one of 2 initial states\n" in done.out
+    which = "minimum and maximum over 2 initial states, which are the only choice"
+    assert f"  {which if is_chain else 'the scheduler chooses one of 2 initial states'}\n" in done.out
+    assert ("a scheduler:" in done.out, "uniform choices" in done.out) == (not is_chain, not is_chain)
     expression["fun"] = "max"
     name = write(tmp_path, written)
     done = command("verify", name)
@@ -806,9 +813,15 @@ def test_several_initial_states(command: Command, tmp_path: Path) -> None:
     done = command("verify", name, "--format", "json")
     assert rows(done.out)["heads"]["exact"]["initial_states"] == {"number": 2, "combined": "max"}
     done = command("verify", name, "--method", "adaptive")
-    assert "warning: this is the mean over 2 initial states under uniform choices" in done.out
+    assert (
+        f"warning: this is the mean over 2 initial states{'' if is_chain else ' under uniform choices'}, and"
+        in done.out
+    )
     assert done.out.startswith("heads: maximum over the initial states ")
-    assert "; each of 2 initial states is equally probable; uniform choices: " in done.out
+    average = "on average over the initial states" if is_chain else "under uniform choices"
+    assert f"; {average}: " in done.out
+    assert f"; each of 2 initial states is equally probable{'' if is_chain else '; uniform choices: '}" in done.out
+    assert ("uniform choices" in done.out) is not is_chain
     done = command("verify", name, "--scheduler", "lss")
     assert "minimum or maximum over several initial states" in done.err
 

@@ -372,10 +372,10 @@ def test_an_expectation_that_is_not_met_names_the_scheduler(command: Command, tm
     assert row["expectations"][0]["not_met"].startswith("under sampled scheduler 1, which lets `")
     few = write(tmp_path, starving(length=50), "few.jani")
     done = command("verify", few, "--expect", "p >= 0.9", "--method", "adaptive")
-    assert "  expected ≥ 0.9: NOT MET by the minimum over all schedulers, which is 0\n" in done.out
+    assert "  expected ≥ 0.9: NOT MET: the minimum over all schedulers is 0\n" in done.out
     for options in ((), ("--exhaustive",)):
         exact = command("verify", few, "--expect", "p >= 0.9", *options)
-        assert "  expected ≥ 0.9: NOT MET by the minimum over all schedulers, which is 0\n" in exact.out
+        assert "  expected ≥ 0.9: NOT MET: the minimum over all schedulers is 0\n" in exact.out
     assert command("verify", few, "--expect", "p <= 0.1", "--exhaustive").status == 0
     searched = command("verify", few, "--expect", "p >= 0.9", "--scheduler", "lss", "--epsilon", "0.1")
     assert "  expected ≥ 0.9: NOT MET under sampled scheduler " in searched.out
@@ -432,6 +432,11 @@ def test_an_undecided_expectation_is_one_in_all_formats(
     done = command(*arguments)
     assert done.status == status
     assert "\n1 of 1 expectation is undecided, because the interval is too wide; a smaller --epsilon" in done.out
+    meets = "but the estimate meets it" if status == 0 else "and the estimate does not meet it"
+    assert done.out.endswith(f"\nexit status {status} (undecided, {meets}: heads)\n")
+    limited = command(*arguments, "--max-traces", 500)
+    assert "is too wide; a higher --max-traces makes it narrower: heads\n" in limited.out
+    assert "(epsilon), because max-traces ended the estimate\n" in limited.out
     row = rows(command(*arguments, "--format", "json").out)["heads"]
     assert (row["verdict"], row["expectations"][0]["certain"]) == ("undecided", False)
     assert ("undecided: the estimate meets it, but" in row.get("warning", "")) is (status == 0)
@@ -456,7 +461,10 @@ def test_schedulers_that_were_looked_for_have_all_that_results_have(command: Com
     name = write(tmp_path, starving(length=3))
     options = ("--scheduler", "lss", "--epsilon", "0.1", "--seed", "7")
     out = command("verify", name, *options, "--verbose").out
-    first, sentence = r"p: (minimum|maximum) probability found .* failed\n", r"  `done` holds at some time\.\n"
+    first, sentence = (
+        r"p: (minimum|maximum) with the best scheduler found: .* failed\n",
+        r"  `done` holds at some time\.\n",
+    )
     rest = r"  by sampled scheduler \d+, which .*\n  ends: .*\n"
     assert re.match(
         rf"{first}{sentence}{rest}{first}{rest}  [\d,]+ schedulers were tried, \d+\.\d s; {OTHERS}\n",
@@ -541,7 +549,7 @@ def test_expectations_of_sampled_schedulers(command: Command, tmp_path: Path) ->
     met = r"met by the [\d,]+ sampled schedulers; another one may miss it"
     assert re.search(rf"  expected ≥ 0: {met}\n", command("verify", name, *options).out)
     assert re.search(
-        rf"\| minimum probability found 0 in .*; maximum probability found 1 in .* \| ≥ 0 \| {met} \|",
+        rf"\| minimum with the best scheduler found: about 0 .*; maximum with the .*: about 1 .* \| ≥ 0 \| {met} \|",
         command("verify", name, *options, "--format", "markdown").out,
     )
     table = command("verify", name, *options, "--format", "csv").out
@@ -766,6 +774,23 @@ def test_a_reward_may_be_more_than_one(command: Command, tmp_path: Path) -> None
     written["variables"] = [variable("x", initial=2)]
     written["properties"] = [{"name": "cost", "expression": cost}]
     assert command("verify", write(tmp_path, written), "--expect", "cost > 2").status == 0
+
+
+def test_traces_of_rewards_reach_their_condition_or_do_not(command: Command, tmp_path: Path) -> None:
+    """A trace that does not reach the condition has no reward, and an undecided one no upper bound."""
+    goal, ways = op("=", "x", 1), [way("e", 0.5, x=1), way("e", 0.5)]
+    edges = [edge("s", *ways), edge("e", way("e"))]
+    cost = {"op": "Emin", "exp": 1, "accumulate": ["steps"], "reach": goal}
+    written = document(automaton("a", "s e", edges), variables=[variable("x")], properties={"cost": cost})
+    name = write(tmp_path, written)
+    done = command("verify", name, "--method", "fixed", "--max-traces", 50)
+    assert re.match(r"cost \(expected value\): infinite from 50 traces: \d+ reached, \d+ not reached, ", done.out)
+    edges[:] = [edge("s", way("s", 0.9), way("e", 0.1, x=1))]
+    written = document(automaton("a", "s e", edges), variables=[variable("x")], properties={"cost": cost})
+    done = command("verify", write(tmp_path, written), "--method", "fixed", "--max-traces", 200, "--max-steps", 20)
+    assert re.match(r"cost \(expected value\): at least [\d.]+ from 200 traces: \d+ reached, 0 not reached, ", done.out)
+    done = command("verify", name, "--exhaustive", "--explain")
+    assert "its condition has not been reached" not in done.out
 
 
 # ------------------------------------------------------------------ states that were changed

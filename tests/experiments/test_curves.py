@@ -123,6 +123,17 @@ def test_simultaneous_bands_are_wider_and_named() -> None:
     assert widths[BandKind.SIMULTANEOUS] > widths[BandKind.POINTWISE]
 
 
+def test_verdicts_of_a_property_are_dashed_lines_of_one_color() -> None:
+    """A line of traces that fail ends where they are decided: `fails` alone would be read as "until then"."""
+    checker = ModelChecker(model(attempts()))
+    (property_,) = (p for p in checker.compiled_properties if p.question.name == "success")
+    curves = verdict_curves(checker, property_, options(1), None)
+    assert [curve.name for curve in curves] == ["success: decided, holds", "success: decided, fails"]
+    first, second = curve_plot("t", curves).series
+    assert (first.is_dashed, second.is_dashed) == (False, True)
+    assert first.subject == second.subject == "success"
+
+
 def test_the_number_of_traces() -> None:
     assert traces_for(Options(epsilon=0.05)) == math.ceil(math.log(40) / (2 * 0.05**2))
     assert traces_for(Options(epsilon=0.05, max_traces=100)) == 100
@@ -135,7 +146,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeyp
     Path("walk.jani").write_text(json.dumps(walk()), encoding="utf-8")
     assert call(["verify", "walk.jani", "--plot", "curves.html", "--over-time", "x", "--band", "pointwise"]) == 0
     page = Path("curves.html").read_text(encoding="utf-8")
-    assert "Probability over time" in page
+    assert "Probability that the property is decided by this time" in page
     assert "median of x" in page
     assert "the shaded band contains each value by itself with 0.95" in page
     assert call(["verify", "walk.jani", "--plot", "curves.svg", "--over-time", "y"]) == 2

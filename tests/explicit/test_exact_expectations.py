@@ -41,7 +41,7 @@ def exact(lower: float, upper: float) -> Exact:
 def test_a_failing_trace_decides_about_1(text: str, is_met: bool) -> None:
     found = verdict(text, tossed(1e-13))
     assert found.is_met is is_met
-    assert is_met or found.text == "NOT MET by an example trace; the value is less than 1"
+    assert is_met or found.text == "NOT MET: the value is less than 1, as an example trace shows"
 
 
 @pytest.mark.parametrize("number", [0.5, 0.4999999, 0.5000001])
@@ -56,7 +56,7 @@ def test_one_of_two_opposite_expectations_is_met(number: float) -> None:
 def test_a_difference_of_less_than_a_millionth_counts() -> None:
     assert not verdict("<= 0.9999993", exact(1 - 1e-9, 1 - 1e-9)).is_met
     found = verdict("== 0.5", exact(0.5000001, 0.5000001))
-    assert found.text == "NOT MET by the value, which is 0.5000001"
+    assert found.text == "NOT MET: the value is 0.5000001"
 
 
 def test_rounding_is_no_difference() -> None:

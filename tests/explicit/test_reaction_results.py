@@ -168,8 +168,8 @@ def test_values_for_instant_reactions_bound_those_of_all_schedulers() -> None:
 @pytest.mark.parametrize(
     ("value", "least", "greatest"),
     [
-        (0.872, "between 0 and 0.872, no closer bounds", "between 0.128 and 1, no closer bounds"),
-        (1 - 2**-20, "less than 1, no closer bounds", "greater than 0, no closer bounds"),
+        (0.872, "at most 0.872, no closer bounds", "at least 0.128, no closer bounds"),
+        (1 - 2**-20, "at most 0.9999991, no closer bounds", "at least 9e-07, no closer bounds"),
         (1.0, "undecided", "undecided"),
     ],
 )

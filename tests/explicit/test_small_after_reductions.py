@@ -249,7 +249,7 @@ def test_traces_estimate_the_uniform_value_between_different_extremes(
     assert lines[2].startswith("  under uniform choices: 0.50")
     assert "] from 1" in lines[2]
     assert lines[4].startswith("  ends: goal decided ")
-    assert lines[5] == "  expected ≥ 0.2: NOT MET by the minimum over all schedulers, which is 0"
+    assert lines[5] == "  expected ≥ 0.2: NOT MET: the minimum over all schedulers is 0"
     assert "states: minimum and maximum over all schedulers; reductions left out choices" in out
     assert "\nestimates: 0.95 confidence, seed 0; " in out
     assert "p failed in a trace after " in out

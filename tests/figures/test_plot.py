@@ -115,6 +115,16 @@ def test_a_line_under_equal_ones_is_wider_than_these() -> None:
     assert first.box.width > max(p.x for p in third.points) - min(p.x for p in third.points)
 
 
+def test_lines_with_the_same_subject_have_the_same_color() -> None:
+    points = (PlotPoint(0, 0.5), PlotPoint(1, 0.6))
+    lines = tuple(Series(f"{subject}{n}", points, subject=subject) for n, subject in enumerate(("a", "a", "b", "", "")))
+    drawing = drawing_of(LinePlot("t", PlotAxis("x"), PlotAxis("y"), lines))
+    for role in ("series", "legend"):
+        first, second, *others = [group.tone for group in drawing.groups if group.role == role]
+        assert first == second
+        assert len({first, *others}) == 4
+
+
 def test_a_line_that_the_title_names_has_no_legend() -> None:
     for title, has_legend in (("line by x", False), ("p by x", True)):
         plot = LinePlot(title, PlotAxis("x"), PlotAxis("y"), (line((0, 0.5), (1, 0.6)),))

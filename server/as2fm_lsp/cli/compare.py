@@ -209,7 +209,7 @@ def _write(options: argparse.Namespace, outputs: OutputFiles, report: Comparison
 def _fails(fail_on: FailOn, report: ComparisonReport) -> bool:
     """Whether the new version fails. If the old one has errors, its missing values are no difference: the new version
     repairs them."""
-    is_missed = any(value.is_newly_missed for value in report.values)
+    is_missed = any(value.is_newly_missed or value.lacks_expected for value in report.values)
     differs = report.old.has_values is True and any(value.differs for value in report.values)
     match fail_on:
         case FailOn.EXPECTATION:

@@ -85,7 +85,7 @@ def _text(report: ComparisonReport) -> str:
     for title, changes in _sections(report.structure):
         lines += ["", title, *(f"  {_SIGNS[change.change]} {change.text}" for change in changes)]
     if report.structure.is_empty:
-        lines += ["", "the structure is the same"]
+        lines += ["", _without_changes(report.structure)]
     rows = [_HEAD, *(_row(value) for value in report.values)]
     if report.values:
         widths = [max(len(row[column]) for row in rows) for column in range(len(_HEAD))]
@@ -108,7 +108,8 @@ def _markdown(report: ComparisonReport, links: Mapping[str, str]) -> str:
         lines.append("")
     lines += [f"{note[0].upper()}{note[1:]}.  " for note in _notes(report)]
     if report.structure.is_empty:
-        lines += ["", "The structure is the same."]
+        text = _without_changes(report.structure)
+        lines += ["", f"{text[0].upper()}{text[1:]}."]
     for title, changes in _sections(report.structure):
         lines += ["", f"#### {title[0].upper()}{title[1:]}", ""]
         if title in links:
@@ -132,7 +133,7 @@ def _html(report: ComparisonReport) -> str:
     parts += [f"<p>{marked(note)}</p>" for note in _notes(report)]
     pictures = {picture.title: picture for picture in report.structure.pictures}
     if report.structure.is_empty:
-        parts.append("<p>the structure is the same</p>")
+        parts.append(f"<p>{marked(_without_changes(report.structure))}</p>")
     for title, changes in _sections(report.structure):
         listed = "".join(f"<li>{_SIGNS[change.change]} {marked(change.text)}</li>" for change in changes)
         figure = f"<figure>{pictures[title].svg()}</figure>" if title in pictures else ""
@@ -153,6 +154,13 @@ def _sections(structure: StructuralChanges) -> Iterator[tuple[str, tuple[PartCha
         yield "declarations", structure.declarations
     if structure.files:
         yield "files (without comments and layout)", structure.files
+
+
+def _without_changes(structure: StructuralChanges) -> str:
+    """A clause about a structure without changes."""
+    if structure.is_compared:
+        return "the structure is the same"
+    return "the structure was not compared: that of a JANI model is not shown, only its values are compared"
 
 
 def _counts(changes: tuple[PartChange, ...]) -> str:
@@ -181,7 +189,8 @@ def _difference(value: ValueChange) -> str:
 
 
 def _signed(difference: float) -> str:
-    return f"+{number(difference)}" if difference > 0 else number(difference).replace("-", "−")
+    text = number(difference, is_probability=False)
+    return f"+{text}" if difference > 0 else text.replace("-", "−")
 
 
 def _expected(value: ValueChange) -> str:
@@ -233,6 +242,7 @@ def _json(report: ComparisonReport) -> dict[str, Any]:
             }
             for value in report.values
         ],
+        "structure_compared": report.structure.is_compared,
         "pictures": [
             {"title": picture.title, "kind": picture.kind.value, "changes": _listed(picture.changes)}
             for picture in report.structure.pictures

@@ -271,17 +271,14 @@ class _Verification:
             if not any(result.question is not None and result.question.is_reward for result in self.results):
                 note(NO_QUANTILES if self.tree is None else NO_QUANTILES_OF_TREE)
             self.results = [self._with_quantiles(result) for result in self.results]
+        status = self.interrupts.status if interrupted else CLEAN if self._is_met() else FOUND
         answered = Answered(
-            self.options, self.verifier, tuple(self.results), tuple(self.faults), self.stuck_result, self.tree
+            self.options, self.verifier, tuple(self.results), tuple(self.faults), self.stuck_result, self.tree, status
         )
         print_text(report_text(answered), self.options.format.encoding)
         flush()
         print_faults(answered)
         self._note_unused_times()
-        is_met = all(r.is_met for r in self.results) and (self.stuck_result is None or self.stuck_result.is_met)
-        if self.options.stuck is stuck.StuckLevel.ERROR and any(map(can_get_stuck, self.results)):
-            is_met = False
-        status = self.interrupts.status if interrupted else CLEAN if is_met else FOUND
         if not interrupted and (self.options.traces is not None or self.options.explain):
             from as2fm_lsp.cli.verify_stories import Explanations  # noqa: PLC0415 - most verifications explain nothing
 
@@ -289,6 +286,13 @@ class _Verification:
         if not interrupted and self.options.plot:
             self._write_plots()
         return status
+
+    def _is_met(self) -> bool:
+        """Whether all properties have values, all expectations are met, and the check for stuck traces found no
+        error."""
+        if self.options.stuck is stuck.StuckLevel.ERROR and any(map(can_get_stuck, self.results)):
+            return False
+        return all(r.is_met for r in self.results) and (self.stuck_result is None or self.stuck_result.is_met)
 
     def _note_unused_times(self) -> None:
         """Say that options about times have no effect, because the model has no clock."""

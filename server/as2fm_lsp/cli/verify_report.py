@@ -9,6 +9,7 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from as2fm_lsp.cli.exit_status import CLEAN
 from as2fm_lsp.cli.formats import CheckReport, Format, render
 from as2fm_lsp.cli.formats.report import entry, shown_path
 from as2fm_lsp.cli.output import is_quiet, is_verbose, print_text, takes_color
@@ -19,6 +20,7 @@ from as2fm_lsp.verification.node_names import explained
 from as2fm_lsp.verification.report import as_brief_text, as_json, as_text
 from as2fm_lsp.verification.scheduler_report import A_SCHEDULER, UNIFORM_CHOICES
 from roaml.durations import ANY, ANY_TIME, AT_ONCE, INSTANT
+from roaml.jani.model import ModelType
 from roaml.record import Record
 from roaml.scxml.names import SUCCEEDS
 from roaml.smc.fault import FaultError
@@ -50,6 +52,7 @@ class Answered(Record, frozen=True):
         faults: the errors in the model because of which properties could not be decided.
         stuck_result: the result of the check whether the system gets stuck; `None` if that was not checked.
         tree: a tree without a system, and its measurements, or the reason why there are none.
+        status: the exit status that follows.
     """
 
     options: argparse.Namespace
@@ -58,6 +61,7 @@ class Answered(Record, frozen=True):
     faults: tuple[FaultError, ...] = ()
     stuck_result: stuck.StuckResult | None = None
     tree: tuple[MockedTree, TreeOutcome | str] | None = None
+    status: int = CLEAN
 
     @property
     def target(self) -> VerificationTarget:
@@ -92,8 +96,9 @@ def report_text(answered: Answered) -> str:
         return as_markdown(answered.results, _findings(answered), _assumptions(answered))
     if answered.options.format is not Format.TEXT:
         return render(_findings(answered), answered.options.format)
+    reason = _exit_reason(answered)
     if is_quiet():
-        return as_brief_text(answered.results, answered.place, answered.options.stuck)
+        return as_brief_text(answered.results, answered.place, answered.options.stuck) + reason
     # A story of a stuck trace ends with the waiting automata.
     has_story = STANDARD_OUTPUT_PATH in answered.options.explain and any(r.answer or r.exact for r in answered.results)
     has_story = has_story and not any(result.is_interrupted for result in answered.results)
@@ -106,7 +111,16 @@ def report_text(answered: Answered) -> str:
             where = _where_shown(answered, has_story)
             text += stuck_report.as_text(answered.stuck_result, answered.place, where, is_whole=is_verbose())
         text += "" if has_story else explained(text, answered.target.model, answered.place)
-    return text + "".join(f"{line}\n" for line in _assumptions(answered).splitlines())
+    return text + "".join(f"{line}\n" for line in _assumptions(answered).splitlines()) + reason
+
+
+def _exit_reason(answered: Answered) -> str:
+    """The last line of the report: which exit status follows, and why, if the results do not explain it."""
+    if not any(result.verdicts or not result.has_answer for result in answered.results):
+        return ""
+    from as2fm_lsp.verification.exit_reason import exit_reason  # noqa: PLC0415 - many calls expect nothing
+
+    return "".join(f"{line}\n" for line in exit_reason(answered.results, answered.status))
 
 
 def _json(answered: Answered) -> str:
@@ -239,14 +253,23 @@ def _computation(answered: Answered) -> str:
         return _explained(answered.results)
     drawn = UNIFORM_CHOICES if answered.verifier.only_uniform else f"{UNIFORM_CHOICES}; {A_SCHEDULER}"
     if (states := answered.verifier.checker.initial_states) > 1:
-        drawn = f"each of {states:,} initial states is equally probable; {drawn}"
+        of_states = f"each of {states:,} initial states is equally probable"
+        is_only_choice = answered.target.model.type is ModelType.DTMC
+        drawn = of_states if is_only_choice else f"{of_states}; {drawn}"
     estimates = "" if all(result.exact is None for result in answered.results) else "estimates: "
     return f"{estimates}{options.confidence:g} confidence, seed {options.seed}; {drawn}"
 
 
 def _explained(results: Sequence[Result]) -> str:
     """What the words of exact values mean if these depend on the scheduler; "" if none does."""
-    differing = [result.exact for result in results if result.exact is not None and not result.exact.agrees]
+    differing = [
+        result.exact
+        for result in results
+        if result.exact is not None
+        and not result.exact.agrees
+        and result.question
+        and not result.question.is_deterministic
+    ]
     if not differing:
         return ""
     return f"{UNIFORM_CHOICES}; {A_SCHEDULER}" if any(exact.uniform for exact in differing) else A_SCHEDULER

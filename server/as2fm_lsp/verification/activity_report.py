@@ -7,13 +7,12 @@ from __future__ import annotations
 from typing import Any
 
 from roaml.smc.end import End
+from roaml.smc.goal import Question
 from roaml.smc.run import Answer
 from roaml.smc.tally import Tally
 
 _UNTESTED = "these are among the passed traces, but do not test it"
 _NEVER_TESTED = "nothing has tested the property, so this value does not show that the system is right (vacuous):"
-_NOT_TRIGGERED = "what must happen before the property requires anything did not happen"
-_NOT_OPENED = "the event that begins or ends the scope of the property did not happen"
 _REMEDY = "check whether it can happen at all"
 _MORE_TIME = ", or allow more time (max_time)"
 """A remedy where the end of time has ended traces."""
@@ -38,9 +37,9 @@ def remarks(answer: Answer, *, are_examples: bool = False) -> list[str]:
         lines.append(f"warning: {warning(answer)}")
     elif tally.undecided < tally.traces:
         if tally.closed:
-            lines.append(f"{_NOT_OPENED} in {_share(tally.closed, tally.traces)}: {_UNTESTED}")
+            lines.append(f"{_not_opened(answer.question)} in {_share(tally.closed, tally.traces)}: {_UNTESTED}")
         if tally.idle:
-            lines.append(f"{_NOT_TRIGGERED} in {_share(tally.idle, tally.traces)}: {_UNTESTED}")
+            lines.append(f"{_not_triggered(answer.question)} in {_share(tally.idle, tally.traces)}: {_UNTESTED}")
     late = tally.late or _ended_with_time(answer)
     if late:
         of = f" (of {tally.traces:,} random examples)" if are_examples else ""
@@ -88,7 +87,20 @@ def warning(answer: Answer) -> str:
     if not is_untested(answer):
         return ""
     more_time = _MORE_TIME if End.TIME in tally.ends else ""
-    return f"{_NEVER_TESTED} {_NOT_TRIGGERED if tally.idle else _NOT_OPENED} in any trace; {_REMEDY}{more_time}"
+    missing = (_not_triggered if tally.idle else _not_opened)(answer.question)
+    return f"{_NEVER_TESTED} {missing} in any trace; {_REMEDY}{more_time}"
+
+
+def _not_triggered(question: Question) -> str:
+    """That the event did not happen after which the property requires something."""
+    trigger = f"{question.trigger}, " if question.trigger else ""
+    return f"{trigger}what must happen before the property requires anything{',' if trigger else ''} did not happen"
+
+
+def _not_opened(question: Question) -> str:
+    """That the event did not happen that begins or ends the scope of the property."""
+    scope = f"{question.scope}, " if question.scope else ""
+    return f"{scope}the event that begins or ends the scope of the property{',' if scope else ''} did not happen"
 
 
 def row(answer: Answer) -> dict[str, Any]:

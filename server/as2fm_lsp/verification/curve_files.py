@@ -10,6 +10,9 @@ from roaml.experiments.curves import Curve, curve_plot, median_curves, verdict_c
 from roaml.figures.plot import LinePlot
 from roaml.verification.verifier import Verifier
 
+BY_TIME = "Probability that the property is decided by this time"
+"""The title of the plot of probabilities. A curve that rises late does not mean that the property fails before."""
+
 
 def curve_plots(verifier: Verifier, variables: Sequence[str], band: BandKind) -> Iterator[LinePlot]:
     """A plot for all probabilities, one for each reward, and one for each variable.
@@ -27,6 +30,6 @@ def curve_plots(verifier: Verifier, variables: Sequence[str], band: BandKind) ->
         elif not property_.question.is_conditional:
             probabilities += curves
     if probabilities:
-        yield curve_plot("Probability over time", probabilities)
+        yield curve_plot(BY_TIME, probabilities)
     for variable in variables:
         yield curve_plot(f"{variable} over time", median_curves(checker, variable, options, clock, band), variable)

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from roaml.smc.goal import InitialFold, Question
+from roaml.smc.goal import UNIFORMLY, InitialFold, Question
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.statistics import Bounds
 from roaml.verification.number_text import exact_number, json_number
@@ -28,6 +28,8 @@ _OVER_INITIAL_STATES = {
     InitialFold.MAXIMUM: "maximum over {:,} initial states",
     InitialFold.MEAN: "mean over {:,} initial states",
 }
+_ONLY_INITIAL_STATES = "minimum and maximum over {:,} initial states, which are the only choice"
+"""The same if the model has no other nondeterminism."""
 
 
 def lines(
@@ -50,6 +52,7 @@ def lines(
     states = "1 state" if exact.states == 1 else f"{exact.states:,} states"
     end = f"{states}{' after reductions' if exact.is_reduced else ''}, {seconds:.1f} s"
     quality = "exact" if exact.is_precise else "not exact, because the bounds no longer converge"
+    average = UNIFORMLY if question is None else question.average
     shown: list[str] = []
     if one_value := _one_value(exact):
         shown.append(f"{name}: {one_value} for all schedulers, {quality}, {end}")
@@ -57,21 +60,23 @@ def lines(
         if _is_enclosed(exact):
             value, quality = f"between {' and '.join(_distinct(exact))}", f"the {quality} minimum and maximum"
         else:
-            value = _below_one(exact, exact.uniform) or f"= {_number(exact.uniform)}"
-        shown.append(f"{name}: {value} under uniform choices, {quality}, {end}")
+            value = _below_one(exact, exact.uniform) or f"= {_number(exact, exact.uniform)}"
+        shown.append(f"{name}: {value} {average}, {quality}, {end}")
     else:
         both = _extremes(exact, question)
         if _is_enclosed(exact):
-            both += ", between them under uniform choices"
+            both += f", between them {average}"
         elif exact.uniform is not None:
-            both += f", {_below_one(exact, exact.uniform) or _number(exact.uniform)} under uniform choices"
+            both += f", {_below_one(exact, exact.uniform) or _number(exact, exact.uniform)} {average}"
         shown.append(f"{name}: {both}, {quality}, {end}")
         if exact.uniform is None and uniform_estimate:
-            shown.append(f"  under uniform choices: {uniform_estimate}")
+            shown.append(f"  {average}: {uniform_estimate}")
         elif exact.uniform is None:
             shown.append("  not computed: the value under uniform choices; use --no-reductions")
     if exact.initial_states > 1:
-        shown.append(f"  {_OVER_INITIAL_STATES[exact.fold].format(exact.initial_states)}")
+        is_only_choice = question is not None and question.is_deterministic and exact.fold is InitialFold.CHOICE
+        text = _ONLY_INITIAL_STATES if is_only_choice else _OVER_INITIAL_STATES[exact.fold]
+        shown.append(f"  {text.format(exact.initial_states)}")
     return [*shown, *_details(exact, states, question)] if is_whole else shown
 
 
@@ -119,10 +124,10 @@ def _extremes(exact: Exact, question: Question | None) -> str:
 def _distinct(exact: Exact) -> tuple[str, str]:
     """The minimum and the maximum, with as many digits as are necessary to see that they differ."""
     for digits in range(_DIGITS, _MAX_DIGITS):
-        least, greatest = _number(exact.minimum, digits), _number(exact.maximum, digits)
+        least, greatest = _number(exact, exact.minimum, digits), _number(exact, exact.maximum, digits)
         if least != greatest or not are_apart(exact.minimum, exact.maximum):
             return least, greatest
-    return _number(exact.minimum, _MAX_DIGITS), _number(exact.maximum, _MAX_DIGITS)
+    return _number(exact, exact.minimum, _MAX_DIGITS), _number(exact, exact.maximum, _MAX_DIGITS)
 
 
 def _is_enclosed(exact: Exact) -> bool:
@@ -187,7 +192,7 @@ def _one_value(exact: Exact) -> str:
     """The words for the value of all schedulers, also if all are close to 1; "" if they have different values."""
     almost = _least_below_one(exact)
     if exact.agrees:
-        return almost or f"= {_number(exact.minimum)}"
+        return almost or f"= {_number(exact, exact.minimum)}"
     return f"1 or {almost}" if almost and exact.maximum.lower >= 1.0 else ""
 
 
@@ -212,11 +217,11 @@ def _upwards(value: float) -> str:
     return f"{math.ceil(value / 10**exponent - 1e-6) * 10**exponent:.1g}"
 
 
-def _number(bounds: Bounds, digits: int = _DIGITS) -> str:
+def _number(exact: Exact, bounds: Bounds, digits: int = _DIGITS) -> str:
     """A value, or the interval of its bounds if that is wider than `EXACT_WIDTH`, relative to the value if it is
     greater than 1."""
     if math.isinf(bounds.lower) and bounds.lower == bounds.upper:
         return "∞" if bounds.lower > 0 else "-∞"
     if bounds.upper - bounds.lower > EXACT_WIDTH * max(1.0, abs(bounds.lower)):
         return f"[{bounds.lower:.7g}, {'∞' if math.isinf(bounds.upper) else f'{bounds.upper:.7g}'}]"
-    return exact_number(bounds.lower, bounds.upper, digits)
+    return exact_number(bounds.lower, bounds.upper, digits, is_probability=not exact.is_reward)

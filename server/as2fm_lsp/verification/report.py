@@ -13,11 +13,11 @@ from as2fm_lsp.verification.stuck_report import PROBABILITY
 from roaml.comparison import UniformPolicy
 from roaml.exhaustive import assert_never
 from roaml.smc.end import End
-from roaml.smc.goal import Question
+from roaml.smc.goal import UNIFORMLY, Question
 from roaml.smc.lss import Side
 from roaml.smc.run import Answer, ratio_of
 from roaml.verification.expectations import NO_EXPECTATION
-from roaml.verification.headline import NO_TRACES, UNDECIDED, estimate_text, headline
+from roaml.verification.headline import NO_TRACES, UNDECIDED, estimate_text, found_text, headline, too_wide
 from roaml.verification.number_text import json_number, number
 from roaml.verification.refusal import Refusal
 from roaml.verification.results import (
@@ -100,24 +100,44 @@ def _without_expectation(results: Sequence[Result]) -> list[str]:
     return [f"{NO_EXPECTATION}: {', '.join(names)}"] if names else []
 
 
+_FOR_ALL = {UNIFORMLY: "under all schedulers"}
+
+
 def remarks_on_expectations(results: Sequence[Result]) -> list[str]:
     """A line with the number of expectations that are met only under uniform choices, unless these are accepted, and
     one with the number of those that an interval leaves undecided; empty if there are none."""
     verdicts = [(result.name, verdict) for result in results for verdict in result.verdicts]
-    uniform = [
-        name for name, v in verdicts if v.is_uniform and not v.is_undecided and v.policy is not UniformPolicy.ACCEPT
-    ]
-    undecided = [name for name, v in verdicts if v.is_undecided and not v.is_open]
+    average: dict[str, list[str]] = {}
+    for name, v in verdicts:
+        if v.is_uniform and not v.is_undecided and v.policy is not UniformPolicy.ACCEPT:
+            average.setdefault(v.average, []).append(name)
     lines = []
+    undecided: dict[str, list[str]] = {}
+    for result in results:
+        names = [result.name for verdict in result.verdicts if verdict.is_undecided and not verdict.is_open]
+        if names:
+            undecided.setdefault(_remedy(result.answer), []).extend(names)
     for names, what in (
-        (uniform, "met only under uniform choices, not known to be met under all schedulers"),
-        (undecided, "undecided, because the interval is too wide; a smaller --epsilon makes it narrower"),
+        *(
+            (names, f"met only {of}, not known to be met {_FOR_ALL.get(of, 'in each of them')}")
+            for of, names in average.items()
+        ),
+        *(
+            (names, f"undecided, because the interval is too wide; {way} makes it narrower")
+            for way, names in undecided.items()
+        ),
     ):
         if names:
             of = f"{len(verdicts):,} expectation{'' if len(verdicts) == 1 else 's'}"
             verb = "is" if len(names) == 1 else "are"
             lines.append(f"{len(names):,} of {of} {verb} {what}: {', '.join(dict.fromkeys(names))}")
     return lines
+
+
+def _remedy(answer: Answer | None) -> str:
+    """What makes the interval of an estimate narrower, as a phrase for users. `None` for that of a sampled
+    scheduler."""
+    return "a higher --max-traces" if answer is not None and answer.is_ended_by_limit else "a smaller --epsilon"
 
 
 def one_as_text(result: Result, place_of: PlaceOf, level: StuckLevel = StuckLevel.WARNING, shown: str = "") -> str:
@@ -166,8 +186,7 @@ def _block(
 
 
 def _quantile_text(quantile: RewardQuantile) -> str:
-    low, high = (number(end) for end in (quantile.low, quantile.high))
-    limit = number(quantile.value)
+    low, high, limit = (number(value, is_probability=False) for value in (quantile.low, quantile.high, quantile.value))
     if math.isinf(quantile.value):
         text = f"no limit is known, because too few reach the condition; it is at least {low}"
     elif low == limit == high:
@@ -236,7 +255,7 @@ def _computed_lines(result: Result, computed: Computed, *, is_whole: bool) -> li
         remarks = _remarks if has_estimate else _example_remarks
         lines += remarks(sample.answer, is_whole=is_whole)
         if has_estimate and sample.answer.is_too_wide:
-            lines.append("  the interval is wider than requested (--epsilon)")
+            lines.append(f"  {too_wide(sample.answer)}")
     return lines
 
 
@@ -266,7 +285,7 @@ def _estimated_lines(
     if estimated.is_interrupted:
         lines.append(f"  interrupted; {_SO_FAR if answer.tally.traces else _NOTHING_SO_FAR}")
     elif answer.is_too_wide and answer.tally.undecided < answer.tally.traces:
-        lines.append("  the interval is wider than requested (--epsilon)")
+        lines.append(f"  {too_wide(answer)}")
     return lines
 
 
@@ -275,7 +294,7 @@ def _sampled_lines(
 ) -> list[str]:
     lines = []
     for extreme in sorted(sampled.extremes, key=_is_other_side):
-        lines.append(f"{result.name}: {extreme.side.extreme} probability found {_estimate(extreme.answer)}")
+        lines.append(f"{result.name}: {found_text(extreme)}")
         lines.append(f"  by {extreme.words}")
         if extreme.stuck is not None and not extreme.answer.question.is_stuck:
             lines += _stuck_lines(extreme.stuck, place_of, level, shown)
@@ -352,12 +371,13 @@ def _reward_remark(answer: Answer) -> str:
     if mean.is_constant:
         rare = -math.expm1(math.log(error) / mean.number)
         return (
-            f"  no interval: all {mean.number:,} values were {number(mean.mean)}, but another value may have a "
-            f"probability of up to {rare:.2g}"
+            f"  no interval: all {mean.number:,} values were {number(mean.mean, is_probability=False)}, but "
+            f"another value may have a probability of up to {rare:.2g}"
         )
+    least, greatest = (number(value, is_probability=False) for value in (mean.least, mean.greatest))
     return (
-        f"  no guarantee: the interval is valid if all possible values are from {number(mean.least)} to "
-        f"{number(mean.greatest)}, as they were in these traces"
+        f"  no guarantee: the interval is valid if all possible values are from {least} to {greatest}, as they were in "
+        "these traces"
     )
 
 
@@ -461,7 +481,7 @@ def row(result: Result) -> dict[str, Any]:
             **({"open": True} if verdict.is_open else {}),
             "under_uniform_choices_only": verdict.is_uniform,
             **({"uniform": str(verdict.policy)} if verdict.is_uniform else {}),
-            **({"not_met": verdict.under} if verdict.under else {}),
+            **({"not_met": missed} if (missed := ": ".join(filter(None, (verdict.under, verdict.because)))) else {}),
             **({"sampled_schedulers": verdict.sampled} if verdict.is_met and verdict.sampled else {}),
             **({"unanimous": verdict.unanimous[0]} if verdict.unanimous is not None and verdict.unanimous_text else {}),
         }

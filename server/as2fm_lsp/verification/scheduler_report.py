@@ -7,7 +7,7 @@ from collections.abc import Collection, Sequence
 from typing import Any
 
 from roaml.smc.choices import Choices, Extreme, ExtremeMethod
-from roaml.smc.goal import InitialFold, Question
+from roaml.smc.goal import UNIFORMLY, InitialFold, Question
 from roaml.verification.headline import bound_text
 from roaml.verification.number_text import json_number, number
 from roaml.verification.schedulers import extreme_of, is_minimised
@@ -77,15 +77,16 @@ def _known(question: Question, extreme: Extreme) -> str:
 
 def _initial_states_remark(question: Question, choices: Choices | None) -> str:
     """A warning that traces have the mean of the values of several initial states, and not the extreme one."""
-    extreme = extreme_of(question)
+    extreme, schedulers = extreme_of(question), "" if question.is_deterministic else " and all schedulers"
     asked = {
-        InitialFold.CHOICE: f"{extreme} over the initial states and all schedulers",
+        InitialFold.CHOICE: f"{extreme} over the initial states{schedulers}",
         InitialFold.MINIMUM: "minimum over the initial states",
         InitialFold.MAXIMUM: "maximum over the initial states",
     }[question.fold]
     known = None if choices is None else choices.minimum if is_minimised(question) else choices.maximum
     count = f"{question.initial_states:,}"
-    head = f"warning: this is the mean over {count} initial states under uniform choices, and the property asks for"
+    chosen = "" if question.is_deterministic else f" {UNIFORMLY}"
+    head = f"warning: this is the mean over {count} initial states{chosen}, and the property asks for"
     if known is not None and known.is_exact:
         return f"{head} the {asked}, which is {number(known.value)} (exact, from all states)"
     return f"{head} the {asked}, which may differ"

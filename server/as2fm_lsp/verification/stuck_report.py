@@ -40,7 +40,8 @@ def as_text(result: StuckResult, place_of: PlaceOf, shown: str = "", *, is_whole
             value = UNDECIDED if answer.is_unknown else f"{answer.value:.6g}"
             lines.append(f"{PROBABILITY}: {value} in [{lower:.6g}, {upper:.6g}] from {traces}{to}")
     if result.fault:
-        lines.append(f"{PROBABILITY}: {UNDECIDED}, because a longer trace failed: {result.fault}")
+        why = "a trace that went on after the properties were decided went wrong"
+        lines.append(f"{PROBABILITY}: {UNDECIDED}, because {why}: {result.fault}")
     if stuck is not None:
         still = "" if stuck.time is None else " and time does not advance"
         if shown:

@@ -70,11 +70,13 @@ class StructuralChanges(Record, frozen=True):
         pictures: the diagrams with changes: the ROS graph, the tree, then the machines.
         declarations: parameters, variables, timers, ports and listed files, which pictures do not show.
         files: the files whose content changed, except for comments and layout.
+        is_compared: whether there was anything to compare: JANI models have neither pictures nor these declarations.
     """
 
     pictures: tuple[ComparedPicture, ...] = ()
     declarations: tuple[PartChange, ...] = ()
     files: tuple[PartChange, ...] = ()
+    is_compared: bool = True
 
     @property
     def is_empty(self) -> bool:
@@ -93,7 +95,7 @@ def compare_structure(old: ComparedVersion, new: ComparedVersion, ros_paths: Ite
     """
     sides = [_Side(version, ros_paths) for version in (old, new) if not version.path.endswith(".jani")]
     if len(sides) < 2:
-        return StructuralChanges()
+        return StructuralChanges(is_compared=False)
     before, after = (side.pictures() for side in sides)
     pictures = []
     for key in [*after, *(key for key in before if key not in after)]:

@@ -97,6 +97,12 @@ class ValueChange(Record, frozen=True):
         return Met.NO in self.met_now() and Met.NO not in self.met_before()
 
     @property
+    def lacks_expected(self) -> bool:
+        """Whether something is expected of the property, and the new version has no value, so that nobody knows whether
+        it is met."""
+        return bool(self.expected_now) and self.new is not None and not self.new.has_value
+
+    @property
     def differs(self) -> bool:
         """Whether the value differs significantly, or one of the models has no value, or not the property."""
         return self.verdict not in (ValueVerdict.SAME, ValueVerdict.OPEN)

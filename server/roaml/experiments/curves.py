@@ -20,7 +20,7 @@ from roaml.experiments.bands import BandKind
 from roaml.experiments.quantiles import value_of_rank
 from roaml.experiments.traces import TraceEnd, trajectories, variable_named
 from roaml.figures.plot import LinePlot, PlotAxis, PlotPoint, Series
-from roaml.record import Record
+from roaml.record import Record, replace
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
@@ -54,6 +54,8 @@ class Curve(Record, frozen=True):
         across: the name of the horizontal axis, with its unit.
         points: the places in ascending order. The value of a step function is valid until the next place.
         undecided: the number of traces that were cut.
+        subject: what the curve is about; curves with the same subject have the same color. "" for a color of its own.
+        is_dashed: whether it is drawn as a dashed line.
     """
 
     name: str
@@ -63,6 +65,8 @@ class Curve(Record, frozen=True):
     confidence: float
     traces: int
     undecided: int
+    subject: str = ""
+    is_dashed: bool = False
 
     @property
     def band_words(self) -> str:
@@ -127,8 +131,8 @@ def verdict_curves(
     clock: tuple[str, str] | None,
     band: BandKind = BandKind.SIMULTANEOUS,
 ) -> tuple[Curve, ...]:
-    """The probability over time that a property holds, and that it fails: that it is decided at or before a time. A
-    curve without any trace is left out. For a reward, the distribution of the reward.
+    """The probability that a property is decided at or before a time, and holds, or fails. A curve without any trace
+    is left out. For a reward, the distribution of the reward.
 
     Args:
         options: the confidence, the number of traces (`traces_for`), the limit of steps and the seed.
@@ -142,9 +146,11 @@ def verdict_curves(
         return (distribution(ends, _reward_of, TRUE, label, "reward", band, options.confidence),)
     across = "steps" if clock is None else "time (s)"
     curves = []
-    for verdict, words in ((TRUE, "holds"), (FALSE, "fails")):
+    for verdict, words in ((TRUE, "decided, holds"), (FALSE, "decided, fails")):
         if any(end.verdict == verdict for end in ends):
-            curves.append(distribution(ends, _time_of, verdict, f"{name} {words}", across, band, options.confidence))
+            label = f"{name}: {words}"
+            curve = distribution(ends, _time_of, verdict, label, across, band, options.confidence)
+            curves.append(replace(curve, subject=name, is_dashed=verdict == FALSE))
     return tuple(curves)
 
 
@@ -238,7 +244,10 @@ def curve_plot(title: str, curves: Iterable[Curve], up: str = "probability") -> 
         points = tuple(
             PlotPoint(p.x, p.value, p.low if has_band else None, p.high if has_band else None) for p in curve.points
         )
-        series.append(Series(curve.name, points, is_stepped=True, is_dashed=not has_band, has_marks=False))
+        is_dashed = curve.is_dashed or not has_band
+        series.append(
+            Series(curve.name, points, is_stepped=True, is_dashed=is_dashed, has_marks=False, subject=curve.subject)
+        )
     notes = dict.fromkeys(curve.band_words for curve in curves if not _is_bare(curve))
     y = PlotAxis(up, low=0.0, high=1.0) if is_probability else PlotAxis(up)
     across = curves[0].across if curves else "time (s)"

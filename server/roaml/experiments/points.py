@@ -12,6 +12,8 @@ from roaml.record import Record
 from roaml.smc.goal import Question
 from roaml.smc.run import Answer
 from roaml.smc.statistics import Bounds
+from roaml.verification.headline import too_wide
+from roaml.verification.number_text import without_noise
 from roaml.verification.results import is_close, is_same
 from roaml.verification.schedulers import is_minimised
 
@@ -150,6 +152,9 @@ def exact_point(
         only_uniform: whether the value under uniform choices is requested. It must be known then.
     """
     minimum, maximum, uniform = values.minimum, values.maximum, values.uniform
+    if question.is_reward:
+        minimum, maximum = without_noise(minimum), without_noise(maximum)
+        uniform = None if uniform is None else without_noise(uniform)
     agrees = is_same(minimum, maximum)
     if uniform is None and is_close(minimum, maximum):
         uniform = Bounds(minimum.lower, maximum.upper)
@@ -202,7 +207,7 @@ def estimated_point(setting: Setting, answer: Answer, stuck: int = 0) -> Experim
     if answer.question.is_conditional and not tally.traces:
         notes.append(f"none of {tally.rejected:,} traces satisfies the condition")
     elif answer.is_too_wide:
-        notes.append("the interval is wider than requested")
+        notes.append(too_wide(answer))
     value = math.nan if answer.is_unknown else answer.value
     return ExperimentPoint(
         setting,

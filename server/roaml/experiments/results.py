@@ -15,7 +15,8 @@ from roaml.experiments.points import ExperimentPoint, PointKind, Schedulers, unk
 from roaml.experiments.sweeps import Sweep, settings_of
 from roaml.figures.plot import HeatMap, LinePlot, PlotAxis, PlotPoint, Series, plot_page, plot_svg
 from roaml.record import Record, replace
-from roaml.verification.number_text import exact_number, number
+from roaml.smc.statistics import Bounds
+from roaml.verification.number_text import exact_number, with_interval
 
 MAX_LINES = 6
 """The maximum number of lines of a plot. With more values of the second parameter, the plot is a heat map."""
@@ -333,7 +334,7 @@ def cell(point: ExperimentPoint) -> str:
     if point.kind is PointKind.EXACT:
         slopes = "".join(f", d/d{name} {slope:.6g}" for name, slope in point.slopes)
         return f"{exact_number(point.low, point.high)}{slopes}"
-    return f"{number(point.value)} in [{number(point.low)}, {number(point.high)}]"
+    return with_interval(point.value, Bounds(point.low, point.high))
 
 
 def csv_text(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> str:

@@ -97,6 +97,8 @@ class Series(Record, frozen=True):
         is_dashed: whether the line is dashed, as lines for comparison are.
         has_line: whether the points are connected.
         has_marks: whether the points are marked, unless there are too many.
+        subject: what the line is about; lines with the same subject have the same color and marks. "" for a color of
+            its own.
     """
 
     name: str
@@ -105,6 +107,7 @@ class Series(Record, frozen=True):
     is_dashed: bool = False
     has_line: bool = True
     has_marks: bool = True
+    subject: str = ""
 
 
 class LinePlot(Record, frozen=True):
@@ -289,8 +292,8 @@ def _lines(plot: LinePlot) -> Drawing:
                 )
             )
     clipped = [(series, _clipped(series, x, y)) for series in plot.series]
-    for number, (series, points) in enumerate(clipped):
-        covers = _covers(points, [later for _, later in clipped[number + 1 :]], placed)
+    for place, (number, (series, points)) in enumerate(zip(_numbers(plot.series), clipped, strict=True)):
+        covers = _covers(points, [later for _, later in clipped[place + 1 :]], placed)
         tone = _TONES[number % len(_TONES)]
         bands = tuple(_bands(series, points, placed))
         if bands:
@@ -306,6 +309,12 @@ def _lines(plot: LinePlot) -> Drawing:
     return Drawing(Extent(right, bottom), (*groups, *foot), {})
 
 
+def _numbers(series: Sequence[Series]) -> list[int]:
+    """The number of each line, on which its color and its marks depend."""
+    numbers: dict[object, int] = {}
+    return [numbers.setdefault(line.subject or index, len(numbers)) for index, line in enumerate(series)]
+
+
 def _has_space_for_names(series: Sequence[Series]) -> bool:
     """Whether the names of lines are written at their ends. Points without lines have a legend."""
     widest = max((text_width(line.name, SMALL) for line in series), default=0.0)
@@ -319,7 +328,7 @@ def _end_names(
     paths = [[placed(p.x, p.y) for p in points if not math.isnan(p.y)] for points in clipped]
     heights = label_heights([[p.y for p in path] for path in paths], NAME_DISTANCE, area.y, area.bottom)
     at = area.right + _NAMES_FROM
-    for number, (line, path, height) in enumerate(zip(series, paths, heights, strict=True)):
+    for number, line, path, height in zip(_numbers(series), series, paths, heights, strict=True):
         name = TextItem(line.name, at + _SAMPLE + 8, height + 4, SMALL, "")
         kind = "dashed" if line.is_dashed else ""
         if path:
@@ -475,7 +484,7 @@ def _head(title: str, series: Sequence[Series], left: float, up: str) -> tuple[l
         items.append(TextItem(line, 0.0, at - 5, MEDIUM, "", bold=True))
     groups = [Group("title", Tone.PLAIN, tuple(items))]
     place, at = 0.0, at + (20 if series else 0)
-    for number, line_ in enumerate(series):
+    for number, line_ in zip(_numbers(series), series, strict=True):
         width = _SAMPLE + 8 + text_width(line_.name, SMALL) + 18
         if place and place + width > left + WIDTH:
             place, at = 0.0, at + 20

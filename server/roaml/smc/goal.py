@@ -13,6 +13,7 @@ import math
 from array import array
 
 from roaml.jani.expressions import Binary, Conditional, Expression, Integer, Name, Unary
+from roaml.jani.model import ModelType
 from roaml.jani.operators import BinaryOperator, UnaryOperator
 from roaml.jani.properties import (
     Accumulation,
@@ -75,6 +76,10 @@ class Threshold(Record, frozen=True):
         return self.relation in (BinaryOperator.GREATER, BinaryOperator.GREATER_EQUAL)
 
 
+UNIFORMLY = "under uniform choices"
+"""Where the value comes from of traces that choose each possible step with the same probability."""
+
+
 class InitialFold(enum.Enum):
     """How a property combines the values of several initial states (docs/spec/properties.md#initial-states)."""
 
@@ -96,11 +101,12 @@ class Question(Record, frozen=True):
         variables: the variables that the property reads.
         is_stuck: whether it is about stuck traces (`compile_stuck`).
         can_be_vacuous: whether there may be traces that do not exercise the property (`Activity`).
-        can_be_late: see `ObserverOutputs`.
+        can_be_late, trigger, scope: see `ObserverOutputs`.
         is_conditional: whether it is only about traces that satisfy assumptions; for a reward, about traces that reach
             its condition.
         initial_states: the number of initial states.
         fold: how the property combines their values.
+        is_deterministic: whether the model has no nondeterminism, except for its initial states.
     """
 
     name: str
@@ -114,6 +120,23 @@ class Question(Record, frozen=True):
     is_conditional: bool = False
     initial_states: int = 1
     fold: InitialFold = InitialFold.CHOICE
+    trigger: str = ""
+    scope: str = ""
+    is_deterministic: bool = False
+
+    @property
+    def average(self) -> str:
+        """Of what traces estimate the value, as an adverbial phrase: they choose a step, and an initial state, at
+        random."""
+        return "on average over the initial states" if self.is_deterministic else UNIFORMLY
+
+    @property
+    def outcomes(self) -> tuple[str, str]:
+        """The words for traces in which the property holds, and for those in which it fails. A reward is not tested:
+        its traces reach its condition or do not."""
+        if self.is_stuck:
+            return "stuck", "not stuck"
+        return ("reached", "not reached") if self.is_reward else ("passed", "failed")
 
     @property
     def is_minimised(self) -> bool:
@@ -165,12 +188,16 @@ class ObserverOutputs(Record, frozen=True):
         triggered: whether the event that triggers the property has occurred.
         opened: whether the scope of the property has been evaluated.
         can_be_late: whether the property fails if the time ends before an event that it still requires.
+        trigger, scope: the conditions of the property that must hold for `triggered` and `opened`, as text; "" if they
+            are not known.
     """
 
     open: tuple[tuple[str, Name], ...] = ()
     triggered: Expression | None = None
     opened: Expression | None = None
     can_be_late: bool = False
+    trigger: str = ""
+    scope: str = ""
 
     @property
     def expressions(self) -> tuple[Expression, ...]:
@@ -312,6 +339,9 @@ class _Writer:
             can_be_late=outputs.can_be_late,
             initial_states=self.compilation.initial_states,
             fold=self.fold(function, threshold),
+            trigger=outputs.trigger,
+            scope=outputs.scope,
+            is_deterministic=self.compilation.model.type is ModelType.DTMC,
         )
         seen_start, seen_leaf = array("i", [0]), array("i")
         for storage in self.compilation.watched:

@@ -131,6 +131,11 @@ class Answer(Record, frozen=True):
         return not self.is_complete and self.options.method is not EstimationMethod.FIXED
 
     @property
+    def is_ended_by_limit(self) -> bool:
+        """Whether the maximum number of traces has ended the estimate, so that only more traces make it better."""
+        return self.options.max_traces is not None and self.tally.simulated >= self.options.max_traces
+
+    @property
     def is_unknown(self) -> bool:
         """Whether there are traces and all of them are undecided, so that `value` says nothing about the model."""
         return 0 < self.tally.traces == self.tally.undecided

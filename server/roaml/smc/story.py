@@ -18,7 +18,7 @@ from roaml.jani.model import Automaton
 from roaml.jani.semantics import Value
 from roaml.record import Record, field
 from roaml.smc.end import End
-from roaml.smc.record import Plain, RecordedVariable, Recorder, Recording, TraceStep
+from roaml.smc.record import VERDICTS, Plain, RecordedVariable, Recorder, Recording, TraceStep, TraceVerdict
 from roaml.smc.standstill import Standstill
 
 MAX_STEPS_WITH_OPTIONS = 5_000
@@ -41,6 +41,7 @@ class Story(Record, frozen=True):
         is_whole: whether all steps are shown, not only the relevant ones.
         constants: the values of the constants of the model.
         comment: a description of what the property requires, if the model contains one.
+        is_reward: whether the property asks for a reward, so that a trace reaches its condition or does not.
         options: among how many steps the scheduler chose (`roaml.smc.record.Recorder.options`); empty if that is not
             known.
     """
@@ -59,6 +60,17 @@ class Story(Record, frozen=True):
     comment: str = ""
     constants: Mapping[str, Value] = field(default_factory=dict)
     options: Mapping[int, Mapping[int, int]] = field(default_factory=dict)
+    is_reward: bool = False
+
+
+def outcome(story: Story) -> str:
+    """The verdict of a trace, as a verb phrase in the past."""
+    verdict = VERDICTS[story.recording.verdict]
+    if verdict is TraceVerdict.FAULT:
+        return "went wrong"
+    if story.is_reward and verdict is not TraceVerdict.UNDECIDED:
+        return f"{'reached' if verdict is TraceVerdict.PASSED else 'did not reach'} its condition"
+    return str(verdict)
 
 
 def build_story(
@@ -99,6 +111,7 @@ def build_story(
         comment=recorder.compiled_property.property.comment or "",
         constants=recorder.constants,
         options=options,
+        is_reward=recorder.compiled_property.question.is_reward,
     )
 
 

@@ -9,6 +9,7 @@ sending of an event.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from types import MappingProxyType
 
 from roaml.jani import expressions as jani
 from roaml.jani.expressions import Expression, Integer
@@ -32,7 +33,8 @@ from roaml.jani.types import BOOL, INT, BoundedType, Type
 from roaml.observers import program
 from roaml.observers.build import begin, observer_of
 from roaml.observers.program import Observer, simplified
-from roaml.observers.properties import Pattern, PatternProperty, Property, ScopeKind
+from roaml.observers.properties import CLOSE, LEFT, RIGHT, Pattern, PatternProperty, Property, ScopeKind
+from roaml.observers.properties import OPEN as CONDITION_OF_SCOPE
 from roaml.record import replace
 from roaml.scxml.names import ASKED, OPEN, OPENED, PENDING, observer_automaton, observer_variable, safe_name
 
@@ -112,11 +114,20 @@ class ObserverParts:
         prefix: the beginning of the names of the variables of the observer.
         has_clock: whether the model has a clock.
         has_activity: whether the observer also stores whether the property was triggered.
+        conditions: input of the observer -> its text, for comments.
     """
 
     def __init__(
-        self, property_: Property, prefix: str, origin: Origin | None, *, has_clock: bool, has_activity: bool
+        self,
+        property_: Property,
+        prefix: str,
+        origin: Origin | None,
+        *,
+        has_clock: bool,
+        has_activity: bool,
+        conditions: Mapping[str, str] = MappingProxyType({}),
     ) -> None:
+        self.conditions = conditions
         self.property = property_
         self.prefix = prefix
         self.origin = origin
@@ -134,6 +145,20 @@ class ObserverParts:
             # Without requests, the property can only be vacuous because its scope is never opened.
             register = ASKED if self._has_requests() else OPENED
         return observer_variable(self.prefix, register)
+
+    def _comment(self, register: str) -> str | None:
+        """What must occur so that a variable becomes true, for the one that stores whether the property was triggered,
+        and the one that stores whether its scope was evaluated; `None` for all others."""
+        if not isinstance(self.property, PatternProperty):
+            return None
+        name, pattern = self._named(register), self.property.pattern
+        if name == observer_variable(self.prefix, ASKED):
+            inputs = [LEFT if pattern is Pattern.RESPONSE else RIGHT]
+        elif name == observer_variable(self.prefix, OPENED):
+            inputs = [CONDITION_OF_SCOPE, CLOSE]
+        else:
+            return None
+        return " and ".join(f"`{self.conditions[input_]}`" for input_ in inputs if input_ in self.conditions) or None
 
     def _has_requests(self) -> bool:
         return isinstance(self.property, PatternProperty) and self.property.pattern.is_binary
@@ -172,7 +197,8 @@ class ObserverParts:
         for register in self.observer.registers:
             if register.name in self.needed:
                 type_ = BOOL if register.limit is None else BoundedType(INT, Integer(0), Integer(register.limit))
-                yield self._variable(self._named(register.name), type_, state[register.name])
+                variable = self._variable(self._named(register.name), type_, state[register.name])
+                yield replace(variable, comment=self._comment(register.name))
         if self.is_pending:
             pending = program.evaluate(self.outputs.pending, state, {}, False)
             yield self._variable(observer_variable(self.prefix, PENDING), BOOL, pending)

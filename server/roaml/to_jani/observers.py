@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+from roaml.expr.format import format_expr
 from roaml.jani.model import (
     Assignment,
     Model,
@@ -131,6 +132,7 @@ class _ObserverWriter:
             self.origin,
             has_clock=any(automaton.name == CLOCK for automaton in model.automata),
             has_activity=has_activity,
+            conditions={name: format_expr(condition) for name, condition in property_.conditions.items()},
         )
         self.listeners: dict[str, list[_Listener]] = {}
         for port in property_.ports:

@@ -244,24 +244,23 @@ def check_exactly(
     threshold = expectation.threshold
     bounds, value = exact.asked_value(question, only_uniform=only_uniform)
     side = _side_of_example(expectation, exact, question, only_uniform=only_uniform)
-    by = ""
+    because, by = "", ""
     is_reward = question.is_reward
     if holds_exactly(threshold, bounds, value, is_reward=is_reward, side=side):
-        met, under = True, ""
+        met = True
         if not (exact.agrees or only_uniform or over_intervals):
             by = _deciding_bound(expectation, exact, question)
     elif side:
-        met, under = False, f"by an example trace; the value is {_EXCLUDED[side]}"
+        met, because = False, f"the value is {_EXCLUDED[side]}, as an example trace shows"
     else:
         which = "worst value" if over_intervals else "value"
         if not exact.agrees:
             which = f"{extreme_of(question)} over all schedulers"
         small = 0 if is_reward else side_of_certainty(threshold, bounds)
         number = _EXCLUDED[small] if small else distinct(value, threshold.number)
-        text = f"by the {which}, which is {number}"
-        met, under = False, "" if only_uniform else text
+        met, because = False, "" if only_uniform else f"the {which} is {number}"
     ends = {holds_exactly(threshold, Bounds(end, end), end, is_reward=is_reward) for end in bounds}
-    return Verdict(expectation, met, exact.is_precise or side != 0 or len(ends) == 1, under=under, by=by)
+    return Verdict(expectation, met, exact.is_precise or side != 0 or len(ends) == 1, because=because, by=by)
 
 
 _EXCLUDED = {-1: "less than 1", 1: "greater than 0"}

@@ -19,7 +19,7 @@ from roaml.comparison import Comparison, UniformPolicy, as_written, read_compari
 from roaml.jani.operators import BinaryOperator
 from roaml.record import Record
 from roaml.regex import regex
-from roaml.smc.goal import Question, Threshold
+from roaml.smc.goal import UNIFORMLY, Question, Threshold
 from roaml.smc.run import Answer
 from roaml.smc.statistics import Bounds
 
@@ -64,9 +64,11 @@ class Verdict(Record, frozen=True):
         uniform_only: what is known about the minimum or maximum if `is_uniform`, as a phrase for users; "" for nothing.
         under: a phrase that follows `NOT MET` or `undecided`, such as `under uniform choices` or `so far`; "" if there
             is none.
+        because: a clause that follows `NOT MET`, such as `the value is 0.3`; "" if there is none.
         by: a phrase that follows `met` and names the bound that decided, if the minimum and the maximum differ; "" if
             there is none.
         policy: what an expectation is worth that is met under uniform choices only.
+        average: of what traces estimate the value (`Question.average`).
         sampled: the number of sampled schedulers that meet the expectation, if it is about all schedulers and no more
             is known; 0 otherwise.
         unanimous: the number of traces and the other bound of the interval, if no trace contradicts an expected 0 or 1.
@@ -78,11 +80,13 @@ class Verdict(Record, frozen=True):
     is_open: bool = False
     is_uniform: bool = False
     under: str = ""
+    because: str = ""
     by: str = ""
     unanimous: tuple[int, float] | None = None
     uniform_only: str = ""
     sampled: int = 0
     policy: UniformPolicy = UniformPolicy.WARN
+    average: str = UNIFORMLY
 
     @property
     def is_undecided(self) -> bool:
@@ -97,7 +101,7 @@ class Verdict(Record, frozen=True):
         if self.is_undecided and not self.is_open:
             return "; ".join(filter(None, (f"undecided {self.under}".rstrip(), self.uniform_only)))
         if self.is_uniform:
-            what = "met under uniform choices" if self.is_met else "NOT MET: known only under uniform choices"
+            what = f"met {self.average}" if self.is_met else f"NOT MET: known only {self.average}"
             return "; ".join(filter(None, (what, self.uniform_only)))
         if self.is_met and self.sampled:
             which = "only sampled scheduler" if self.sampled == 1 else f"{self.sampled:,} sampled schedulers"
@@ -106,7 +110,8 @@ class Verdict(Record, frozen=True):
             return f"met {self.by}".rstrip()
         if self.is_open:
             return f"undecided {self.under}".rstrip() + ", because it depends on the undecided traces"
-        return f"NOT MET {self.under}".rstrip()
+        missed = f"NOT MET {self.under}".rstrip()
+        return f"{missed}: {self.because}" if self.because else missed
 
     @property
     def unanimous_text(self) -> str:
@@ -156,7 +161,7 @@ class Verdict(Record, frozen=True):
             return f"the interval includes values {missed}"
         if not self.is_met:
             return f"the interval includes values {met} and values {missed}"
-        by = "the estimate under uniform choices" if self.is_uniform else "the estimate"
+        by = f"the estimate {self.average}" if self.is_uniform else "the estimate"
         return f"{by} meets it, but the interval includes values {missed}"
 
 

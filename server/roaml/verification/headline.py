@@ -18,10 +18,10 @@ from roaml.exhaustive import assert_never
 from roaml.record import Record
 from roaml.smc.choices import Choices, Extreme, ExtremeMethod
 from roaml.smc.end import End
-from roaml.smc.goal import InitialFold, Question
+from roaml.smc.goal import UNIFORMLY, InitialFold, Question
 from roaml.smc.lss import Side
 from roaml.smc.run import Answer
-from roaml.verification.number_text import number
+from roaml.verification.number_text import number, with_interval
 from roaml.verification.results import Computed, CutShort, Estimated, Refused, Result, Sampled, SampledResult, Undecided
 from roaml.verification.schedulers import extreme_of, is_minimised
 
@@ -37,6 +37,8 @@ LONGER_TIME = "raise max_time, which does not help where what starts the deadlin
 """The remedy for traces that the time ends before a deadline, as far as there is one."""
 _SIGNS = {"at most": "≤", "at least": "≥", "less than": "<", "greater than": ">"}
 NOT_CLOSER = "no closer bounds"
+_MAX_DIGITS = 13
+"""The maximum number of digits of a bound; what needs more of them to differ from 1 or 0 is rounding."""
 
 
 class Headline(Record, frozen=True):
@@ -47,16 +49,18 @@ class Headline(Record, frozen=True):
             bounds`; "" if the property asks only for uniform choices, or all schedulers agree.
         estimate: the estimate from traces with uniform choices; "" if there is none.
         short: a short form of both, for editors; "" if there is no result.
+        average: of what the estimate is one (`Question.average`).
     """
 
     claim: str = ""
     estimate: str = ""
     short: str = ""
+    average: str = UNIFORMLY
 
     @property
     def text(self) -> str:
         """Both as one phrase."""
-        return f"{self.claim}; under uniform choices: {self.estimate}" if self.claim else self.estimate
+        return f"{self.claim}; {self.average}: {self.estimate}" if self.claim else self.estimate
 
 
 def headline(result: Result) -> Headline:
@@ -80,9 +84,17 @@ def of_sampled(extremes: Sequence[SampledResult]) -> Headline:
     ordered = sorted(
         extremes, key=lambda extreme: (extreme.side is Side.LEAST) is not extreme.answer.question.is_minimised
     )
-    long = [f"{extreme.side.extreme} probability found {estimate_text(extreme.answer)}" for extreme in ordered]
+    long = [found_text(extreme) for extreme in ordered]
     short = [f"{extreme.side.extreme} found {_short(extreme.answer)}" for extreme in ordered]
     return Headline("", "; ".join(long), "; ".join(short))
+
+
+def found_text(extreme: SampledResult) -> str:
+    """The estimate for the best one of sampled schedulers. It is not the extreme over all schedulers, so it is only
+    called about as large."""
+    estimate = estimate_text(extreme.answer)
+    about = "" if extreme.answer.tally.undecided else "about "
+    return f"{extreme.side.extreme} with the best scheduler found: {about}{estimate}"
 
 
 def _asked_extreme(computed: Computed) -> str:
@@ -110,7 +122,9 @@ def of_answer(answer: Answer, choices: Choices | None = None) -> Headline:
     claim = claim_for_all(answer.question, choices, answer.options.confidence) if answer.tally.traces else ""
     if not claim and answer.question.is_conditional and answer.tally.traces:
         # The minimum and the maximum under a condition are not computed.
-        return Headline("", f"under uniform choices: {estimate}", f"uniform {short}")
+        if answer.question.is_deterministic:
+            return Headline("", estimate, short)
+        return Headline("", f"{UNIFORMLY}: {estimate}", f"uniform {short}")
     if not claim or (_is_open(answer) and claim.endswith(UNDECIDED)):
         # Nothing is known: once is enough.
         return Headline("", estimate, short)
@@ -118,7 +132,9 @@ def of_answer(answer: Answer, choices: Choices | None = None) -> Headline:
     if not answer.question.asks_for_extreme_state and (bound := bound_text(answer.question, known)):
         words, _, value = bound.rpartition(" ")
         return Headline(claim, estimate, f"{extreme_of(answer.question)} {_SIGNS[words]} {value}; uniform {short}")
-    return Headline(claim, estimate, f"{claim}; uniform {short}")
+    average = answer.question.average
+    word = "uniform" if average == UNIFORMLY else "average"
+    return Headline(claim, estimate, f"{claim}; {word} {short}", average)
 
 
 def claim_for_all(question: Question, choices: Choices | None, confidence: float) -> str:
@@ -132,7 +148,7 @@ def claim_for_all(question: Question, choices: Choices | None, confidence: float
         known = _asked_extreme_of(question, choices)
         extreme = _EXTREME_STATES.get(question.fold, f"{extreme_of(question)} over the initial states")
         return (
-            f"{extreme} {number(known.value)}, exact"
+            f"{extreme} {_value(question, known.value)}, exact"
             if known is not None and known.is_exact
             else f"{extreme} {UNDECIDED}"
         )
@@ -140,16 +156,16 @@ def claim_for_all(question: Question, choices: Choices | None, confidence: float
         return ""
     known = _asked_extreme_of(question, choices)
     if known is not None and known.is_exact:
-        return f"{extreme_of(question)} {number(known.value)}, exact"
+        return f"{extreme_of(question)} {_value(question, known.value)}, exact"
     bound = bound_text(question, known)
     if not bound:
         return f"{extreme_of(question)} {UNDECIDED}"
+    if known is None or known.method is ExtremeMethod.REACTIONS:
+        return f"{extreme_of(question)} {bound}, {NOT_CLOSER}"
     # A range cannot be taken for a second estimate.
     words, _, value = bound.rpartition(" ")
-    if words in ("at most", "at least"):
-        bound = f"between 0 and {value}" if words == "at most" else f"between {value} and 1"
-    sure = "" if known is None or known.method is ExtremeMethod.REACTIONS else f" ({confidence:g} confidence)"
-    return f"{extreme_of(question)} {bound}{sure}, {NOT_CLOSER}"
+    between = f"between 0 and {value}" if words == "at most" else f"between {value} and 1"
+    return f"{extreme_of(question)} {between} ({confidence:g} confidence), {NOT_CLOSER}"
 
 
 def _asked_extreme_of(question: Question, choices: Choices | None) -> Extreme | None:
@@ -164,30 +180,41 @@ def bound_text(question: Question, known: Extreme | None) -> str:
     as `at most 0.17`; "" for nothing."""
     if known is None or question.has_opposite_extremes or question.is_reward:
         return ""
-    digits = 6 if known.method is ExtremeMethod.REACTIONS else 3
-    if is_minimised(question):
-        upper = _outwards(known.bounds.upper, math.ceil, digits)
-        if upper < 1:
-            return f"at most {upper:g}"
-        return "less than 1" if known.method is ExtremeMethod.REACTIONS and known.bounds.upper < 1 else ""
-    lower = _outwards(known.bounds.lower, math.floor, digits)
-    if lower > 0:
-        return f"at least {lower:g}"
-    return "greater than 0" if known.method is ExtremeMethod.REACTIONS and known.bounds.lower > 0 else ""
+    is_exact = known.method is ExtremeMethod.REACTIONS
+    bound, limit = (known.bounds.upper, 1.0) if is_minimised(question) else (known.bounds.lower, 0.0)
+    if bound == limit:
+        return ""
+    words, rounding = ("at most", math.ceil) if is_minimised(question) else ("at least", math.floor)
+    for digits in range(6, _MAX_DIGITS) if is_exact else (3,):
+        rounded = _outwards(bound, rounding, digits)
+        if rounded != limit:
+            return f"{words} {rounded:.{digits}g}"
+    return ("less than 1" if is_minimised(question) else "greater than 0") if is_exact else ""
+
+
+def _value(question: Question, value: float) -> str:
+    return number(value, is_probability=not question.is_reward)
+
+
+def too_wide(answer: Answer) -> str:
+    """That the interval of an estimate is wider than requested, and which limit ended the estimate."""
+    why = ", because max-traces ended the estimate" if answer.is_ended_by_limit else ""
+    return f"the interval is wider than requested (epsilon){why}"
 
 
 def estimate_text(answer: Answer) -> str:
     """An estimate with its interval and the numbers of traces; without a value if there are undecided traces."""
-    tally, (lower, upper) = answer.tally, answer.bounds
+    tally, lower, is_reward = answer.tally, answer.bounds.lower, answer.question.is_reward
     if tally.traces == 0:
         return NO_TRACES
-    good, bad = ("stuck", "not stuck") if answer.question.is_stuck else ("passed", "failed")
-    if not tally.undecided or answer.question.is_reward:
-        value = UNDECIDED if answer.is_unknown else "infinite" if math.isinf(answer.value) else number(answer.value)
+    good, bad = answer.question.outcomes
+    if not tally.undecided or is_reward:
+        is_open = bool(tally.undecided) and lower == -math.inf
+        value = UNDECIDED if is_open else with_interval(answer.value, answer.bounds, is_probability=not is_reward)
         counts = f"{tally.traces:,} traces: {tally.successes:,} {good}, {answer.failures:,} {bad}"
         if tally.undecided:
             counts += f", {tally.undecided:,} undecided"
-        return f"{value} in [{number(lower)}, {number(upper)}] from {counts}"
+        return f"{value} from {counts}"
     if _is_open(answer):
         return f"{UNDECIDED}: {_undecided(answer)}"
     results = [f"{tally.successes:,} of {tally.traces:,} traces {good}"]
@@ -246,6 +273,16 @@ def _short(answer: Answer) -> str:
     if answer.tally.undecided and not answer.question.is_reward:
         return _between(answer).replace("at least ", "≥ ").replace("at most ", "≤ ")
     lower, upper = answer.bounds
+    if math.isinf(answer.value):
+        return _rounded(answer.value)
+    if upper == math.inf:
+        return (
+            f"≥ {_rounded(lower)}"
+            if lower > -math.inf
+            else UNDECIDED
+            if answer.tally.undecided
+            else _rounded(answer.value)
+        )
     return f"{_rounded(answer.value)} [{_rounded(lower)}, {_rounded(upper)}]"
 
 

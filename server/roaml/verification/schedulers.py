@@ -16,7 +16,7 @@ from roaml.smc.choices import Choices, Extreme, ExtremeMethod
 from roaml.smc.goal import Question, Threshold
 from roaml.smc.run import Answer
 from roaml.verification.expectations import Verdict, holds_exactly
-from roaml.verification.number_text import number
+from roaml.verification.number_text import number, with_interval
 
 
 def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | None) -> Verdict:
@@ -28,7 +28,8 @@ def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | No
     """
     if choices is None:
         return verdict
-    threshold = verdict.expectation.threshold
+    threshold, average = verdict.expectation.threshold, answer.question.average
+    verdict = replace(verdict, average=average)
     is_minimum = is_minimised(answer.question)
     extreme = choices.minimum if is_minimum else choices.maximum
     if choices.agreement:
@@ -38,8 +39,9 @@ def under_all_schedulers(verdict: Verdict, answer: Answer, choices: Choices | No
         met = holds_exactly(threshold, extreme.bounds, extreme.value, is_reward=answer.question.is_reward)
         return replace(verdict, is_met=met, is_certain=True, is_open=False, unanimous=None)
     if not verdict.is_met:
-        verdict = replace(verdict, under="under uniform choices")
-    missed = replace(verdict, is_met=False, is_certain=True, is_open=False, under=_missed_by(answer.question, extreme))
+        verdict = replace(verdict, under=average)
+    under, because = _missed_by(answer.question, extreme)
+    missed = replace(verdict, is_met=False, is_certain=True, is_open=False, under=under, because=because)
     if extreme is not None and extreme.is_exact:
         met = holds_exactly(threshold, extreme.bounds, extreme.value, is_reward=answer.question.is_reward)
         return replace(verdict, is_met=True, is_certain=True, is_open=False, under="") if met else missed
@@ -95,18 +97,18 @@ def _doubtful_by(threshold: Threshold, question: Question, extreme: Extreme | No
     return f"not shown for the {extreme_of(question)}, of which an estimate is {number(extreme.value)}"
 
 
-def _missed_by(question: Question, extreme: Extreme | None) -> str:
-    """A phrase for the scheduler or the extreme that violates an expectation; for uniform choices if no other is
-    known."""
+def _missed_by(question: Question, extreme: Extreme | None) -> tuple[str, str]:
+    """What violates an expectation: the scheduler, as a phrase (`Verdict.under`), or the extreme, as a clause
+    (`Verdict.because`); uniform choices if no other is known."""
     if extreme is None or extreme.method is ExtremeMethod.UNIFORM:
-        return "under uniform choices"
+        return question.average, ""
+    subject = f"the {extreme_of(question)} over all schedulers is"
     if extreme.is_exact:
-        return f"by the {extreme_of(question)} over all schedulers, which is {number(extreme.value)}"
+        return "", f"{subject} {number(extreme.value, is_probability=not question.is_reward)}"
     if extreme.method is ExtremeMethod.REACTIONS:
         bound = "at most" if is_minimised(question) else "at least"
-        which = f"the {extreme_of(question)} over all schedulers, which is {bound} {number(extreme.value)}"
-        return f"by {which}, the value if machines react at once"
-    return f"under {extreme.scheduler}: {interval_text(extreme)}"
+        return "", f"{subject} {bound} {number(extreme.value)}, the value if machines react at once"
+    return f"under {extreme.scheduler}", interval_text(extreme)
 
 
 def is_minimised(question: Question) -> bool:
@@ -132,4 +134,4 @@ def extreme_of(question: Question) -> str:
 
 def interval_text(extreme: Extreme) -> str:
     """The value of an extreme, with its bounds."""
-    return f"{number(extreme.value)} in [{number(extreme.bounds.lower)}, {number(extreme.bounds.upper)}]"
+    return with_interval(extreme.value, extreme.bounds)

@@ -75,6 +75,8 @@ def _why(story: Story, all_turns: Sequence[Turn], place_of: Callable[[Origin], s
     if story.is_whole or not verb or not story.steps:
         return ""
     subject = f"{story.property} {verb}"
+    if story.is_reward:
+        subject = f"{story.property}: its condition {'is' if verb == 'holds' else 'has not been'} reached"
     occurred = _occurrence(story.property, all_turns) if verb == "holds" else None
     if occurred is not None:
         why = f"because the event that it requires occurred{_at(occurred.time)}"

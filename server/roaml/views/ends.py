@@ -8,7 +8,7 @@ without a clock, the remaining case is that no event is left to be handled.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 from roaml.jani.expressions import Expression, Name
 from roaml.jani.model import PREFIX, Automaton, Model
@@ -70,7 +70,7 @@ def _mark(automaton: Automaton, location: str) -> End:
 def observer_outputs(model: Model) -> Mapping[str, ObserverOutputs]:
     """Property -> what its observers report in addition to the variables that its formula reads
     (docs/spec/jani.md#observers)."""
-    variables = {variable.name for variable in model.variables}
+    variables = {variable.name: variable.comment or "" for variable in model.variables}
     observers = {automaton.name for automaton in model.automata}
     outputs = {}
     for property_ in model.properties:
@@ -89,9 +89,11 @@ def observer_outputs(model: Model) -> Mapping[str, ObserverOutputs]:
             _variable(observer_variable(own, ASKED), variables),
             _variable(observer_variable(own, OPENED), variables),
             can_be_late=observer_variable(own, PENDING) in read or observer_variable(own, SATISFIED) in read,
+            trigger=variables.get(observer_variable(own, ASKED), ""),
+            scope=variables.get(observer_variable(own, OPENED), ""),
         )
     return outputs
 
 
-def _variable(name: str, variables: set[str]) -> Expression | None:
+def _variable(name: str, variables: Collection[str]) -> Expression | None:
     return Name(name) if name in variables else None

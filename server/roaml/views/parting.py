@@ -13,8 +13,8 @@ from collections.abc import Callable, Mapping, Sequence
 from roaml.durations import moment
 from roaml.jani.node import Origin
 from roaml.record import Record, replace
-from roaml.smc.record import SELECTED, VERDICTS
-from roaml.smc.story import Story
+from roaml.smc.record import SELECTED
+from roaml.smc.story import Story, outcome
 from roaml.views.trace_names import trace_name
 from roaml.views.turn_words import chances, details, scheduling, what
 from roaml.views.turns import Turn, turns
@@ -154,7 +154,7 @@ def parting_heading(difference: Parting, other: Story) -> str:
     turn, count = difference.here, difference.common
     at = "" if turn.time is None else f" at {moment(turn.time)}"
     same = f"the first {f'{count:,} turns are' if count > 1 else 'turn is'} the same, then " if count else ""
-    return f"{trace_name(other)} {VERDICTS[other.recording.verdict].value}: {same}{turn.who}{at}"
+    return f"{trace_name(other)} {outcome(other)}: {same}{turn.who}{at}"
 
 
 def other_course(difference: Parting, other: Story, place_of: PlaceOf) -> str:
@@ -181,8 +181,8 @@ def other_course(difference: Parting, other: Story, place_of: PlaceOf) -> str:
     place = "" if here.origin is None else place_of(here.origin)
     name = trace_name(other)
     which = " that" if other.recording.trace == SELECTED else ", which"
-    verdict = VERDICTS[other.recording.verdict].value
-    return f"{by}{here.who} {done}{at}{f' ({place})' if place else ''}, unlike in {name}{which} {verdict}"
+    where = f" ({place})" if place else ""
+    return f"{by}{here.who} {done}{at}{where}, unlike in {name}{which} {outcome(other)}"
 
 
 def _own_effects(here: Turn, there: Turn) -> str:

@@ -14,8 +14,7 @@ from roaml.jani.node import Origin
 from roaml.regex import regex
 from roaml.scxml.names import read_tree_event
 from roaml.smc.end import End
-from roaml.smc.record import VERDICTS, TraceVerdict
-from roaml.smc.story import Story
+from roaml.smc.story import Story, outcome
 from roaml.views.cause import cause
 from roaml.views.event_words import message_phrases
 from roaml.views.folding import LeftOut, Repetition, Shown, folded, without_middle
@@ -138,11 +137,9 @@ def as_text(story: Story, place_of: PlaceOf, shown: str = "", near: tuple[Partin
 
 def summary(story: Story) -> str:
     """The verdict of a trace, its length, and how many of its turns matter, in one short sentence."""
-    verdict = VERDICTS[story.recording.verdict]
-    outcome = "went wrong" if verdict is TraceVerdict.FAULT else verdict.value
     steps = f"{len(story.steps):,} {'step' if len(story.steps) == 1 else 'steps'}"
     trace = trace_name(story)
-    text = f"{story.property} {outcome} in {trace} after {steps}"
+    text = f"{story.property} {outcome(story)} in {trace} after {steps}"
     if story.recording.end is End.STUCK:
         text = f"{story.property}: {trace} gets stuck after {steps}"
     elif story.recording.end not in (End.DECIDED, End.CUT):
