@@ -76,10 +76,8 @@ def test_formats(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     _, html, _ = called(capsys, *asked, "--format=html")
     assert html.count("<svg") == 2
     after = html.rpartition("</svg>")[2]  # rules of the same weight hold if they are the last ones
-    assert (
-        f"@media (prefers-contrast: more) and (prefers-color-scheme: dark) {{\n{style_sheet('high-contrast', CHANGE_STYLES)}"
-        in after
-    )
+    rules = style_sheet("high-contrast", CHANGE_STYLES)
+    assert f"@media (prefers-contrast: more) and (prefers-color-scheme: dark) {{\n{rules}" in after
     assert "<tr class='changed'><td>block_dropped</td>" in html
     assert "<th>expected</th>" not in html, "there is no expectation"
     assert "<code>arm.ascxml</code>" in html

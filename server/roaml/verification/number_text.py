@@ -23,8 +23,6 @@ def number(value: float, digits: int = 6, *, is_probability: bool = True) -> str
     """
     if math.isinf(value):
         return "∞" if value > 0 else "-∞"
-    if 0 < abs(1 - value) < _ROUNDING:
-        return "almost 1"
     text = f"{value:.{digits}g}"
     if text != "1" or value == 1 or not is_probability:
         return text

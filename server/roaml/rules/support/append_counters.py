@@ -40,10 +40,9 @@ def _counted(values: ChartValues, block: Block) -> Iterator[tuple[str, tuple[int
     """The variables that a block counts, whose values conditions of other states limit: each with its step, and with
     the number of values that it has before it is counted."""
     for statement in block.statements:
-        counter = target(statement) if isinstance(statement, Assign) else None
-        tree = (
-            statement.value.tree if isinstance(statement, Assign) and isinstance(statement.value, Expression) else None
-        )
+        if not isinstance(statement, Assign) or not isinstance(statement.value, Expression):
+            continue
+        counter, tree = target(statement), statement.value.tree
         if counter is None or not isinstance(tree, Binary):
             continue
         known = [
