@@ -83,3 +83,9 @@ def test_failures_by_chance_are_independent(command: Command, tmp_path: Path, at
     words = f"trace without success; its {attempts} failures happen by chance, independently of each other:\n"
     assert (words in out) is is_said
     assert ("independently" in out) is is_said
+
+
+def test_a_tree_with_one_node(command: Command, tmp_path: Path) -> None:
+    node = '<BehaviorTree ID="M"><AlwaysSuccess/></BehaviorTree>'
+    (tmp_path / "one.xml").write_text(f'<root BTCPP_format="4" main_tree_to_execute="M">{node}</root>')
+    assert "\n1 node, 0 leaves with mocks; " in command("verify", "one.xml").out

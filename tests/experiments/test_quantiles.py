@@ -89,3 +89,22 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert [(q["share"], q["value"]) for q in row["quantiles"]] == [(0.5, truth(0.5)), (0.9, truth(0.9))]
     assert run([*asked[:-1], "1.5"]) == 2
     assert "expected shares greater than 0 and less than 1" in capsys.readouterr().err
+
+
+def test_an_interruption_of_the_quantiles_keeps_the_values(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The traces of quantiles can take far longer than exact values."""
+    steps = edge("run", way("good", 0.5, done=1), way("run", 0.5))
+    path = tmp_path / "model.jani"
+    model = document(automaton("robot", "run good", [steps]), variables=[variable("done")])
+    path.write_text(json.dumps(model), encoding="utf-8")
+
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("roaml.experiments.quantiles.reward_quantiles", interrupted)
+    assert run(["verify", str(path), "--property", 'R{"steps"}=? [ F done=1 ]', "--quantiles", "0.5"]) > 3
+    done = capsys.readouterr()
+    assert "(expected value): = 2 for all schedulers, exact" in done.out
+    assert "quantiles are missing, because their traces were interrupted" in done.err

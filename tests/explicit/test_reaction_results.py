@@ -275,3 +275,13 @@ def test_a_tree_that_has_finished_is_not_stuck(capsys: pytest.CaptureFixture[str
     (result,) = json.loads(capsys.readouterr().out)["results"]
     assert result["ends"]["stuck"] == 0
     assert result["ends"]["tree_finished"] == result["failed"] > 0
+
+
+def test_a_reaction_time_that_is_rounded_up_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The clock of this system has steps of 1 s."""
+    path = written(tmp_path, LAMP, COUNTER)
+    assert run(["verify", path, "--reaction-time", "20 ms"]) == 0
+    text = "assumed: each machine takes a possible step within 20 ms"
+    assert f"{text}, rounded up to 1 s, because a step of the clock takes 1 s (reaction" in capsys.readouterr().out
+    assert run(["verify", path, "--reaction-time", "2 s"]) == 0
+    assert "within 2 s (reaction time)" in capsys.readouterr().out

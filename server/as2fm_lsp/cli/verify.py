@@ -79,6 +79,9 @@ NO_QUANTILES_OF_TREE = (
     "--quantiles has no effect: it is about expected values of systems; the line `time until success` of a tree has "
     "quantiles"
 )
+INTERRUPTED_QUANTILES = (
+    "quantiles are missing, because their traces were interrupted; --max-traces asks for fewer traces"
+)
 NO_CURVES = (
     "--plot draws nothing: a property with an assumption (`||`) has no curve; ask for the property without it, or draw "
     "a variable with --over-time"
@@ -270,7 +273,7 @@ class _Verification:
         if not interrupted and self.options.quantiles:
             if not any(result.question is not None and result.question.is_reward for result in self.results):
                 note(NO_QUANTILES if self.tree is None else NO_QUANTILES_OF_TREE)
-            self.results = [self._with_quantiles(result) for result in self.results]
+            interrupted = not self._add_quantiles()
         status = self.interrupts.status if interrupted else CLEAN if self._is_met() else FOUND
         answered = Answered(
             self.options, self.verifier, tuple(self.results), tuple(self.faults), self.stuck_result, self.tree, status
@@ -301,6 +304,18 @@ class _Verification:
         names = [name for name, value in given.items() if value is not None]
         if names and (metadata is None or metadata.clock is None):
             note(f"{' and '.join(names)} {'has' if len(names) == 1 else 'have'} no effect: {NO_CLOCK}")
+
+    def _add_quantiles(self) -> bool:
+        """Add the quantiles of rewards to the results. Return whether all were computed: an interruption leaves out the
+        others, and no value."""
+        try:
+            for number, result in enumerate(self.results):
+                self.results[number] = self._with_quantiles(result)
+        except KeyboardInterrupt:
+            self.interrupts.ignore()
+            note(INTERRUPTED_QUANTILES)
+            return False
+        return True
 
     def _with_quantiles(self, result: Result) -> Result:
         """The result of a reward, with the quantiles that the options ask for."""

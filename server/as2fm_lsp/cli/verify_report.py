@@ -19,8 +19,8 @@ from as2fm_lsp.verification import stuck_report
 from as2fm_lsp.verification.node_names import explained
 from as2fm_lsp.verification.report import as_brief_text, as_json, as_text
 from as2fm_lsp.verification.scheduler_report import A_SCHEDULER, UNIFORM_CHOICES
-from roaml.durations import ANY, ANY_TIME, AT_ONCE, INSTANT
-from roaml.jani.model import ModelType
+from roaml.durations import ANY, ANY_TIME, AT_ONCE, INSTANT, ReactionTime, duration_text
+from roaml.jani.model import Clock, ModelType
 from roaml.record import Record
 from roaml.scxml.names import SUCCEEDS
 from roaml.smc.fault import FaultError
@@ -207,8 +207,7 @@ def _assumptions(answered: Answered) -> str:
     metadata = answered.target.model.metadata
     reactions = ""
     if metadata is not None and metadata.reaction_time != (ANY_TIME if answered.tree is None else AT_ONCE):
-        text = metadata.reaction_time.text
-        reactions = REACTIONS.get(text, f"assumed: each machine takes a possible step within {text}")
+        reactions = REACTIONS.get(metadata.reaction_time.text) or _within(metadata.reaction_time, metadata.clock)
         reactions += " (reaction time)"
     lines = [_exact_computation(answered), "; ".join(filter(None, (_computation(answered), reactions)))]
     if answered.target.parameters:
@@ -224,6 +223,15 @@ def _assumptions(answered: Answered) -> str:
 
         lines += drawn_report.lines(answered.target.drawn, answered.place)
     return "\n".join(filter(None, lines))
+
+
+def _within(time: ReactionTime, clock: Clock | None) -> str:
+    """The assumption of a reaction time that is a duration, and to which time it is rounded up."""
+    text = f"assumed: each machine takes a possible step within {time.text}"
+    if clock is None or not time.nanoseconds or time.nanoseconds % clock.step == 0:
+        return text
+    rounded = duration_text(time.steps(clock.step) * clock.step)
+    return f"{text}, rounded up to {rounded}, because a step of the clock takes {duration_text(clock.step)}"
 
 
 def _exact_computation(answered: Answered) -> str:

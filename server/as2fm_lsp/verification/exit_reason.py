@@ -25,7 +25,7 @@ def exit_reason(results: Sequence[Result], status: int) -> list[str]:
     Args:
         status: the exit status.
     """
-    if any(result.is_interrupted for result in results):
+    if status > 1:  # the work was interrupted
         return []
     groups: dict[str, dict[str, None]] = {what: {} for what in (_NO_VALUE, _MISSED, *_UNDECIDED)}
     for result in results:

@@ -61,11 +61,12 @@ def assumptions(mocked: MockedTree) -> str:
     """A line with the assumptions of the results: the number of leaves with mocks, the tick rate, the maximum time, the
     time of a tick, and the probability of events without a mock."""
     options = mocked.options
-    leaves = len(mocked.leaves)
+    leaves, nodes = len(mocked.leaves), len(mocked.tree.nodes)
     known = [leaf for leaf in mocked.leaves if leaf.is_known]
     certain = f" ({len(known)} that are known to succeed)" if known else ""
     text = (
-        f"{len(mocked.tree.nodes)} nodes, {leaves} {'leaf' if leaves == 1 else 'leaves'} with mocks{certain}; "
+        f"{nodes} {'node' if nodes == 1 else 'nodes'}, "
+        f"{leaves} {'leaf' if leaves == 1 else 'leaves'} with mocks{certain}; "
         f"ticked at {float(options.rate):g} Hz, for at most {options.max_time / 1e9:g} s"
     )
     if (options.reaction_time or AT_ONCE).is_instant:
