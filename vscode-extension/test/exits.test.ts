@@ -112,14 +112,16 @@ test("a chip for the lines of one node reaches from the first to the last, unles
     ]);
 });
 
-test("chips cover the sides at which the drawing goes on", () => {
-    const drawn = { width: 300, height: 300 };
-    const { top, bottom, left, right } = bandsOf({ x: -5, y: 0, scale: 1 }, drawn, 400, 200);
+test("bands for chips are at the sides at which the drawing goes on", () => {
+    const drawn = { width: 600, height: 600 };
+    const { top, bottom, left, right } = bandsOf({ x: -5, y: 0, scale: 1 }, drawn, 700, 300);
     assert.deepEqual([top, left, right], [0, 0, 0]);
     assert.ok(bottom > 0);
-    assert.deepEqual(bandsOf({ x: -5, y: -5, scale: 0.5 }, drawn, 400, 200), NO_BANDS);
-    const inside = bandsOf({ x: 50, y: 50, scale: 1 }, drawn, 100, 100);
+    assert.deepEqual(bandsOf({ x: -5, y: -5, scale: 0.5 }, drawn, 500, 320), NO_BANDS);
+    const inside = bandsOf({ x: 50, y: 50, scale: 1 }, drawn, 500, 300);
     assert.ok(inside.top > 0 && inside.left > 0 && inside.right > 0);
+    // In a small pane, they would cover most of the picture.
+    assert.deepEqual(bandsOf({ x: 50, y: 50, scale: 1 }, drawn, 300, 200), NO_BANDS);
 });
 
 test("the first view is smaller at its sides so that it cuts off nothing", () => {

@@ -128,7 +128,7 @@ export class ExitChips {
         const shown = new Set<string>();
         for (const side of SIDES) {
             const own = exits.filter((exit) => exit.side === side);
-            if (own.length === 0) continue;
+            if (own.length === 0 || bands[side] < HEIGHT) continue;
             const [low, high] = isRow(side)
                 ? [bands.left + GAP, width - bands.right - GAP]
                 : [bands.top + GAP, height - Math.max(bands.bottom, mapHeight(side, map)) - GAP];

@@ -30,6 +30,8 @@ export interface Exit {
 /** The height of the bands with chips above and below a picture, and the width of those beside it, in pixels. */
 const BAND = 24;
 export const CHIP = 120;
+/** Smaller windows have no space for bands above and below a picture, or beside it, nor for a map, in pixels. */
+export const SMALLEST_WINDOW = { width: 480, height: 240 };
 
 /** The sizes of what covers a window at its sides, in pixels. */
 export type Bands = Readonly<Record<Side, number>>;
@@ -43,11 +45,13 @@ export function bandsOf(
     width: number,
     height: number,
 ): Bands {
+    const band = height < SMALLEST_WINDOW.height ? 0 : BAND;
+    const chip = width < SMALLEST_WINDOW.width ? 0 : CHIP;
     return {
-        top: y > 0 ? BAND : 0,
-        bottom: (drawn.height - y) * scale > height ? BAND : 0,
-        left: x > 0 ? CHIP : 0,
-        right: (drawn.width - x) * scale > width ? CHIP : 0,
+        top: y > 0 ? band : 0,
+        bottom: (drawn.height - y) * scale > height ? band : 0,
+        left: x > 0 ? chip : 0,
+        right: (drawn.width - x) * scale > width ? chip : 0,
     };
 }
 

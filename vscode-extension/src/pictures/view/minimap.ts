@@ -3,12 +3,10 @@
 
 import type { Drawing, Picture, Point } from "../contract";
 import { toneOf } from "./words";
+import { SMALLEST_WINDOW } from "./exits";
 import { LARGEST_MAP, centered, mapOf, visiblePart } from "./find";
 import type { MapScale, Sight } from "./find";
 import { element } from "./scene";
-
-/** A smaller window has no space for a map, in pixels. */
-const SMALLEST_WINDOW = { width: 280, height: 220 };
 
 export class Minimap {
     readonly svg = element("svg", { class: "minimap hidden", "aria-hidden": "true" });
