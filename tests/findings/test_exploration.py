@@ -12,7 +12,7 @@ from fixture import write_files
 from roaml import api
 from roaml.diagnostics import Severity
 from roaml.explicit import space
-from roaml.project import exploration
+from roaml.project import exploration, explored_findings
 from roaml.project.settings import Settings
 from roaml.project.workspace import Workspace
 from rule_files import examples
@@ -68,16 +68,24 @@ def test_a_finding_that_is_not_confirmed_says_what_it_assumes(
     assert "if all machines react at once" in message
 
 
-def test_a_limit_ends_the_exploration_and_is_known(
-    tmp_path: Path, searches: list[int], monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(("heading", "number"), [("Bad", 1), ("Good", 0)])
+def test_a_system_with_too_many_states_is_simulated(
+    tmp_path: Path, searches: list[int], monkeypatch: pytest.MonkeyPatch, heading: str, number: int
 ) -> None:
+    monkeypatch.setattr(exploration, "MAX_STATES", 1)
+    result, messages = check(tmp_path, heading)
+    assert len(messages) == number
+    assert all("none of 25 simulated runs" in message for message in messages)
+    assert len(searches) == 1
+    assert not result.snapshot.checker.has_too_many_states(str(tmp_path / "main.xml"))
+
+
+def test_a_system_that_is_too_large_is_known(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     main = str(tmp_path / "main.xml")
     assert not check(tmp_path, "Bad")[0].snapshot.checker.has_too_many_states(main)
-    searches.clear()
-    monkeypatch.setattr(exploration, "MAX_STATES", 1)
+    monkeypatch.setattr(explored_findings, "MAX_PARTS", 1)
     result, messages = check(tmp_path, "Bad")
     assert messages == []
-    assert len(searches) == 1
     assert result.snapshot.checker.has_too_many_states(main)
 
 
@@ -138,3 +146,113 @@ def test_related_places_in_changed_files_are_left_out(tmp_path: Path) -> None:
     workspace.open(order, "\n" + Path(order).read_text(encoding="utf-8"))
     assert related() == {"dispenser.ascxml", "tree.xml"}
     assert related(explores=True) == {"dispenser.ascxml", "order.ascxml", "tree.xml"}
+
+
+LIFT = {
+    "main.xml": """
+<roaml>
+    <parameters>
+        <max_time value="30" unit="s" reaction_time="instant" />
+        <bt_tick_rate value="1" />
+    </parameters>
+    <behavior_tree>
+        <input type="bt.cpp-xml" src="tree.xml" />
+        <input type="bt-plugin-ascxml" src="go.ascxml" />
+    </behavior_tree>
+    <node_models>
+        <input type="node-ascxml" src="lift.ascxml" />
+    </node_models>
+    <properties>
+        <input type="jani" src="properties.jani" />
+    </properties>
+</roaml>
+""",
+    "tree.xml": """
+<root BTCPP_format="4">
+    <BehaviorTree ID="Main">
+        <Sequence>
+            <Go name="up" floor="3" />
+            <Go name="down" floor="1" />
+        </Sequence>
+    </BehaviorTree>
+</root>
+""",
+    "go.ascxml": """
+<ascxml name="Go" version="1.0" initial="ready">
+    <bt_declare_port_in key="floor" type="int8" />
+    <datamodel><data id="floor" type="int8"><expr><bt_get_input key="floor" /></expr></data></datamodel>
+    <ros_service_client name="lift" service_name="/lift" type="lift_interfaces/Go" />
+    <state id="ready">
+        <bt_tick target="moving">
+            <ros_service_send_request name="lift"><field name="floor" expr="floor" /></ros_service_send_request>
+            <bt_return_status status="RUNNING" />
+        </bt_tick>
+        <bt_halt target="ready"><bt_return_halted /></bt_halt>
+    </state>
+    <state id="moving">
+        <ros_service_handle_response name="lift" target="there" />
+        <bt_tick target="moving"><bt_return_status status="RUNNING" /></bt_tick>
+        <bt_halt target="moving"><bt_return_halted /></bt_halt>
+    </state>
+    <state id="there">
+        <bt_tick target="ready"><bt_return_status status="SUCCESS" /></bt_tick>
+        <bt_halt target="ready"><bt_return_halted /></bt_halt>
+    </state>
+</ascxml>
+""",
+    "lift.ascxml": """
+<ascxml name="Lift" version="1.0" initial="still">
+    <datamodel>
+        <data id="floor" type="int16" expr="2" />
+        <data id="wanted" type="int16" expr="2" />
+    </datamodel>
+    <ros_service_server name="lift" service_name="/lift" type="lift_interfaces/Go" />
+    <ros_time_rate rate_hz="1" name="motor" />
+    <state id="still">
+        <ros_service_handle_request name="lift" target="moving">
+            <assign location="wanted" expr="_req.floor" />
+        </ros_service_handle_request>
+    </state>
+    <state id="moving">
+        <ros_rate_callback name="motor" cond="floor &lt; wanted" target="moving">
+            <assign location="floor" expr="floor + 1" />
+        </ros_rate_callback>
+        <ros_rate_callback name="motor" cond="floor &gt; wanted" target="moving">
+            <assign location="floor" expr="floor - 1" />
+        </ros_rate_callback>
+        <ros_rate_callback name="motor" target="still"><ros_service_send_response name="lift" /></ros_rate_callback>
+    </state>
+</ascxml>
+""",
+    "properties.jani": '{"properties": []}',
+    "as2fm.toml": 'ros-path = ["interfaces"]\n',
+    "interfaces/lift_interfaces/package.xml": "<package><name>lift_interfaces</name></package>",
+    "interfaces/lift_interfaces/srv/Go.srv": "int8 floor\n---\n",
+}
+"""A lift that goes up for one node and down for another one."""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "place"),
+    [
+        ("floor - 1", "floor + 1", "floor &gt; wanted"),
+        ("floor + 1", "floor - 1", "floor &lt; wanted"),
+        ("floor &lt; wanted", "floor &lt;= wanted", "floor &gt; wanted"),
+        ("", "", None),
+    ],
+)
+@pytest.mark.parametrize("is_simulated", [True, False])
+def test_a_count_that_goes_the_wrong_way(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, old: str, new: str, place: str | None, is_simulated: bool
+) -> None:
+    if is_simulated:
+        monkeypatch.setattr(exploration, "MAX_STATES", 1)
+    for name, text in LIFT.items():
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text.replace(old, new) if name == "lift.ascxml" and old else text, encoding="utf-8")
+    found = api.check([str(tmp_path)]).diagnostics
+    assert not [d.message for d in found if d.severity is Severity.ERROR]
+    blamed = [d for d in found if d.code == "never-taken"]
+    assert [d.source.text[d.span.start : d.span.end] for d in blamed if d.source] == ([] if place is None else [place])
+    assert all(len([r for r in d.related if "at all other times" in r.message]) == ("&lt;=" in new) for d in blamed)

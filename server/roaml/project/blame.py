@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from roaml.diagnostics import Finding, Related
 from roaml.jani.expressions import Integer
@@ -12,15 +12,18 @@ from roaml.model.expand import Instance, node_at
 from roaml.model.node_effects import statuses
 from roaml.model.system import System
 from roaml.project.analysis import Analysis
+from roaml.project.exploration import Reached
 from roaml.project.explored_steps import ClientRequests, ExploredStep, ExploredSteps, requests_of
 from roaml.project.obstacles import Obstacle, is_contradictory, obstacles
 from roaml.rules.states import never_taken
 from roaml.rules.trees.never_ticked import SUCCEEDS
 from roaml.scxml.names import (
     NODE_AUTOMATON,
+    SERVICE_HANDLER_PREFIX,
     STATUSES,
     InterfaceEventKind,
     TreeEventKind,
+    handling,
     read_interface_event,
     read_tree_event,
 )
@@ -35,27 +38,22 @@ class Blame:
     """What is to blame in one explored system.
 
     Args:
-        is_instant: whether the steps are only known if all machines react at once.
-        steps_while_handled: the steps of the system while a request is handled; `None` if they are not known.
+        reached: what the steps of the system are known from.
+
+    Attributes:
+        has_unexplained: whether something never happens for which there is no finding.
+        is_tree_at_fault: whether a node is never ticked because the one before it never fails.
     """
 
-    def __init__(
-        self,
-        analysis: Analysis,
-        system: System,
-        steps: ExploredSteps,
-        *,
-        is_instant: bool,
-        steps_while_handled: Callable[[ClientRequests], ExploredSteps | None],
-    ) -> None:
-        self._steps_while_handled = steps_while_handled
+    def __init__(self, analysis: Analysis, system: System, reached: Reached) -> None:
         self._analysis = analysis
         self._machines = analysis.machines_in(system)
-        self._handled: dict[str, ExploredSteps | None] = {}
+        self._handled: dict[ClientRequests, ExploredSteps | None] = {}
         self._system = system
         self._instances = {instance.number: instance for instance in system.instances}
-        self._steps = steps
-        self._is_instant = is_instant
+        self._steps = reached.steps()
+        self._reached = reached
+        self.has_unexplained = self.is_tree_at_fault = False
 
     def for_status(self, node: Instance, status: str, effects: Iterable[Related]) -> tuple[str, Finding] | None:
         """The path of a file, and the finding at the only condition in it because of which a node never returns a
@@ -98,29 +96,65 @@ class Blame:
         return interface is not None and interface.kind in _ANSWERS
 
     def _for_steps(self, wanted: Iterable[ExploredStep], effects: Iterable[Related]) -> tuple[str, Finding] | None:
-        found = obstacles(self._steps, wanted)
+        finding = self._explained(self._obstacles(self._steps, wanted), tuple(effects))
+        self.has_unexplained |= finding is None
+        return finding
+
+    def _explained(self, found: Sequence[Obstacle] | None, effects: tuple[Related, ...]) -> tuple[str, Finding] | None:
         if found is None:
             return None
-        effects = tuple(effects)
+        if len(found) == 1 and found[0].step.automaton.startswith(SERVICE_HANDLER_PREFIX):
+            return self._without_response(found[0], effects)
         finding = self._finding(self._steps, found, effects)
         return self._in_server(found[0], effects) if finding is None and len(found) == 1 else finding
+
+    def _without_response(self, obstacle: Obstacle, effects: Iterable[Related]) -> tuple[str, Finding] | None:
+        """The finding about a server that never responds to a client, although it responds to others."""
+        response, location = obstacle.step.receives, obstacle.step.edge.source
+        servers = {sender.automaton for sender in self._steps.sending(response)}
+        client = next((name for name in self._steps.automata if handling(name) == location), None)
+        steps = None
+        if client is not None and len(servers) == 1:
+            steps = self._while_handled(ClientRequests(obstacle.step.automaton, location, servers.pop()))
+        wanted = () if steps is None else steps.sending(response)
+        if steps is None or client is None or any(step.is_taken for step in wanted):
+            return None
+        return self._in_context(steps, wanted, client, obstacle.way, effects)
+
+    def _while_handled(self, requests: ClientRequests) -> ExploredSteps | None:
+        if requests not in self._handled:
+            self._handled[requests] = self._reached.while_handled(requests)
+        return self._handled[requests]
 
     def _in_server(self, obstacle: Obstacle, effects: Iterable[Related]) -> tuple[str, Finding] | None:
         """The finding about a server that never sends a client the response that the condition of the client needs,
         although it sends the response to others."""
         client = obstacle.step.automaton
-        if client not in self._handled:
-            requests = list(requests_of(self._steps, client))
-            self._handled[client] = self._steps_while_handled(requests[0]) if len(requests) == 1 else None
-        steps = self._handled[client]
+        requests = list(requests_of(self._steps, client))
+        steps = self._while_handled(requests[0]) if len(requests) == 1 else None
         if steps is None:
             return None
         step = next(s for s in steps.leaving(client, obstacle.step.edge.source) if s.edge is obstacle.step.edge)
-        found = obstacles(steps, [step])
+        return self._in_context(steps, [step], client, obstacle.way[:-1], effects)
+
+    def _in_context(
+        self,
+        steps: ExploredSteps,
+        wanted: Iterable[ExploredStep],
+        client: str,
+        way: tuple[ExploredStep, ...],
+        effects: Iterable[Related],
+    ) -> tuple[str, Finding] | None:
+        """The finding about a condition of a server that never holds while a request of a client is handled.
+
+        Args:
+            way: the steps that lead to those that are wanted.
+        """
+        found = self._obstacles(steps, wanted)
         if found is None or not all(other.step.is_contextual for other in found):
             return None
         where = f"while the server handles a request of `{_name(client)}`"
-        longer = [Obstacle(other.step, (*obstacle.way, *other.way[1:])) for other in found]
+        longer = [Obstacle(other.step, (*way, *other.way)) for other in found]
         return self._finding(steps, longer, effects, where)
 
     def _finding(
@@ -131,20 +165,43 @@ class Blame:
         Args:
             where: to what the steps are restricted, as an adverbial phrase.
         """
-        places = {self._place(steps, obstacle.step): obstacle for obstacle in found}
-        [(place, obstacle), *more] = places.items()
-        if more or place is None or not all(self._is_at_fault(other.step) for other in found):
+        places = self._places(steps, found)
+        if len(places) > 1:
+            found = self._decisive(steps, found)
+            places = self._places(steps, found)
+        [(place, obstacle), *more] = places.items() or ((None, None),)
+        if more or place is None or obstacle is None or not all(self._is_at_fault(other.step) for other in found):
             return None
         if any(other.is_taken for other in steps.of_other_instances(obstacle.step)):
             where = f"in the node `{_name(obstacle.step.automaton)}`"
+        others = [
+            Related(other, "holds at all other times")
+            for other in dict.fromkeys(self._conditions(steps, obstacle.step))
+            if other != place
+        ]
         finding = never_taken.finding(
             place.span,
             holds=self._condition(steps, obstacle.step) is None,
-            related=(*self._way(obstacle), *effects),
-            is_instant=self._is_instant,
+            related=(*others, *self._way(obstacle), *effects),
+            no_run=self._reached.no_run,
+            is_instant=self._reached.is_instant,
             where=where,
         )
         return place.path, finding
+
+    def _places(self, steps: ExploredSteps, found: Iterable[Obstacle]) -> dict[Location | None, Obstacle]:
+        return {self._place(steps, obstacle.step): obstacle for obstacle in found}
+
+    def _decisive(self, steps: ExploredSteps, found: Sequence[Obstacle]) -> list[Obstacle]:
+        """The conditions, of those of one machine, in the states to which it always comes back. If one of them always
+        holds, only this one counts: the others are never needed because of it."""
+        if len({obstacle.step.automaton for obstacle in found}) > 1:
+            return []
+        last = [o for o in found if steps.is_last(o.step.automaton, o.step.edge.source)]
+        return [o for o in last if self._condition(steps, o.step) is None] or last
+
+    def _obstacles(self, steps: ExploredSteps, wanted: Iterable[ExploredStep]) -> tuple[Obstacle, ...] | None:
+        return obstacles(steps, wanted, are_long=self._reached.simulated > 0)
 
     def _returns(self, node: Instance, status: str) -> list[ExploredStep]:
         """The steps with which a node returns a status; none if that is not known."""
@@ -177,11 +234,16 @@ class Blame:
 
     def _place(self, steps: ExploredSteps, step: ExploredStep) -> Location | None:
         """The place of the condition that never holds, or of the one before it that always holds."""
+        conditions = self._conditions(steps, step)
+        return None if not conditions else conditions[-1]
+
+    def _conditions(self, steps: ExploredSteps, step: ExploredStep) -> list[Location]:
+        """The places of the condition that never holds, or of those before it, one of which always holds."""
         own = self._condition(steps, step)
-        if own is None:
-            before = [other for other in steps.beside(step) if other.order < step.order and other.is_taken]
-            own = self._condition(steps, before[-1]) if before else None
-        return None if own is None or step.edge.origin is None else Location(step.edge.origin.path, own.value_span)
+        before = [other for other in steps.beside(step) if other.order < step.order and other.is_taken]
+        conditions = [own] if own is not None else [self._condition(steps, other) for other in before]
+        path = None if step.edge.origin is None else step.edge.origin.path
+        return [Location(path, c.value_span) for c in conditions if c is not None and path is not None]
 
     def _condition(self, steps: ExploredSteps, step: ExploredStep) -> Attribute | None:
         """The condition of a transition or branch; `None` if it has none."""

@@ -39,6 +39,8 @@ class Reached(Record, frozen=True):
         is_instant: whether this is only known if machines react at once.
         model: the model that was explored.
         steps: the steps of all automata.
+        ways: the steps of another model, found in the same manner; `None` if they are not known.
+        simulated: the number of simulated runs from which this is known; 0 if all reachable states are known.
     """
 
     events: Mapping[str, bool]
@@ -46,6 +48,14 @@ class Reached(Record, frozen=True):
     is_instant: bool
     model: Model
     steps: Callable[[], ExploredSteps]
+    ways: Callable[[Model], list[ExploredWay] | None]
+    simulated: int = 0
+
+    def while_handled(self, requests: ClientRequests) -> ExploredSteps | None:
+        """The steps while a request is handled; `None` if they are not known."""
+        from roaml.project.request_context import steps_while_handled  # noqa: PLC0415 - only some findings need it
+
+        return steps_while_handled(self.model, requests, self.ways)
 
     @property
     def ticks(self) -> Mapping[int, bool]:
@@ -56,6 +66,11 @@ class Reached(Record, frozen=True):
             if tree is not None and tree.kind is TreeEventKind.TICK:
                 ticks[tree.number] = ticks.get(tree.number, False) or is_received
         return ticks
+
+    @property
+    def no_run(self) -> str:
+        """The subject of a statement about all runs."""
+        return f"none of {self.simulated} simulated runs of this system" if self.simulated else "no run of this system"
 
 
 def explored(analysis: Analysis, path: str) -> Iterator[Reached]:
@@ -86,27 +101,38 @@ def _reached(model: Model, *, is_instant: bool) -> Reached | None:
     searched = _searched(model)
     if searched is None:
         return None
-    events, returned = _events(*searched), _statuses(*searched)
-    return Reached(events, returned, is_instant, model, lambda: _steps(model, *searched))
+    return reached_by(model, *searched, _ways_of, is_instant=is_instant)
+
+
+def reached_by(
+    model: Model,
+    checker: ModelChecker,
+    taken: bytes,
+    ways: Callable[[Model], list[ExploredWay] | None],
+    *,
+    is_instant: bool = False,
+    simulated: int = 0,
+) -> Reached:
+    """What a model reaches.
+
+    Args:
+        taken: for each way of an edge, in the order of `checker.legend.ways`, whether it is taken.
+        ways, is_instant, simulated: see `Reached`.
+    """
+    events, returned = _events(checker, taken), _statuses(checker, taken)
+    return Reached(events, returned, is_instant, model, lambda: _steps(model, checker, taken), ways, simulated)
 
 
 def _steps(model: Model, checker: ModelChecker, taken: bytes) -> ExploredSteps:
     from roaml.project.explored_steps import ExploredSteps  # noqa: PLC0415 - see `explored`
 
-    return ExploredSteps(model, _ways(checker, taken))
-
-
-def while_handled(model: Model, requests: ClientRequests) -> ExploredSteps | None:
-    """The steps of a model while a request is handled; `None` if it cannot be explored."""
-    from roaml.project.request_context import steps_while_handled  # noqa: PLC0415 - only some findings need it
-
-    return steps_while_handled(model, requests, _ways_of)
+    return ExploredSteps(model, ways_taken(checker, taken))
 
 
 def _ways_of(model: Model) -> list[ExploredWay] | None:
     """The steps of a model; `None` if it cannot be explored."""
     searched = _searched(model)
-    return None if searched is None else list(_ways(*searched))
+    return None if searched is None else list(ways_taken(*searched))
 
 
 def _searched(model: Model) -> tuple[ModelChecker, bytes] | None:
@@ -130,7 +156,8 @@ def _searched(model: Model) -> tuple[ModelChecker, bytes] | None:
     return checker, bytes(memoryview(space.search.taken))
 
 
-def _ways(checker: ModelChecker, taken: bytes) -> Iterator[ExploredWay]:
+def ways_taken(checker: ModelChecker, taken: bytes) -> Iterator[ExploredWay]:
+    """All steps of the automata of a model."""
     from roaml.project.explored_steps import ExploredWay  # noqa: PLC0415 - see `explored`
 
     legend, automata = checker.legend, checker.automata

@@ -16,19 +16,22 @@ from roaml.model.expand import Instance
 from roaml.model.size import Size
 from roaml.model.system import System
 from roaml.project.analysis import Analysis
-from roaml.project.exploration import Reached, explored, while_handled
+from roaml.project.exploration import Reached, explored
 from roaml.record import replace
 from roaml.rules.states import never_taken
 from roaml.rules.trees import never_ticked
 from roaml.text import Location, SourceFile, Span
 
 if TYPE_CHECKING:
+    from roaml.project.blame import Blame
     from roaml.project.optional_branches import ByNumber
 
 CODES = frozenset((never_taken.RULE.code, never_ticked.RULE.code))
 """The codes of the rules that need an exploration."""
-MAX_PARTS = 10_000
+MAX_PARTS = 20_000
 """The maximum number of parts of a translation that is explored (`roaml.model.size.Size.parts`)."""
+MORE_TIME = 5
+"""How many times longer runs last in which variables that count may reach what a condition compares them with."""
 
 
 def findings_of(analysis: Analysis, path: str) -> Mapping[str, tuple[Finding, ...]] | None:
@@ -37,29 +40,58 @@ def findings_of(analysis: Analysis, path: str) -> Mapping[str, tuple[Finding, ..
     expanded = analysis.expanded(path)
     plain = analysis if expanded is None else expanded.analysis
     system, size = plain.system(path), plain.size_of_translation(path)
-    if system is None or size is None or not system.instances:
+    if system is None or size is None:
         return {}
     if _parts(size) > MAX_PARTS:
         return None
-    from roaml.project.unticked import is_missed  # noqa: PLC0415 - imported only if a system is explored
+    from roaml.project.blame import Blame  # noqa: PLC0415 - these modules are imported only if a system is explored
+    from roaml.project.unticked import is_missed  # noqa: PLC0415
 
     known: list[tuple[str, Finding]] | None = None
+    blame: Blame | None = None
     nodes = {instance.number: instance for instance in system.instances}
     missed = functools.cache(functools.partial(is_missed, plain, path, nodes))
     for reached in explored(plain, path):
-        known = list(_merged(_all(plain, system, nodes, reached, missed)))
-        if not known:
+        blame = Blame(plain, system, reached)
+        known = list(_all(plain, system, nodes, reached, missed, blame))
+        if not known and not blame.has_unexplained:
             break
+    if known is None:
+        known = _in_simulations(plain, path, system, nodes, missed)
+    elif blame is not None and blame.has_unexplained and not blame.is_tree_at_fault:
+        longer = _in_simulations(plain, path, system, nodes, missed, more_time=MORE_TIME)
+        known += [(place, finding) for place, finding in longer or () if finding.code == never_taken.RULE.code]
     if known is None:
         return None
     found: dict[str, list[Finding]] = {}
-    for place, finding in known:
+    for place, finding in _merged(known):
         if expanded is None:
             found.setdefault(place, []).append(finding)
         else:
             source = expanded.location(Location(place, finding.span)).path
             found.setdefault(source, []).append(expanded.finding(place, finding))
     return {place: tuple(dict.fromkeys(findings)) for place, findings in found.items()}
+
+
+def _in_simulations(
+    analysis: Analysis,
+    path: str,
+    system: System,
+    nodes: ByNumber,
+    missed: Callable[[Instance], bool],
+    *,
+    more_time: int = 1,
+) -> list[tuple[str, Finding]] | None:
+    """What is found in a system that has too many states; `None` if it cannot be simulated."""
+    from roaml.project.blame import Blame  # noqa: PLC0415
+    from roaml.project.simulation import simulated  # noqa: PLC0415 - only large systems are simulated
+
+    known: list[tuple[str, Finding]] | None = None
+    for reached in simulated(analysis, path, more_time):
+        known = list(_all(analysis, system, nodes, reached, missed, Blame(analysis, system, reached)))
+        if not known:
+            break
+    return known
 
 
 Content: TypeAlias = "tuple[tuple[SourceFile | None, ...], object]"
@@ -101,19 +133,16 @@ def _parts(size: Size) -> int:
 
 
 def _all(
-    analysis: Analysis, system: System, nodes: ByNumber, reached: Reached, missed: Callable[[Instance], bool]
+    analysis: Analysis,
+    system: System,
+    nodes: ByNumber,
+    reached: Reached,
+    missed: Callable[[Instance], bool],
+    blame: Blame,
 ) -> Iterator[tuple[str, Finding]]:
     """The paths of files, and the findings in them."""
-    from roaml.project.blame import Blame  # noqa: PLC0415 - the search for causes is imported only if a system is explored
     from roaml.project.unticked import never_ticked_nodes  # noqa: PLC0415
 
-    blame = Blame(
-        analysis,
-        system,
-        reached.steps(),
-        is_instant=reached.is_instant,
-        steps_while_handled=lambda requests: while_handled(reached.model, requests),
-    )
     yield from never_ticked_nodes(analysis, system, nodes, reached, missed, blame)
     yield from blame.for_leaves([number for number, is_ticked in reached.ticks.items() if is_ticked])
     yield from blame.for_clients()

@@ -135,6 +135,19 @@ class ExploredSteps:
             open_ += [other.destination.location for other in following]
         return False
 
+    def is_last(self, automaton: str, location: str) -> bool:
+        """Whether an automaton in a location comes back to it from all locations that it reaches then in some run."""
+        return all(location in self._following(automaton, other) for other in self._following(automaton, location))
+
+    def _following(self, automaton: str, location: str) -> set[str]:
+        """The locations that an automaton in a location reaches in some run, with this one."""
+        seen, open_ = {location}, [location]
+        while open_:
+            taken = {step.destination.location for step in self.leaving(automaton, open_.pop()) if step.is_taken}
+            open_ += taken - seen
+            seen |= taken
+        return seen
+
     def entering(self, automaton: str, location: str) -> Sequence[ExploredStep]:
         """The steps to a location from another one."""
         into = self._entering.get((automaton, location), ())

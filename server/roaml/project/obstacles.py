@@ -18,6 +18,7 @@ from roaml.jani.semantics import EvaluationError, evaluate
 from roaml.json_syntax.brackets import deep_recursion
 from roaml.project.explored_steps import ExploredStep, ExploredSteps, ExploredVariable, ExploredWrite
 from roaml.record import Record
+from roaml.scxml.names import SERVICE_HANDLER_PREFIX
 
 
 class Obstacle(Record, frozen=True, eq=False):
@@ -31,14 +32,17 @@ class Obstacle(Record, frozen=True, eq=False):
     way: tuple[ExploredStep, ...]
 
 
-def obstacles(steps: ExploredSteps, wanted: Iterable[ExploredStep]) -> tuple[Obstacle, ...] | None:
+def obstacles(
+    steps: ExploredSteps, wanted: Iterable[ExploredStep], *, are_long: bool = False
+) -> tuple[Obstacle, ...] | None:
     """The conditions because of which no run takes one of the steps `wanted`; `None` if there are other causes, such as
     a message that is discarded, or the end of the run where a condition counts.
 
     Args:
         wanted: steps that no run takes.
+        are_long: whether the runs are longer than those of the system, so that variables that count had more time.
     """
-    search = _Search(steps)
+    search = _Search(steps, are_long=are_long)
     try:
         with deep_recursion():
             found = search.all(wanted, None)
@@ -106,8 +110,9 @@ _Causes = dict["ExploredStep | None", None]
 
 
 class _Search:
-    def __init__(self, steps: ExploredSteps) -> None:
+    def __init__(self, steps: ExploredSteps, *, are_long: bool) -> None:
         self.steps = steps
+        self.are_long = are_long
         self.known: dict[ExploredStep, _Causes] = {}
         self.before: dict[ExploredStep, ExploredStep | None] = {}
 
@@ -140,6 +145,8 @@ class _Search:
             return self._of_condition(step)
         if step.receives and not any(sender.is_taken for sender in self.steps.sending(step.receives)):
             return self.all(self.steps.sending(step.receives), step)
+        if self.are_long and step.automaton.startswith(SERVICE_HANDLER_PREFIX):
+            return {step: None}
         # The event comes in other states only, its receiver never takes it, or no other condition holds either.
         return {None: None}
 
@@ -147,9 +154,10 @@ class _Search:
         needed = MissingValues(self.steps, step)
         if needed.sufficient:
             return self.all((write.step for write in needed.sufficient), step)
-        if needed.counts:
+        if needed.counts and not self.are_long:
             return {None: None}
-        causes = self.all((write.step for write in needed.possible), step) if needed.possible else {}
+        is_followed = needed.possible and not self.are_long
+        causes = self.all((write.step for write in needed.possible), step) if is_followed else {}
         return causes or {step: None}
 
 
@@ -184,7 +192,8 @@ class MissingValues:
         initial = self.steps.initial(variable)
         executed = {write for write in writes if _is_executed(variable, write)}
         taken = {self._content(write) for write in executed}
-        taken.add(None if initial is None else _literal(initial))
+        if variable.automaton:  # The initial value of a message is never received.
+            taken.add(None if initial is None else _literal(initial))
         for write in writes:
             if write in executed:
                 value = write.assignment.value

@@ -53,6 +53,7 @@ def never_ticked_nodes(
         if is_missed and not missed(instance):
             continue
         is_harmless = is_missed and not _has_failing_action(system, by_number, reached)
+        blame.is_tree_at_fault |= needed is never_ticked.FAILS
         node, earlier = _written(analysis, instance.source), _written(analysis, before.source)
         if node is None or earlier is None:
             continue
@@ -66,6 +67,7 @@ def never_ticked_nodes(
                 earlier,
                 needed,
                 related,
+                no_run=reached.no_run,
                 is_instant=reached.is_instant,
                 is_missed=is_missed,
                 is_harmless=is_harmless,

@@ -11,12 +11,15 @@ from roaml.rules.rule import Rule
 from roaml.text import Span
 
 
-def finding(condition: Span, *, holds: bool, related: Iterable[Related], is_instant: bool, where: str = "") -> Finding:
+def finding(
+    condition: Span, *, holds: bool, related: Iterable[Related], no_run: str, is_instant: bool, where: str = ""
+) -> Finding:
     """The finding that a condition stops a system.
 
     Args:
         condition: the place of the condition.
         holds: whether the condition always holds, so that what follows it is never executed.
+        no_run: the subject of the statement, such as "no run of this system".
         is_instant: whether this is only known if all machines react at once.
         where: to what this is restricted, as an adverbial phrase; "" if there is no restriction.
     """
@@ -27,7 +30,7 @@ def finding(condition: Span, *, holds: bool, related: Iterable[Related], is_inst
     else:
         what, why = "this transition or branch", "its condition is evaluated, but never holds"
     message = (
-        f"no run of this system takes {what}{restricted}{assumed}: {why}; the related places have no effect because of "
+        f"{no_run} takes {what}{restricted}{assumed}: {why}; the related places have no effect because of "
         "this; check the condition, and where its values come from"
     )
     return RULE.at(condition, message, related=related)

@@ -33,6 +33,7 @@ def finding(
     status: str,
     related: Iterable[Related],
     *,
+    no_run: str,
     is_instant: bool,
     is_missed: bool,
     is_harmless: bool,
@@ -40,6 +41,7 @@ def finding(
     """The finding that a node is never ticked, because the sibling before it never returns a status.
 
     Args:
+        no_run: the subject of the statement, such as "no run of this system".
         is_instant: whether this is only known if all machines react at once.
         is_missed: whether the sibling would return the status if it were ticked again while later nodes run.
         is_harmless: whether no action fails nevertheless, so that one check may be enough.
@@ -52,7 +54,7 @@ def finding(
             "it would if it were ticked again while later nodes are running; use `ReactiveSequence` or "
             "`ReactiveFallback` around it if that matters"
         )
-    message = f"no run of this system ticks this node{assumed}: `{name}` before it never returns {status}; {remedy}"
+    message = f"{no_run} ticks this node{assumed}: `{name}` before it never returns {status}; {remedy}"
     severity = Severity.INFORMATION if is_harmless else None
     return RULE.at(node.element.name_span, message, severity=severity, related=related)
 

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The steps that a system takes in simulated runs, for systems with too many states to explore all of them.
+
+First, few runs are simulated: in most right systems, these refute all that a check might find.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from roaml.durations import AT_ONCE
+from roaml.interruption import checkpoint
+from roaml.jani.model import Model
+from roaml.jani.reaction import ReactionError, reacting
+from roaml.lower.system import lower
+from roaml.project.analysis import Analysis
+from roaml.project.exploration import Reached, reached_by, ways_taken
+from roaml.project.explored_steps import ExploredWay
+from roaml.project.translation import program_of
+from roaml.record import replace
+from roaml.smc.fault import FaultError
+from roaml.smc.model import ModelChecker
+from roaml.smc.record import Recorder, Recording
+from roaml.to_jani import translate
+from roaml.views.ends import marks
+
+BATCHES = ((2, 15_000), (20, 15_000), (3, 150_000))
+"""The numbers of runs, and the maximum number of their steps. All of them take 0.4 s."""
+
+
+def simulated(analysis: Analysis, path: str, more_time: int = 1) -> Iterator[Reached]:
+    """What simulated runs of a system reach, first few runs, then more; first with machines that react at once, then
+    with the reaction time of the system. The iterator ends before runs that execute an undefined operation.
+
+    Args:
+        more_time: how many times the maximum time of the system the runs last.
+    """
+    program = program_of(analysis, path)
+    time = program.parameters.max_time
+    parameters = replace(program.parameters, max_time=None if time is None else more_time * time)
+    model = translate(lower(replace(program, parameters=parameters)), (), ())
+    models = [model]
+    if model.metadata is not None and model.metadata.clock is not None and model.metadata.reaction_time.is_any:
+        try:
+            models.insert(0, reacting(model, AT_ONCE))
+        except ReactionError:
+            return
+    for reacting_model in models:
+        yield from _runs(reacting_model)
+
+
+def _runs(model: Model) -> Iterator[Reached]:
+    """What growing numbers of runs of a model reach."""
+    for checker, taken, runs in _taken(model):
+        yield reached_by(model, checker, taken, _ways_of, simulated=runs)
+
+
+def _ways_of(model: Model) -> list[ExploredWay] | None:
+    """The steps of a model; `None` if an undefined operation is executed."""
+    known = None
+    for checker, taken, _ in _taken(model):
+        known = checker, taken
+    return None if known is None else list(ways_taken(*known))
+
+
+def _taken(model: Model) -> Iterator[tuple[ModelChecker, bytes, int]]:
+    """For growing numbers of runs: a model checker, whether each way of an edge is taken, and the number of runs."""
+    try:
+        checker = ModelChecker(model, (), marks(model))
+    except FaultError:
+        return
+    taken = bytearray(len(checker.legend.ways))
+    first = 0
+    for runs, most_steps in BATCHES:
+        recorder = Recorder(checker, checker.stuck, 0, most_steps)
+        for run in range(first, first + runs):
+            recording = Recording(run)
+            for _, ways in recorder.taken(recording):
+                for _, way in ways:
+                    taken[way] = 1
+            if recording.problem is not None:
+                return
+            checkpoint()
+        first += runs
+        yield checker, bytes(taken), first
