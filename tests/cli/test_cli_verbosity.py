@@ -12,7 +12,7 @@ from command import Command
 import clock
 from as2fm_lsp.cli.main import COMMANDS, parser
 from fixture import write_files
-from roaml.project import exploration
+from roaml.project import explored_findings
 from roaml.rules import RULES
 from rule_files import examples
 
@@ -53,10 +53,12 @@ def test_a_verbose_check_names_systems_that_are_too_large_to_be_explored(
 ) -> None:
     write_files(tmp_path, examples("never-ticked", "Bad")[0].text)
     main = str(tmp_path / "main.xml")
-    assert "too many states" not in command("check", main, "--verbose").err
-    monkeypatch.setattr(exploration, "MAX_STATES", 1)
-    assert "main.xml has too many states to be explored, so these" in command("check", main, "--verbose").err
-    assert "too many states" not in command("check", main, "--verbose", "--ignore", "never-ticked,never-taken").err
+    assert "too large" not in command("check", main, "--verbose").err
+    monkeypatch.setattr(explored_findings, "MAX_PARTS", 1)
+    assert "main.xml is too large to be explored, so these" in command("check", main, "--verbose").err
+    assert (
+        "too large" not in command("check", main, "--verbose", "--ignore", "never-in-time,never-ticked,never-taken").err
+    )
 
 
 def test_a_quiet_verification_writes_values_verdicts_and_warnings(command: Command, tmp_path: Path) -> None:

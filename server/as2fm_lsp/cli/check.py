@@ -152,7 +152,7 @@ def _write_details(result: api.CheckResult, settings: Settings, seconds: float) 
     for path in filter(result.files.__contains__, result.snapshot.analysis.system_paths):
         if result.snapshot.checker.has_too_many_states(path):
             codes = ", ".join(sorted(CODES))
-            detail(f"{shown_path(path)} has too many states to be explored, so these rules did not check it: {codes}")
+            detail(f"{shown_path(path)} is too large to be explored, so these rules did not check it: {codes}")
     detail(f"{len(result.files)} files in {seconds:.2f} s")
 
 

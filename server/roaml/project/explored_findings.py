@@ -19,14 +19,14 @@ from roaml.project.analysis import Analysis
 from roaml.project.exploration import Reached, explored
 from roaml.record import replace
 from roaml.rules.states import never_taken
-from roaml.rules.trees import never_ticked
+from roaml.rules.trees import never_in_time, never_ticked
 from roaml.text import Location, SourceFile, Span
 
 if TYPE_CHECKING:
     from roaml.project.blame import Blame
     from roaml.project.optional_branches import ByNumber
 
-CODES = frozenset((never_taken.RULE.code, never_ticked.RULE.code))
+CODES = frozenset((never_in_time.RULE.code, never_taken.RULE.code, never_ticked.RULE.code))
 """The codes of the rules that need an exploration."""
 MAX_PARTS = 20_000
 """The maximum number of parts of a translation that is explored (`roaml.model.size.Size.parts`)."""
@@ -49,15 +49,20 @@ def findings_of(analysis: Analysis, path: str) -> Mapping[str, tuple[Finding, ..
 
     known: list[tuple[str, Finding]] | None = None
     blame: Blame | None = None
+    late: list[tuple[str, Finding]] = []
     nodes = {instance.number: instance for instance in system.instances}
     missed = functools.cache(functools.partial(is_missed, plain, path, nodes))
     for reached in explored(plain, path):
         blame = Blame(plain, system, reached)
         known = list(_all(plain, system, nodes, reached, missed, blame))
-        if not known and not blame.has_unexplained:
+        is_settled = not known and not blame.has_unexplained
+        late = [] if is_settled else _late(plain, path, nodes, reached)
+        if is_settled:
             break
     if known is None:
         known = _in_simulations(plain, path, system, nodes, missed)
+    elif late:
+        known = late
     elif blame is not None and blame.has_unexplained and not blame.is_tree_at_fault:
         longer = _in_simulations(plain, path, system, nodes, missed, more_time=MORE_TIME)
         known += [(place, finding) for place, finding in longer or () if finding.code == never_taken.RULE.code]
@@ -91,7 +96,13 @@ def _in_simulations(
         known = list(_all(analysis, system, nodes, reached, missed, Blame(analysis, system, reached)))
         if not known:
             break
-    return known
+    return _late(analysis, path, nodes, reached) or known if known else known
+
+
+def _late(analysis: Analysis, path: str, nodes: ByNumber, reached: Reached) -> list[tuple[str, Finding]]:
+    from roaml.project.late_children import late_children  # noqa: PLC0415 - few systems have something to be explained
+
+    return list(late_children(analysis, path, nodes, reached))
 
 
 Content: TypeAlias = "tuple[tuple[SourceFile | None, ...], object]"

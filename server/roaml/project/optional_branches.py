@@ -9,7 +9,7 @@ around it check their children again at every tick.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from roaml.libraries.programs.statuses import FAILURE, SUCCESS
 from roaml.model.expand import Instance, node_at
@@ -66,14 +66,17 @@ def reactive(analysis: Analysis, path: str, instance: Instance, nodes: ByNumber)
             spans = (node.element.name_span, node.element.close_name_span)
             new = (TextEdit(span, _IN_TURN[plugin]) for span in spans if span is not None)
             edits.setdefault(source.path, []).extend(new)
+    return edited(analysis, path, edits) if edits else None
+
+
+def edited(analysis: Analysis, path: str, edits: Mapping[str, Iterable[TextEdit]]) -> Analysis:
+    """An analysis of a system with changes in some of its files."""
     sources = {file: analysis.source(file) for file in edits}
     texts = {
         file: SourceFile(file, apply_edits(source.text, tuple(sorted(edits[file]))))
         for file, source in sources.items()
         if source is not None
     }
-    if not texts:
-        return None
     files, memo = analysis.files.with_texts(texts), analysis.memo.copy()
     return Analysis(files, analysis.registry, memo, (path,), analysis.overrides, analysis.tree_settings, expands=False)
 

@@ -193,6 +193,7 @@ from roaml.rules.trees import (
     missing_inverter,
     missing_port,
     mixed_entries,
+    never_in_time,
     never_succeeds,
     never_ticked,
     node_configuration,
