@@ -256,3 +256,13 @@ def test_a_count_that_goes_the_wrong_way(
     blamed = [d for d in found if d.code == "never-taken"]
     assert [d.source.text[d.span.start : d.span.end] for d in blamed if d.source] == ([] if place is None else [place])
     assert all(len([r for r in d.related if "at all other times" in r.message]) == ("&lt;=" in new) for d in blamed)
+
+
+def test_a_message_names_the_values_that_occur(tmp_path: Path) -> None:
+    counted = LIFT | {"lift.ascxml": LIFT["lift.ascxml"].replace("floor - 1", "floor - 2")}
+    for name, text in (counted | {"tree.xml": LIFT["tree.xml"].replace('floor="3"', 'floor="1"')}).items():
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text.replace("floor + 1", "floor + 2"), encoding="utf-8")
+    [message] = [d.message for d in api.check([str(tmp_path)]).diagnostics if d.code == "never-taken"]
+    assert "`floor` is between 0 and 2, `wanted` is 1 here" in message

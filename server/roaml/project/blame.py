@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from roaml.diagnostics import Finding, Related
-from roaml.jani.expressions import Integer
+from roaml.jani.expressions import Integer, Name, walk
 from roaml.libraries.programs.statuses import RUNNING
 from roaml.model.expand import Instance, node_at
 from roaml.model.node_effects import statuses
@@ -186,8 +186,16 @@ class Blame:
             no_run=self._reached.no_run,
             is_instant=self._reached.is_instant,
             where=where,
+            values="" if where else self._values(obstacle.step),
         )
         return place.path, finding
+
+    def _values(self, step: ExploredStep) -> str:
+        """The values that the condition of a step reads, as a clause; "" if there are none."""
+        from roaml.project.simulation import seen_values  # noqa: PLC0415 - few systems have findings
+
+        names = {part.identifier for part in walk(step.guard) if isinstance(part, Name)} if step.guard else set()
+        return seen_values(self._reached.model, step.automaton, step.edge.source, names) if names else ""
 
     def _places(self, steps: ExploredSteps, found: Iterable[Obstacle]) -> dict[Location | None, Obstacle]:
         return {self._place(steps, obstacle.step): obstacle for obstacle in found}

@@ -6,7 +6,7 @@ First, few runs are simulated: in most right systems, these refute all that a ch
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from roaml.durations import AT_ONCE
 from roaml.interruption import checkpoint
@@ -21,11 +21,14 @@ from roaml.record import replace
 from roaml.smc.fault import FaultError
 from roaml.smc.model import ModelChecker
 from roaml.smc.record import Recorder, Recording
+from roaml.smc.registers import BOOL
 from roaml.to_jani import translate
 from roaml.views.ends import marks
 
 BATCHES = ((2, 15_000), (20, 15_000), (3, 150_000))
 """The numbers of runs, and the maximum number of their steps. All of them take 0.4 s."""
+RUNS_OF_VALUES = 5
+"""The number of runs in which values are read."""
 
 
 def simulated(analysis: Analysis, path: str, more_time: int = 1) -> Iterator[Reached]:
@@ -83,3 +86,28 @@ def _taken(model: Model) -> Iterator[tuple[ModelChecker, bytes, int]]:
             checkpoint()
         first += runs
         yield checker, bytes(taken), first
+
+
+def seen_values(model: Model, automaton: str, location: str, names: Collection[str]) -> str:
+    """The values of variables of an automaton when it is in a location, in simulated runs, as a clause for users; "" if
+    none of them is a number or a truth value."""
+    checker = ModelChecker(model, (), marks(model))
+    instances = checker.legend.layout.instances
+    number = next(i for i, instance in enumerate(instances) if instance.automaton.name == automaton)
+    variables = [storage for storage in instances[number].own if storage.name in names and not storage.shape]
+    recorder = Recorder(checker, checker.stuck, 0, BATCHES[0][1])
+    seen: list[set[float]] = [set() for _ in variables]
+    for run in range(RUNS_OF_VALUES):
+        for values in recorder.follow(Recording(run), variables):
+            if recorder.location(number) == location:
+                for known, value in zip(seen, values, strict=True):
+                    known.add(value)
+    return ", ".join(_range(s.name, s.kind, values) for s, values in zip(variables, seen, strict=True) if values)
+
+
+def _range(name: str, kind: str, values: set[float]) -> str:
+    """The range of the values of a variable, as a clause."""
+    least, greatest = min(values), max(values)
+    if kind == BOOL:
+        return f"`{name}` is {'true or false' if greatest > least else 'always true' if least else 'always false'}"
+    return f"`{name}` is {least:g}" if least == greatest else f"`{name}` is between {least:g} and {greatest:g}"

@@ -221,6 +221,10 @@ class Recorder:
         """The value of a variable with an integer in the current state."""
         return self._kernel.integer(storage.base)
 
+    def location(self, instance: int) -> str:
+        """The name of the current location of an instance, by its number."""
+        return self.legend.locations[self._kernel.location(instance)][1]
+
     def initial(self, storages: Sequence[Storage], trace: int) -> list[Plain]:
         """The initial values of the variables in a trace."""
         self._kernel.begin(self.seed, trace, self.scheduler)
