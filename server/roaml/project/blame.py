@@ -246,12 +246,14 @@ class Blame:
         return None if not conditions else conditions[-1]
 
     def _conditions(self, steps: ExploredSteps, step: ExploredStep) -> list[Location]:
-        """The places of the condition that never holds, or of those before it, one of which always holds."""
+        """The places of the condition that never holds, or of those before it, one of which always holds. The last one
+        is to blame: where `a < b` and `a > b` would leave `a == b`, that is the one which includes equality."""
         own = self._condition(steps, step)
         before = [other for other in steps.beside(step) if other.order < step.order and other.is_taken]
         conditions = [own] if own is not None else [self._condition(steps, other) for other in before]
         path = None if step.edge.origin is None else step.edge.origin.path
-        return [Location(path, c.value_span) for c in conditions if c is not None and path is not None]
+        known = sorted((c for c in conditions if c is not None), key=lambda c: "<=" in c.value or ">=" in c.value)
+        return [Location(path, condition.value_span) for condition in known if path is not None]
 
     def _condition(self, steps: ExploredSteps, step: ExploredStep) -> Attribute | None:
         """The condition of a transition or branch; `None` if it has none."""
