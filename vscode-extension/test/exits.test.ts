@@ -124,6 +124,8 @@ test("bands for chips are at the sides at which the drawing goes on", () => {
     assert.deepEqual(bandsOf({ x: 50, y: 50, scale: 1 }, drawn, 300, 200), NO_BANDS);
 });
 
+const SMALL = { sight: { x: -10, y: -1, scale: 1 }, width: 140 };
+
 test("the first view is smaller at its sides so that it cuts off nothing", () => {
     const rows = Array.from({ length: 20 }, (_, row) => ({ x: 100, y: row * 60, width: 80, height: 30 }));
     for (let height = 400; height < 460; height += 7) {
@@ -135,6 +137,8 @@ test("the first view is smaller at its sides so that it cuts off nothing", () =>
         assert.equal(left, 0);
         assert.ok(right > 40 && bottom < 40);
     }
+    // Nor does it show the border of what is just outside.
+    assert.ok(trimsOf([{ x: 0, y: 100, width: 50, height: 50 }], { ...SMALL, height: 101 }).bottom > 0);
     // What fits as a whole is not changed, and what is much too large is cut off.
     const all = { sight: { x: 0, y: -10, scale: 1 }, width: 400, height: 1300 };
     assert.deepEqual(trimsOf(rows, all), NO_BANDS);

@@ -259,13 +259,16 @@ export function withStart<B extends Box>(box: B): B {
 /** The most by which a first view is smaller at each side so that it cuts off no boxes, in pixels. */
 const TRIMS: Bands = { top: 60, bottom: 100, left: 60, right: 150 };
 
+/** The part of the border of a box that is outside of it, in pixels. */
+const BORDER = 1;
+
 /** By how much a view is made smaller at its sides, so that these cut off as few boxes as possible, in pixels. */
 export function trimsOf(boxes: readonly Box[], { sight, width, height }: Frame): Bands {
     const seen = boxes.map((box) => ({
-        left: (box.x - sight.x) * sight.scale,
-        right: (box.x + box.width - sight.x) * sight.scale,
-        top: (box.y - sight.y) * sight.scale,
-        bottom: (box.y + box.height - sight.y) * sight.scale,
+        left: (box.x - sight.x) * sight.scale - BORDER,
+        right: (box.x + box.width - sight.x) * sight.scale + BORDER,
+        top: (box.y - sight.y) * sight.scale - BORDER,
+        bottom: (box.y + box.height - sight.y) * sight.scale + BORDER,
     }));
     const trims: Record<Side, number> = { ...NO_BANDS };
     for (const side of SIDES) {

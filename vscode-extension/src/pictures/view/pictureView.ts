@@ -377,7 +377,7 @@ export class PictureView {
             bands = largerOf(bands, this.bandsAt(sight));
         }
         const shown = beside(sight, width, height, this.bandsAt(sight));
-        this.look(sight, trimsOf([...boxes, ...this.labels], shown));
+        this.look(sight, trimsOf([...drawing.nodes, ...this.labels], shown));
     }
 
     /** The first view of a drawing that does not fit into a window. */
