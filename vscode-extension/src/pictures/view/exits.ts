@@ -30,8 +30,8 @@ export interface Exit {
 /** The height of the bands with chips above and below a picture, and the width of those beside it, in pixels. */
 const BAND = 24;
 export const CHIP = 120;
-/** Smaller windows have no space for bands above and below a picture, or beside it, nor for a map, in pixels. */
-export const SMALLEST_WINDOW = { width: 480, height: 240 };
+/** Smaller windows have no space for bands above and below a picture, or beside it, in pixels. */
+const SMALLEST_WINDOW = { width: 480, height: 240 };
 
 /** The sizes of what covers a window at its sides, in pixels. */
 export type Bands = Readonly<Record<Side, number>>;

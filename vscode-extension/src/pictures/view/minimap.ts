@@ -3,10 +3,12 @@
 
 import type { Drawing, Picture, Point } from "../contract";
 import { toneOf } from "./words";
-import { SMALLEST_WINDOW } from "./exits";
 import { LARGEST_MAP, centered, mapOf, visiblePart } from "./find";
 import type { MapScale, Sight } from "./find";
 import { element } from "./scene";
+
+/** A smaller window has no space for a map, in pixels. */
+const SMALLEST_WINDOW = { width: 280, height: 220 };
 
 export class Minimap {
     readonly svg = element("svg", { class: "minimap hidden", "aria-hidden": "true" });
@@ -55,7 +57,8 @@ export class Minimap {
         const part = visiblePart(sight, this.drawing, width, height);
         const isWhole = part.width >= this.drawing.width && part.height >= this.drawing.height;
         const isSmall = width < SMALLEST_WINDOW.width || height < SMALLEST_WINDOW.height;
-        this.scale = isWhole || isSmall ? undefined : mapOf(this.drawing, LARGEST_MAP.width, LARGEST_MAP.height);
+        const [most, highest] = [Math.min(LARGEST_MAP.width, width / 5), Math.min(LARGEST_MAP.height, height / 2)];
+        this.scale = isWhole || isSmall ? undefined : mapOf(this.drawing, most, highest);
         this.svg.classList.toggle("hidden", !this.scale);
         if (this.scale) place(this.svg, { width: this.scale.width, height: this.scale.height });
         place(this.frame, { ...part });
