@@ -10,7 +10,8 @@ import pytest
 
 from fixture import write_files
 from roaml import api
-from roaml.diagnostics import Severity
+from roaml.comparison import read_comparison
+from roaml.diagnostics import Diagnostic, Severity
 from roaml.explicit import space
 from roaml.project import exploration, explored_findings
 from roaml.project.settings import Settings
@@ -267,3 +268,74 @@ def test_a_message_names_the_values_that_occur(tmp_path: Path) -> None:
         path.write_text(text.replace("floor + 1", "floor + 2"), encoding="utf-8")
     [message] = [d.message for d in api.check([str(tmp_path)]).diagnostics if d.code == "never-taken"]
     assert "`floor` is between 0 and 2, `wanted` is 1 here" in message
+
+
+COUNTER = """
+-- main.xml --
+<roaml>
+    <parameters>
+        <max_time value="10" unit="s" />
+    </parameters>
+    <node_models>
+        <input type="node-ascxml" src="counter.ascxml" />
+    </node_models>
+    <properties>
+        <input type="jani" src="properties.jani" />
+    </properties>
+</roaml>
+-- counter.ascxml --
+<ascxml name="Counter" version="1.0" initial="counting">
+    <ros_topic_publisher name="weight" topic="/weight" type="std_msgs/Int32" />
+    <ros_time_rate name="timer" rate_hz="1" />
+    <datamodel>
+        <data id="weights" type="int32[3]" expr="[5, 7, 9]" />
+        <data id="next" type="int32" expr="0" />
+    </datamodel>
+    <state id="counting">
+        <ros_rate_callback name="timer" target="counting" cond="next &lt; LIMIT">
+            <ros_topic_publish name="weight"><field name="data" expr="VALUE" /></ros_topic_publish>
+            <assign location="next" expr="next + 1" />
+        </ros_rate_callback>
+    </state>
+</ascxml>
+-- properties.jani --
+{"properties": [{"name": "heavy", "expression": {"op": "filter", "fun": "values", "states": {"op": "initial"}, "values":
+    {"op": "Pmin", "exp": {"op": "F", "exp": {"op": "=", "left": "topic_weight_msg__ros_fields__data", "right": 7}}}}}]}
+"""
+
+
+def counter(folder: Path, limit: int, value: str) -> list[Diagnostic]:
+    """The findings about undefined operations in a machine that counts up to a limit."""
+    write_files(folder, COUNTER.replace("LIMIT", str(limit)).replace("VALUE", value))
+    codes = ("index-out-of-bounds", "division-by-zero")
+    return [d for d in api.check([str(folder / "main.xml")]).diagnostics if d.code in codes]
+
+
+@pytest.mark.parametrize(("value", "part"), [("weights[next]", "next"), ("6 % (3 - next)", "3 - next")])
+def test_an_undefined_operation_that_a_run_executes_is_an_error(tmp_path: Path, value: str, part: str) -> None:
+    assert counter(tmp_path, 3, value) == []
+    [found] = counter(tmp_path, 8, value)
+    text = (tmp_path / "counter.ascxml").read_text(encoding="utf-8")
+    assert found.severity is Severity.ERROR
+    assert text[found.span.start : found.span.end] == part
+    assert any("next: 2 → 3" in place.message for place in found.related)
+
+
+def test_an_array_that_only_the_translation_limits_is_information(tmp_path: Path) -> None:
+    text = COUNTER.replace('type="int32[3]" expr="[5, 7, 9]"', 'type="int32[]" expr="[]"').replace("LIMIT", "100")
+    text = text.replace(
+        '<max_time value="10" unit="s" />', '<max_time value="10" unit="s" /><max_array_size value="4" />'
+    )
+    assign = '<assign location="weights[weights.length]" expr="next" /><assign location="next"'
+    write_files(tmp_path, text.replace('<assign location="next"', assign).replace("VALUE", "next"))
+    found = [d for d in api.check([str(tmp_path / "main.xml")]).diagnostics if "undefined operation" in d.message]
+    assert [d.severity for d in found] == [Severity.INFORMATION]
+
+
+@pytest.mark.parametrize(("expected", "is_met"), [("= 0", False), ("> 0.5", True)])
+def test_an_expectation_of_the_settings_that_no_value_meets(tmp_path: Path, expected: str, is_met: bool) -> None:
+    write_files(tmp_path, COUNTER.replace("LIMIT", "3").replace("VALUE", "weights[next]"))
+    comparison = read_comparison(expected)
+    assert comparison is not None
+    found = api.check([str(tmp_path / "main.xml")], settings=Settings(expectations={"heavy": comparison}))
+    assert ("unmet-expectation" in [d.code for d in found.diagnostics]) is not is_met

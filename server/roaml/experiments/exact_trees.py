@@ -28,7 +28,7 @@ from roaml.jani.expressions import Binary, Expression, Integer, Name, Real
 from roaml.jani.model import Automaton, Constant, Destination, Model, Variable
 from roaml.jani.node import Node
 from roaml.jani.operators import BinaryOperator
-from roaml.jani.properties import Property
+from roaml.jani.properties import Property, eventually
 from roaml.jani.rewrite import rewrite
 from roaml.jani.types import REAL
 from roaml.mocks.network import TICKS, MockedLeaf, MockedTree
@@ -48,7 +48,6 @@ from roaml.verification.tree_outcome import (
     Quantile,
     TreeOutcome,
     counters_of,
-    eventually,
     exactly,
     returned,
     root_automaton,

@@ -314,6 +314,7 @@ class StateSearch(PackedStates):
         """The choices by which `successor` is reached from `state` without another state that is stored; `None` if
         there are none. A choice consists of the vector and, for each slot that has an effect, the number of the edge
         among the enabled edges, and the number of the destination of the edge."""
+        self.kernel.fault = 0  # one that ended the search
         self._visit(state)
         self._judged()
         for vector in [self.kernel.enabled[i] for i in range(self.kernel.enabled_count)]:

@@ -75,11 +75,11 @@ def _spread(checker: ModelChecker, instance: int | None, storage: Storage, keys:
     different, earlier = set(values), set(values[: len(values) // 2])
     if len(different) < MIN_VALUES or len(different - earlier) < MIN_NEW * len(different):
         return None
-    elements = [_number(element, storage.kind) for value in different for element in value]
+    elements = [cell_value(element, storage.kind) for value in different for element in value]
     return Spread(instance, storage.name, len(different), min(elements), max(elements), storage.bounds[1] is not None)
 
 
-def _number(element: int, kind: str) -> float:
+def cell_value(element: int, kind: str) -> float:
     """The value of a cell; that of a real number contains its bits."""
     if kind != REAL:
         return element

@@ -273,6 +273,13 @@ def walk(formula: Formula) -> Iterator[Formula]:
         stack.extend(reversed(children(node)))
 
 
+def eventually(name: str, condition: Expression) -> Property:
+    """The probability that a condition holds at some time."""
+    path = UnaryPath(UnaryPathOperator.FINALLY, condition)
+    probability = Probability(ProbabilityOperator.PMIN, path)
+    return Property(name, Filter(FilterFunction.VALUES, probability, Predicate(StatePredicate.INITIAL)))
+
+
 def identifiers(formula: Formula) -> Iterator[tuple[str, Span]]:
     """The names of the variables and constants of the model that `formula` uses, with the position of each use, in the
     order of the text.

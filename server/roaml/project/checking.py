@@ -98,13 +98,16 @@ class RuleRunner:
             (self._before(system, path) if found is None else found.get(path, ()) for system, found in explored.items())
         )
         known.append(reached)
+        reached = tuple(finding for finding in reached if self._is_selected(finding))
+        findings = _without_weaker(findings, reached)
         blamed = {f.span for f in findings if self._severity(f) >= Severity.WARNING}
-        findings.update(dict.fromkeys(f for f in reached if f.span not in blamed and self._is_selected(f)))
+        findings.update(dict.fromkeys(f for f in reached if f.span not in blamed))
         hidden = suppressions(file.document) if file.document is not None else ()
         linked = [subject.system for subject in file.subjects]
         if hidden and all(system is not None and system.complete for system in linked):
             of_all = [finding for of_system in known for finding in of_system]
-            unexplored = explored_findings.CODES if None in explored.values() else frozenset[str]()
+            codes = explored_findings.CODES | explored_findings.FAULT_CODES
+            unexplored = codes if None in explored.values() else frozenset[str]()
             unused = self._unused(file.source, of_all, hidden, unexplored)
             findings.update(dict.fromkeys(finding for finding in unused if self._is_selected(finding)))
         published = [(file.source, finding, self._severity(finding)) for finding in _visible(findings, hidden)]
@@ -132,7 +135,7 @@ class RuleRunner:
         are not known."""
         settings = self.settings
         if settings.ignore >= explored_findings.CODES or (
-            settings.select and not explored_findings.CODES & settings.select
+            settings.select and not (explored_findings.CODES | explored_findings.FAULT_CODES) & settings.select
         ):
             return {}
         memo = self.analysis.memo
@@ -167,7 +170,7 @@ class RuleRunner:
         if self.errors(system):
             return None
         try:
-            return explored_findings.findings_of(self.analysis, system)
+            return explored_findings.findings_of(self.analysis, system, self.settings.expectations)
         except Exception as error:  # an internal error must not stop the rules
             _log_exception(error, "%s cannot be explored", system)
             return {system: (internal_error("the exploration of this system", error),)}
@@ -326,6 +329,13 @@ class RuleRunner:
                 facts=finding.facts,
                 source=source,
             )
+
+
+def _without_weaker(findings: dict[Finding, None], explored: Iterable[Finding]) -> dict[Finding, None]:
+    """The findings without those at the places of errors of the same rules that an exploration has found: these say
+    more."""
+    certain = {(f.code, f.span) for f in explored if f.severity is Severity.ERROR}
+    return {f: None for f in findings if (f.code, f.span) not in certain}
 
 
 def _in_all(explored: Iterable[tuple[Finding, ...] | None]) -> tuple[Finding, ...]:

@@ -22,12 +22,22 @@ from roaml.record import Record
 from roaml.scxml.names import TreeEventKind, read_tree_event, received_by
 
 if TYPE_CHECKING:
+    from roaml.explicit.space import Space
     from roaml.jani.model import Model
     from roaml.project.explored_steps import ClientRequests, ExploredSteps, ExploredWay
     from roaml.smc.model import ModelChecker
 
 MAX_STATES, MAX_STEPS, MAX_BYTES = 10_000, 300_000, 1 << 28
 """The limits of one exploration. A typical one that reaches them takes 0.2 s."""
+
+
+class ReachedFaultError(Exception):
+    """An undefined operation is executed in a reachable state, behind which no states are known. `space` contains the
+    states that were reached before."""
+
+    def __init__(self, space: Space) -> None:
+        super().__init__()
+        self.space = space
 
 
 class Reached(Record, frozen=True):
@@ -75,25 +85,35 @@ class Reached(Record, frozen=True):
 
 def explored(analysis: Analysis, path: str) -> Iterator[Reached]:
     """What a system reaches: first with machines that react at once, then with its own reaction time. The iterator ends
-    before a search that has too many states."""
-    from roaml.durations import AT_ONCE  # noqa: PLC0415 - the model checker is imported only if a system is explored
-    from roaml.jani.reaction import ReactionError, reacting  # noqa: PLC0415
-    from roaml.to_jani import translate  # noqa: PLC0415
+    before a search that has too many states.
+
+    Raises:
+        ReachedFaultError: a state is reached in which an undefined operation is executed.
+    """
+    from roaml.to_jani import translate  # noqa: PLC0415 - the model checker is imported only if a system is explored
 
     model = translate(network_of(analysis, path), (), ())
     checkpoint()
-    metadata = model.metadata
-    if metadata is not None and metadata.clock is not None and metadata.reaction_time.is_any:
-        try:
-            reached = _reached(reacting(model, AT_ONCE), is_instant=True)
-        except ReactionError:
-            return
+    for variant, is_instant in with_reactions(model):
+        reached = _reached(variant, is_instant=is_instant)
         if reached is None:
             return
         yield reached
-    reached = _reached(model, is_instant=False)
-    if reached is not None:
-        yield reached
+
+
+def with_reactions(model: Model) -> Iterator[tuple[Model, bool]]:
+    """A model in which machines react at once, unless this assumes more than the model does, and the model itself; each
+    with whether it assumes more. The iterator is empty if such a model cannot be made."""
+    from roaml.durations import AT_ONCE  # noqa: PLC0415 - see `explored`
+    from roaml.jani.reaction import ReactionError, reacting  # noqa: PLC0415
+
+    metadata = model.metadata
+    if metadata is not None and metadata.clock is not None and metadata.reaction_time.is_any:
+        try:
+            yield reacting(model, AT_ONCE), True
+        except ReactionError:
+            return
+    yield model, False
 
 
 def _reached(model: Model, *, is_instant: bool) -> Reached | None:
@@ -131,13 +151,19 @@ def _steps(model: Model, checker: ModelChecker, taken: bytes) -> ExploredSteps:
 
 def _ways_of(model: Model) -> list[ExploredWay] | None:
     """The steps of a model; `None` if it cannot be explored."""
-    searched = _searched(model)
+    try:
+        searched = _searched(model)
+    except ReachedFaultError:
+        return None
     return None if searched is None else list(ways_taken(*searched))
 
 
 def _searched(model: Model) -> tuple[ModelChecker, bytes] | None:
-    """A model checker, and for each way of an edge whether it is taken. `None` if there are too many states, or if an
-    undefined operation is executed, behind which no states are known."""
+    """A model checker, and for each way of an edge whether it is taken. `None` if there are too many states.
+
+    Raises:
+        ReachedFaultError: see `explored`.
+    """
     from roaml.explicit.independence import can_be_reduced  # noqa: PLC0415
     from roaml.explicit.space import LimitError, StateLimits, explore  # noqa: PLC0415
     from roaml.smc.fault import FaultError  # noqa: PLC0415
@@ -152,7 +178,7 @@ def _searched(model: Model) -> tuple[ModelChecker, bytes] | None:
     except (FaultError, LimitError):
         return None
     if space.problem is not None:
-        return None
+        raise ReachedFaultError(space)
     return checker, bytes(memoryview(space.search.taken))
 
 

@@ -11,13 +11,16 @@ import functools
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, TypeAlias
 
+from roaml.comparison import Comparison
 from roaml.diagnostics import Finding, Related
 from roaml.model.expand import Instance
 from roaml.model.size import Size
 from roaml.model.system import System
 from roaml.project.analysis import Analysis
-from roaml.project.exploration import Reached, explored
+from roaml.project.exploration import Reached, ReachedFaultError, explored
 from roaml.record import replace
+from roaml.rules.expressions import division_by_zero, index_out_of_bounds
+from roaml.rules.properties import model_fault, never_satisfied, unmet_expectation, vacuous_property
 from roaml.rules.states import never_taken
 from roaml.rules.trees import never_in_time, never_ticked
 from roaml.text import Location, SourceFile, Span
@@ -26,17 +29,28 @@ if TYPE_CHECKING:
     from roaml.project.blame import Blame
     from roaml.project.optional_branches import ByNumber
 
-CODES = frozenset((never_in_time.RULE.code, never_taken.RULE.code, never_ticked.RULE.code))
+CODES = frozenset(
+    rule.RULE.code
+    for rule in (never_in_time, never_satisfied, never_taken, never_ticked, unmet_expectation, vacuous_property)
+)
 """The codes of the rules that need an exploration."""
+FAULT_CODES = frozenset((division_by_zero.RULE.code, index_out_of_bounds.RULE.code, model_fault.RULE.code))
+"""The codes of the rules that report more if there is an exploration."""
 MAX_PARTS = 20_000
 """The maximum number of parts of a translation that is explored (`roaml.model.size.Size.parts`)."""
 MORE_TIME = 5
 """How many times longer runs last in which variables that count may reach what a condition compares them with."""
 
 
-def findings_of(analysis: Analysis, path: str) -> Mapping[str, tuple[Finding, ...]] | None:
+def findings_of(
+    analysis: Analysis, path: str, expected: Mapping[str, Comparison]
+) -> Mapping[str, tuple[Finding, ...]] | None:
     """Path of a file -> the findings in it, for a system without errors; `None` if the system is too large to be
-    explored."""
+    explored.
+
+    Args:
+        expected: name of a property -> the result that the settings of the user expect.
+    """
     expanded = analysis.expanded(path)
     plain = analysis if expanded is None else expanded.analysis
     system, size = plain.system(path), plain.size_of_translation(path)
@@ -44,28 +58,7 @@ def findings_of(analysis: Analysis, path: str) -> Mapping[str, tuple[Finding, ..
         return {}
     if _parts(size) > MAX_PARTS:
         return None
-    from roaml.project.blame import Blame  # noqa: PLC0415 - these modules are imported only if a system is explored
-    from roaml.project.unticked import is_missed  # noqa: PLC0415
-
-    known: list[tuple[str, Finding]] | None = None
-    blame: Blame | None = None
-    late: list[tuple[str, Finding]] = []
-    nodes = {instance.number: instance for instance in system.instances}
-    missed = functools.cache(functools.partial(is_missed, plain, path, nodes))
-    for reached in explored(plain, path):
-        blame = Blame(plain, system, reached)
-        known = list(_all(plain, system, nodes, reached, missed, blame))
-        is_settled = not known and not blame.has_unexplained
-        late = [] if is_settled else _late(plain, path, nodes, reached)
-        if is_settled:
-            break
-    if known is None:
-        known = _in_simulations(plain, path, system, nodes, missed)
-    elif late:
-        known = late
-    elif blame is not None and blame.has_unexplained and not blame.is_tree_at_fault:
-        longer = _in_simulations(plain, path, system, nodes, missed, more_time=MORE_TIME)
-        known += [(place, finding) for place, finding in longer or () if finding.code == never_taken.RULE.code]
+    known = _known(plain, path, system, expected)
     if known is None:
         return None
     found: dict[str, list[Finding]] = {}
@@ -76,6 +69,42 @@ def findings_of(analysis: Analysis, path: str) -> Mapping[str, tuple[Finding, ..
             source = expanded.location(Location(place, finding.span)).path
             found.setdefault(source, []).append(expanded.finding(place, finding))
     return {place: tuple(dict.fromkeys(findings)) for place, findings in found.items()}
+
+
+def _known(
+    analysis: Analysis, path: str, system: System, expected: Mapping[str, Comparison]
+) -> list[tuple[str, Finding]] | None:
+    """The paths of files, and the findings in them; `None` if the system can neither be explored nor be simulated."""
+    from roaml.project.blame import Blame  # noqa: PLC0415 - these modules are imported only if a system is explored
+    from roaml.project.explored_properties import findings_about_properties  # noqa: PLC0415
+    from roaml.project.unticked import is_missed  # noqa: PLC0415
+
+    known: list[tuple[str, Finding]] | None = None
+    blame: Blame | None = None
+    late: list[tuple[str, Finding]] = []
+    nodes = {instance.number: instance for instance in system.instances}
+    missed = functools.cache(functools.partial(is_missed, analysis, path, nodes))
+    simulated = functools.partial(_in_simulations, analysis, path, system, nodes, missed)
+    try:
+        for reached in explored(analysis, path):
+            blame = Blame(analysis, system, reached)
+            known = list(_all(analysis, system, nodes, reached, missed, blame))
+            is_settled = not known and not blame.has_unexplained
+            late = [] if is_settled else _late(analysis, path, nodes, reached)
+            if is_settled:
+                break
+    except ReachedFaultError as fault:
+        from roaml.project.explored_faults import finding_about_fault  # noqa: PLC0415 - few systems have one
+
+        return [*(known or ()), *finding_about_fault(analysis, path, system, fault.space)]
+    if known is None or blame is None:
+        return simulated()
+    if late:
+        known = late
+    elif blame.has_unexplained and not blame.is_tree_at_fault:
+        longer = simulated(more_time=MORE_TIME) or ()
+        known += [(place, finding) for place, finding in longer if finding.code == never_taken.RULE.code]
+    return [*known, *findings_about_properties(analysis, path, expected)]
 
 
 def _in_simulations(

@@ -13,7 +13,7 @@ from roaml.model.node_effects import statuses
 from roaml.model.system import System
 from roaml.model.tree import TreeNode
 from roaml.project.analysis import Analysis
-from roaml.project.exploration import Reached, explored
+from roaml.project.exploration import Reached, ReachedFaultError, explored
 from roaml.project.optional_branches import ByNumber, ends_only_in_failure, is_required, reactive
 from roaml.rules.trees import never_ticked
 from roaml.text import Location
@@ -92,7 +92,10 @@ def is_missed(analysis: Analysis, path: str, nodes: ByNumber, instance: Instance
     """Whether a node that is never ticked would be ticked if the condition before it were checked again at every
     tick."""
     other = reactive(analysis, path, instance, nodes)
-    return other is not None and any(again.ticks.get(instance.number, False) for again in explored(other, path))
+    try:
+        return other is not None and any(again.ticks.get(instance.number, False) for again in explored(other, path))
+    except ReachedFaultError:
+        return False
 
 
 def _written(analysis: Analysis, source: NodeSource) -> TreeNode | None:

@@ -139,11 +139,14 @@ from roaml.rules.properties import (
     equal_ports,
     ignored_bounds,
     model_fault,
+    never_satisfied,
     repeated_property_id,
     unknown_property_variable,
+    unmet_expectation,
     unportable_expectation,
     unsupported_property,
     vacuous_expectation,
+    vacuous_property,
 )
 from roaml.rules.rule import Rule
 from roaml.rules.states import (

@@ -13,15 +13,12 @@ from roaml.jani.node import Origin
 from roaml.jani.properties import Property, walk
 from roaml.jani.sentences import sentence
 from roaml.record import Record, field, replace
-from roaml.scxml.names import assumptions_of
+from roaml.scxml.names import CLOCK_VARIABLES, assumptions_of
 from roaml.text import SourceFile
 from roaml.verification.expectations import Expectation, expectation_of
 
 if TYPE_CHECKING:
     from roaml.expansion.draws import DrawnNumber
-
-CLOCK_VARIABLES = ("topic_clock_msg__ros_fields__sec", "topic_clock_msg__ros_fields__nanosec")
-"""The variables of a translated system that contain its time: seconds and nanoseconds."""
 
 
 class LineColumn(NamedTuple):

@@ -10,17 +10,7 @@ from collections.abc import Sequence
 
 from roaml.jani.expressions import Binary, Expression, Integer, Name
 from roaml.jani.operators import BinaryOperator
-from roaml.jani.properties import (
-    Filter,
-    FilterFunction,
-    Predicate,
-    Probability,
-    ProbabilityOperator,
-    Property,
-    StatePredicate,
-    UnaryPath,
-    UnaryPathOperator,
-)
+from roaml.jani.properties import Property, eventually
 from roaml.lower.programs.executed import ExecutedNode
 from roaml.mocks.network import TICKS, MockedLeaf, MockedTree
 from roaml.record import Record
@@ -77,13 +67,6 @@ def returned(root: int, *codes: int) -> Expression:
     for other in others:
         first = Binary(BinaryOperator.OR, first, other)
     return first
-
-
-def eventually(name: str, condition: Expression) -> Property:
-    """The probability that a condition holds at some time."""
-    path = UnaryPath(UnaryPathOperator.FINALLY, condition)
-    probability = Probability(ProbabilityOperator.PMIN, path)
-    return Property(name, Filter(FilterFunction.VALUES, probability, Predicate(StatePredicate.INITIAL)))
 
 
 class Measured(Record, frozen=True):
