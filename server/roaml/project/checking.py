@@ -170,7 +170,8 @@ class RuleRunner:
         if self.errors(system):
             return None
         try:
-            return explored_findings.findings_of(self.analysis, system, self.settings.expectations)
+            found = explored_findings.findings_of(self.analysis, system, self.settings.expectations)
+            return None if found is None else explored_findings.without_consequences(found, self._warned(system))
         except Exception as error:  # an internal error must not stop the rules
             _log_exception(error, "%s cannot be explored", system)
             return {system: (internal_error("the exploration of this system", error),)}
@@ -214,6 +215,12 @@ class RuleRunner:
             if _own_severity(finding) is Severity.ERROR
         ]
         return tuple(self._published(errors))
+
+    def _warned(self, system: str) -> set[str]:
+        """The codes of the warnings of the rules about a system."""
+        subjects = (self.analysis.subject(path, system, self._inspection) for path in self.analysis.files_of(system))
+        found = (finding for subject in subjects if subject is not None for finding in self._findings(subject))
+        return {finding.code for finding in found if _own_severity(finding) >= Severity.WARNING}
 
     def findings(self, path: str, system: str | None) -> tuple[Finding, ...]:
         """The findings of the rules in the file `path` as a part of `system`. If `system` is `None`, the file is not in

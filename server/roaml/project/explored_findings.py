@@ -19,6 +19,13 @@ from roaml.model.system import System
 from roaml.project.analysis import Analysis
 from roaml.project.exploration import Reached, ReachedFaultError, explored
 from roaml.record import replace
+from roaml.rules.answers import (
+    answer_needs_time,
+    outstanding_response,
+    unanswered_goal,
+    unanswered_request,
+    unanswered_tick,
+)
 from roaml.rules.expressions import division_by_zero, index_out_of_bounds
 from roaml.rules.properties import model_fault, never_satisfied, unmet_expectation, vacuous_property
 from roaml.rules.states import never_taken
@@ -36,6 +43,11 @@ CODES = frozenset(
 """The codes of the rules that need an exploration."""
 FAULT_CODES = frozenset((division_by_zero.RULE.code, index_out_of_bounds.RULE.code, model_fault.RULE.code))
 """The codes of the rules that report more if there is an exploration."""
+STALLS = frozenset(
+    rule.RULE.code
+    for rule in (answer_needs_time, outstanding_response, unanswered_goal, unanswered_request, unanswered_tick)
+)
+"""The codes of the rules about what a system may wait for for ever. They explain what no run does afterwards."""
 MAX_PARTS = 20_000
 """The maximum number of parts of a translation that is explored (`roaml.model.size.Size.parts`)."""
 MORE_TIME = 5
@@ -132,6 +144,20 @@ def _late(analysis: Analysis, path: str, nodes: ByNumber, reached: Reached) -> l
     from roaml.project.late_children import late_children  # noqa: PLC0415 - few systems have something to be explained
 
     return list(late_children(analysis, path, nodes, reached))
+
+
+def without_consequences(
+    found: Mapping[str, tuple[Finding, ...]], others: Collection[str]
+) -> Mapping[str, tuple[Finding, ...]]:
+    """The findings without conditions that may never hold because of another finding.
+
+    Args:
+        found: path of a file -> the findings in it.
+        others: the codes of the warnings about the system that need no exploration.
+    """
+    if STALLS.isdisjoint(others):
+        return found
+    return {path: tuple(f for f in own if f.code != never_taken.RULE.code) for path, own in found.items()}
 
 
 Content: TypeAlias = "tuple[tuple[SourceFile | None, ...], object]"

@@ -24,7 +24,7 @@ from roaml.model.property_links import LinkedProperty
 from roaml.observers.properties import CLOSE, LEFT, OPEN, RIGHT, Pattern, PatternProperty
 from roaml.project.analysis import Analysis
 from roaml.project.exploration import with_reactions
-from roaml.project.explored_properties import Doubt, Doubted, PropertySearch, values_in
+from roaml.project.property_search import Doubt, Doubted, PropertySearch, values_in
 from roaml.record import replace
 from roaml.rules.properties import never_satisfied, unmet_expectation, vacuous_property
 from roaml.rules.support.known_parts import conjuncts
