@@ -223,7 +223,7 @@ def test_traces_contain_the_reason_of_their_end(command: Command, ward: Path) ->
 def test_traces_that_were_cut_are_reported(command: Command, ward: Path) -> None:
     done = command("verify", "main.xml", "--max-steps", 30, "--method", "fixed", "--max-traces", 50)
     assert "  ends: too many steps 50\n" in done.out
-    assert "undecided: all 100 traces were cut after 30 steps" in done.out
+    assert "undecided: all 100 traces were cut after 30 steps (max-steps)" in done.out
 
 
 def test_counts_are_saved(command: Command, ward: Path) -> None:

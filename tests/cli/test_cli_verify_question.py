@@ -25,7 +25,7 @@ from roaml.smc.choices import Choices
 from roaml.smc.goal import Question, Threshold
 from roaml.verification.expectations import Expectation, Verdict
 from roaml.verification.results import Result, Sampled
-from roaml.verification.small import SHARED_LIMITS, UNIFORM_LIMITS
+from roaml.verification.small import NOTHING_LEFT, SHARED_LIMITS, UNIFORM_LIMITS
 from roaml.verification.target import VerificationTarget, target_of
 from roaml.verification.verifier import verifier_of
 
@@ -569,6 +569,35 @@ def test_a_note_names_few_properties() -> None:
     assert note(entries[:4])[0].startswith("note: the minimum of a, b, c, d over all")
 
 
+def test_a_note_names_the_limit_that_ended_each_search() -> None:
+    stopped = [Choices(tried=2, explored=9, limit=f"max-{what}", reason="stopped") for what in ("states", "memory")]
+    spent = Choices(tried=2, limit=NOTHING_LEFT.limit, reason=NOTHING_LEFT.reason)
+    endless = Choices(tried=2, reason="the computation of its values takes too many operations")
+    wide = Choices(tried=2, explored=1, reason="stopped at 1 state: one of them has more than 4,096 combinations")
+    entries = [
+        (Question(name, "Pmin", False, None, ()), choices)
+        for name, choices in zip("abcde", [*stopped, spent, endless, wide], strict=True)
+    ]
+    *lines, help_ = note(entries)
+    for line, words in zip(
+        lines,
+        (
+            "a over all schedulers is undecided (too many states: the search stopped at 9 states, at the limit "
+            "--max-states;",
+            "b over all schedulers is undecided (too many states: the search stopped at 9 states, at the limit "
+            "--max-memory;",
+            "c over all schedulers is undecided (no values from all states: the searches for other properties have "
+            "reached the limit --max-transitions;",
+            "d over all schedulers is undecided (no values from all states: the computation of its values takes too "
+            "many operations;",
+            "e over all schedulers is undecided (the search stopped at 1 state: one of them has more than 4,096 ",
+        ),
+        strict=True,
+    ):
+        assert words in line
+    assert "a higher --max-states and --max-memory and --max-transitions to search" in help_
+
+
 # ------------------------------------------------------------------ JANI that says more
 
 
@@ -789,6 +818,7 @@ def test_traces_of_rewards_reach_their_condition_or_do_not(command: Command, tmp
     written = document(automaton("a", "s e", edges), variables=[variable("x")], properties={"cost": cost})
     done = command("verify", write(tmp_path, written), "--method", "fixed", "--max-traces", 200, "--max-steps", 20)
     assert re.match(r"cost \(expected value\): at least [\d.]+ from 200 traces: \d+ reached, 0 not reached, ", done.out)
+    assert re.search(r"0 not reached, \d+ were cut after 20 steps: raise max-steps", done.out)
     done = command("verify", name, "--exhaustive", "--explain")
     assert "its condition has not been reached" not in done.out
 

@@ -129,24 +129,24 @@ def note(
 
 def _note_of_others(entries: Sequence[tuple[Question, Choices]], *, knows_reactions: bool) -> list[str]:
     """The lines of `note` about properties for which all states may give a value."""
-    names: dict[tuple[str, str], list[str]] = {}
-    tried: dict[tuple[str, str], int] = {}
-    explored: dict[tuple[str, str], tuple[int, str]] = {}
+    names: dict[tuple[str, str, str], list[str]] = {}
+    tried: dict[tuple[str, str, str], int] = {}
+    most: dict[tuple[str, str, str], Choices] = {}
     for question, choices in entries:
         if choices.differ:
             continue
-        key = (question.operator, "" if choices.tried else _looked(question, choices))
+        kind = choices.limit if choices.explored else choices.reason
+        key = (question.operator, "" if choices.tried else _looked(question, choices), kind)
         names.setdefault(key, []).append(question.name)
         tried[key] = max(tried.get(key, 0), choices.tried)
-        explored[key] = max(explored.get(key, (0, "")), (choices.explored, choices.limit))
+        most[key] = max(most.get(key, choices), choices, key=lambda other: other.explored)
     lines = []
-    for (operator, why), of in names.items():
+    for key, of in names.items():
+        operator, why, _ = key
         extreme = "minimum" if operator.endswith("min") else "maximum"
-        looked = why or f"{_no_difference(tried[operator, why], 'up to ')}, which proves nothing"
-        states, limit = explored[operator, why]
-        if states:
-            at = f", at the limit --{limit}" if limit else ""
-            looked = f"too many states: the search stopped at {states:,} states{at}; {looked}"
+        looked = why or f"{_no_difference(tried[key], 'up to ')}, which proves nothing"
+        if ended := _ended(most[key]):
+            looked = f"{ended}; {looked}"
         lines.append(f"note: the {extreme} of {_listed(of)} over all schedulers is undecided ({looked})")
     ways = ["--exhaustive to compute it from all states", "--scheduler uniform if uniform choices are meant"]
     if limits := [limit for limit in dict.fromkeys(choices.limit for _, choices in entries) if limit]:
@@ -155,6 +155,16 @@ def _note_of_others(entries: Sequence[tuple[Question, Choices]], *, knows_reacti
         ways.insert(0, 'a reaction time if machines always react within it (--reaction-time instant, or "20 ms")')
     advice = f"use {', '.join(ways[:-1])}, or {ways[-1]}"
     return [*lines, f"  help: {advice}"] if lines else [f"help: for what is undecided, {advice}"]
+
+
+def _ended(choices: Choices) -> str:
+    """Why the search through all schedulers gave no values, with the limit that ended it, as a phrase for users; "" if
+    there was none."""
+    if choices.explored and choices.limit:
+        return f"too many states: the search stopped at {choices.explored:,} states, at the limit --{choices.limit}"
+    if choices.explored:
+        return f"the search {choices.reason}"
+    return f"no values from all states: {choices.reason}" if choices.reason else ""
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -33,10 +33,11 @@ def as_text(result: StuckResult, place_of: PlaceOf, shown: str = "", *, is_whole
         lower, upper = answer.bounds
         cut = answer.tally.ended(End.CUT)
         traces = f"{answer.tally.traces:,} traces"
+        steps = f"{answer.options.max_steps:,} steps (max-steps)"
         if cut == answer.tally.traces:
-            lines.append(f"{PROBABILITY}: {UNDECIDED}: all {traces} were cut after {answer.options.max_steps:,} steps")
+            lines.append(f"{PROBABILITY}: {UNDECIDED}: all {traces} were cut after {steps}")
         else:
-            to = f"; {cut:,} of them were cut after {answer.options.max_steps:,} steps" if cut else " to their end"
+            to = f"; {cut:,} of them were cut after {steps}" if cut else " to their end"
             value = UNDECIDED if answer.is_unknown else f"{answer.value:.6g}"
             lines.append(f"{PROBABILITY}: {value} in [{lower:.6g}, {upper:.6g}] from {traces}{to}")
     if result.fault:

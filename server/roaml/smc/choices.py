@@ -75,7 +75,9 @@ class Choices(Record, frozen=True):
         minimum, maximum: the extreme values of schedulers; `None` if unknown.
         tried: the number of schedulers that were sampled.
         explored: the number of states at which a search through all of them stopped; 0 if there was none.
-        limit: the name of the limit at which it stopped, such as `max-states`; "" if it cannot be raised.
+        limit: the name of the limit at which it stopped, or because of which there was none, such as `max-states`; ""
+            if it cannot be raised.
+        reason: why no search gave values, as a phrase for users; "" if there was none and no limit prevented it.
     """
 
     agreement: str = ""
@@ -84,6 +86,7 @@ class Choices(Record, frozen=True):
     tried: int = 0
     explored: int = 0
     limit: str = ""
+    reason: str = ""
 
     @property
     def differ(self) -> bool:

@@ -45,11 +45,16 @@ _ESTIMATE = "estimate the value from traces with uniform choices instead"
 
 
 class UndecidedError(Exception):
-    """The states of the model do not answer a property; the message contains the reason. `growing` are the variables
-    because of which there are so many states that a limit was reached."""
+    """The states of the model do not answer a property. The message contains the reason and what to do.
 
-    def __init__(self, message: str, growing: tuple[GrowingVariable, ...] = ()) -> None:
-        super().__init__(message)
+    Attributes:
+        reason: why there is no value, as a phrase for users.
+        growing: the variables because of which there are so many states that a limit was reached.
+    """
+
+    def __init__(self, reason: str, remedy: str, growing: tuple[GrowingVariable, ...] = ()) -> None:
+        super().__init__(f"{reason}; {remedy}")
+        self.reason = reason
         self.growing = growing
 
 
@@ -93,15 +98,15 @@ def exact_values(
         return values_from(explore(checker, property_, limits, watch), limits)
     except LimitError as error:
         variables = () if error.search is None else _growing(checker, error.search)
-        raise UndecidedError(_at_limit(error), variables) from None
+        raise UndecidedError(str(error), _remedy(error), variables) from None
     except SearchInterruptedError as interrupt:
         variables = _growing(checker, interrupt.search)
         raise ExplorationInterruptedError(interrupt.search.count, variables) from None
 
 
-def _at_limit(error: LimitError) -> str:
-    """Why the exploration has ended, and what to do."""
-    return f"{error}; {'raise this limit, or ' if error.limit else ''}{_ESTIMATE}"
+def _remedy(error: LimitError) -> str:
+    """What to do if a limit has ended the exploration."""
+    return f"{'raise this limit, or ' if error.limit else ''}{_ESTIMATE}"
 
 
 def _growing(checker: ModelChecker, search: StateSearch) -> tuple[GrowingVariable, ...]:
@@ -128,13 +133,13 @@ def _conditional(
         try:
             space = explore(own, plain, limits, watch)
         except LimitError as error:
-            raise UndecidedError(_at_limit(error)) from None
+            raise UndecidedError(str(error), _remedy(error)) from None
         exact = of_condition(values_from(space, limits), property_.question, space)
     else:
-        raise UndecidedError(f"a probability given assumptions cannot be computed from all states; {_ESTIMATE}")
+        raise UndecidedError("a probability given assumptions cannot be computed from all states", _ESTIMATE)
     if exact is None or not (only_uniform or exact.agrees):
         raise UndecidedError(
-            f"a value under a condition is computed from all states only if all schedulers have the same; {_ESTIMATE}"
+            "a value under a condition is computed from all states only if all schedulers have the same", _ESTIMATE
         )
     return exact
 
@@ -185,9 +190,9 @@ def values_from(space: Space, limits: StateLimits) -> Exact:
     try:
         values = values_of(space, work=limits.work)
     except OpenDeadlineError as error:
-        raise UndecidedError(f"{error}; {LONGER_TIME}") from None
+        raise UndecidedError(str(error), LONGER_TIME) from None
     except NoValueError as error:
-        raise UndecidedError(f"{error}; {_ESTIMATE}") from None
+        raise UndecidedError(str(error), _ESTIMATE) from None
     uniform = values.uniform
     if uniform is None and is_close(values.minimum, values.maximum):
         uniform = Bounds(values.minimum.lower, values.maximum.upper)

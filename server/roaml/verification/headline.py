@@ -213,7 +213,7 @@ def estimate_text(answer: Answer) -> str:
         value = UNDECIDED if is_open else with_interval(answer.value, answer.bounds, is_probability=not is_reward)
         counts = f"{tally.traces:,} traces: {tally.successes:,} {good}, {answer.failures:,} {bad}"
         if tally.undecided:
-            counts += f", {tally.undecided:,} undecided"
+            counts += f", {_undecided(answer)}"
         return f"{value} from {counts}"
     if _is_open(answer):
         return f"{UNDECIDED}: {_undecided(answer)}"

@@ -81,6 +81,14 @@ class Attempt(Record, frozen=True):
     limit: str = ""
 
 
+NOTHING_LEFT = Attempt(
+    None,
+    reason=f"the searches for other properties have reached the limit --{MAX_TRANSITIONS_LIMIT}",
+    limit=MAX_TRANSITIONS_LIMIT,
+)
+"""The result for a property for which the budget of all properties has nothing left."""
+
+
 def attempt(
     checker: ModelChecker,
     property_: CompiledProperty,
@@ -115,12 +123,11 @@ def attempt(
             search = space.search
             exact, reason = values_from(space, most), ""
         except LimitError as error:
-            search, reason = error.search, str(error)
-            is_cut = error.limit == MAX_TRANSITIONS_LIMIT
+            search, is_cut = error.search, error.limit == MAX_TRANSITIONS_LIMIT
             if error.states > explored:
-                explored, limit = error.states, error.limit
+                reason, explored, limit = str(error), error.states, error.limit
         except UndecidedError as error:
-            reason, is_cut, explored, limit = str(error), False, 0, ""  # there were not too many states
+            reason, is_cut, explored, limit = error.reason, False, 0, ""  # there were not too many states
         except FaultError:
             return Attempt(None, cost)
         if search is not None:

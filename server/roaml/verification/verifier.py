@@ -52,6 +52,7 @@ from roaml.verification.schedulers import (
 from roaml.verification.small import (
     EXAMPLE_TRACES,
     MAX_EXAMPLE_STEPS,
+    NOTHING_LEFT,
     SHARED_LIMITS,
     UNIFORM_LIMITS,
     Attempt,
@@ -247,7 +248,7 @@ class Verifier(Record, frozen=True):
         explorations: the exact values that several properties share.
         budget: the limits of all searches for exact values that are not requested.
         reaction_budget: those of all searches under the assumption that machines react at once.
-        explored: what a search was about -> the number of states at which it stopped, and the limit.
+        failed: what a search was about -> the search, which gave no values.
     """
 
     target: VerificationTarget
@@ -261,7 +262,7 @@ class Verifier(Record, frozen=True):
     explorations: Explorations = field(default_factory=Explorations)
     budget: Budget = field(default_factory=Budget)
     reaction_budget: Budget = field(default_factory=lambda: Budget(REACTION_LIMITS))
-    explored: dict[object, tuple[int, str]] = field(default_factory=dict)
+    failed: dict[object, Attempt] = field(default_factory=dict)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -420,6 +421,7 @@ class Verifier(Record, frozen=True):
             subjects = {self._subject(other) for other in self.checker.compiled_properties}
             limits = self.budget.share(len(subjects), setup_cost(self.checker))
             if limits is None:
+                self.failed[self._subject(property_)] = NOTHING_LEFT
                 return None
             attempted = self._attempted(property_, limits, pulse)
             if attempted.is_cut and cut is not None:
@@ -479,8 +481,8 @@ class Verifier(Record, frozen=True):
 
         attempted = attempt(self.checker, property_, limits, watch, is_repeated=is_repeated)
         self.budget.spend(attempted.transitions)
-        if attempted.explored:
-            self.explored[self._subject(property_)] = attempted.explored, attempted.limit
+        if attempted.exact is None:
+            self.failed[self._subject(property_)] = attempted
         return attempted
 
     def _shown(self, small: Exact | None) -> Exact | None:
@@ -517,8 +519,8 @@ class Verifier(Record, frozen=True):
             compared = small if self.exact_if_small else self._beside(property_, answer)
             if compared is None:
                 choices = self.checker.choices(property_, answer, pool, pulse)
-                explored, limit = self.explored.get(self._subject(property_), (0, ""))
-                choices = replace(choices, explored=explored, limit=limit)
+                if failed := self.failed.get(self._subject(property_)):
+                    choices = replace(choices, explored=failed.explored, limit=failed.limit, reason=failed.reason)
             else:
                 choices = choices_of(compared, NO_NONDETERMINISM if self.checker.is_deterministic else "")
         result = self._with_verdicts(property_, answer, choices, time.monotonic() - began, self._shown(small))
