@@ -193,3 +193,29 @@ def test_an_interrupted_exploration_on_the_command_line(
     (row,) = json.loads(capsys.readouterr().out)["results"]
     assert row["interrupted"]
     assert [grown["greatest"] for grown in row["growing"]] == [row["explored"] - 1]
+
+
+def test_a_variable_that_grows_through_cut_traces_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """`n` makes all states different; without it, the repeated states would decide the traces."""
+    monkeypatch.chdir(tmp_path)
+    moves = [edge("s", way("t", n=op("+", "n", 1))), edge("t", way("s", 0.5), way("t", 0.5))]
+    goals = {"p": probability(op("F", op("=", "x", 1)))}
+
+    def report(*options: str, edges: list[Json]) -> str:
+        parts = [automaton("a", "s t", edges)]
+        written = document(*parts, variables=[variable("x"), variable("n")], properties=goals)
+        (tmp_path / "model.jani").write_text(json.dumps(written))
+        run(["verify", "model.jani", "--method", "fixed", "--max-traces", "20", *options])
+        return capsys.readouterr().out
+
+    out = report("--max-steps", "4000", edges=moves)
+    assert re.match(
+        r"p: undecided: all 20 traces were cut after 4,000 steps: `n` \(0 to [\d,]+\) grows, so no state repeats, "
+        r"and more steps seldom help; give variables a maximum in the model, ",
+        out,
+    )
+    assert "raise max-steps" in report("--max-steps", "400", edges=moves), "too short to know"
+    moves[0] = edge("s", way("t", n=op("-", 1, "n")))
+    assert "cut" not in report("--max-steps", "4000", edges=moves), "states repeat"

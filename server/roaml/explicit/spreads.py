@@ -44,7 +44,7 @@ def growing(checker: ModelChecker, search: Any) -> list[Spread]:
     """The variables with more and more values, from a sample of the states: those with most values first."""
     states = _sampled(search)
     keys = [search.key(state) for state in states]
-    spreads = (_spread(checker, instance, storage, keys) for instance, storage in _variables(checker))
+    spreads = (_spread(checker, instance, storage, keys) for instance, storage in variables_of(checker))
     return sorted((spread for spread in spreads if spread is not None), key=lambda spread: -spread.values)
 
 
@@ -57,7 +57,8 @@ def _sampled(search: Any) -> range:
     return range((search.count - 1) % step, search.count, step)
 
 
-def _variables(checker: ModelChecker) -> Iterator[tuple[int | None, Storage]]:
+def variables_of(checker: ModelChecker) -> Iterator[tuple[int | None, Storage]]:
+    """The variables of the model (`None`) and of its instances, by their numbers."""
     layout = checker.legend.layout
     yield from ((None, storage) for storage in layout.shared)
     for number, instance in enumerate(layout.instances):

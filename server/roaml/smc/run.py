@@ -106,6 +106,7 @@ class Answer(Record, frozen=True):
         is_complete: whether the interval is as narrow as requested, or the test has decided.
         is_anytime: whether the interval is valid at any stopping time; otherwise it is valid for the stopping rule of
             the method.
+        growth: what grows through cut traces, and what to do, as a phrase for users; "" if nothing is known to grow.
     """
 
     question: Question
@@ -115,6 +116,7 @@ class Answer(Record, frozen=True):
     bounds: Bounds
     is_complete: bool
     is_anytime: bool = False
+    growth: str = ""
 
     @property
     def interval(self) -> str:

@@ -3,18 +3,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
 
-from roaml.explicit.spreads import Spread, growing
-from roaml.record import Record
+from roaml.explicit.spreads import Spread, growing, variables_of
+from roaml.record import Record, replace
 from roaml.scxml.names import CLOCK
 from roaml.smc.model import ModelChecker
+from roaml.smc.names import Storage
+from roaml.smc.registers import INT
 from roaml.views.ends import is_event, is_translation
 from roaml.views.variables import variable_phrases
 
+if TYPE_CHECKING:
+    from roaml.verification.results import Traces
+
 MAX_VARIABLES = 3
 """The maximum number of variables that are named."""
+MIN_STEPS = 1_000
+"""The minimum number of steps of a trace that shows that a variable grows."""
+_PARTS = 4
+"""The number of parts of such a trace; a variable that grows has a greater value at the end of each."""
 
 
 class GrowingVariable(Record, frozen=True):
@@ -60,6 +70,46 @@ def growing_variables(checker: ModelChecker, search: Any) -> tuple[GrowingVariab
             variable for variable in own if not any(other.is_time for other in named)
         ]
     return (*own[:MAX_VARIABLES], *(variable for variable in named if variable.is_time))
+
+
+def growth_in_trace(traces: Traces, trace: int) -> str:
+    """What grows through a trace that was cut, and what to do, as a phrase for users; "" if nothing does, or if time
+    passes in it. While a variable grows, no state repeats, so the repetition of states cannot decide the trace."""
+    steps = traces.options.max_steps
+    is_system = is_translation(traces.checker.model)
+    storages = [
+        (instance, storage)
+        for instance, storage in variables_of(traces.checker)
+        if storage.kind == INT and not storage.shape and not (is_system and instance is None)
+    ]
+    if steps < MIN_STEPS or not storages:
+        return ""
+    rows = zip(*_values(traces, trace, [storage for _, storage in storages]), strict=True)
+    grown = [
+        _named(traces.checker, Spread(instance, s.name, steps, row[0], row[-1], s.bounds[1] is not None))
+        for (instance, s), row in zip(storages, rows, strict=True)
+        if all(earlier < later for earlier, later in pairwise(row))
+    ]
+    if not grown or any(variable.is_time for variable in grown):
+        return ""
+    named = sorted(grown, key=lambda variable: variable.least - variable.greatest)[:MAX_VARIABLES]
+    verb = "grows" if len(named) == 1 else "grow"
+    text = ", ".join(variable.text for variable in named)
+    return f"{text} {verb}, so no state repeats, and more steps seldom help; {advice(named)}"
+
+
+def _values(traces: Traces, trace: int, storages: Sequence[Storage]) -> Iterator[list[int]]:
+    """The values of integers at the start of a trace and at the end of each of its parts."""
+    from roaml.smc.record import Recording  # noqa: PLC0415 - few traces are cut
+
+    recorder = traces.recorder()
+    recorder.initial((), trace)
+    yield [recorder.integer(storage) for storage in storages]
+    for part in range(1, _PARTS + 1):
+        options = replace(traces.options, max_steps=traces.options.max_steps * part // _PARTS)
+        recorder = replace(traces, options=options).recorder()
+        recorder.rush(Recording(trace))
+        yield [recorder.integer(storage) for storage in storages]
 
 
 def advice(variables: Sequence[GrowingVariable]) -> str:

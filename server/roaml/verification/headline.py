@@ -251,7 +251,8 @@ def _undecided(answer: Answer) -> str:
     parts = []
     if cut:
         steps = f"{answer.options.max_steps:,} steps"
-        parts.append(f"{_these(cut, answer)} cut after {steps}: raise max-steps, or explore all states")
+        remedy = answer.growth or "raise max-steps, or explore all states"
+        parts.append(f"{_these(cut, answer)} cut after {steps}: {remedy}")
     if open_:
         these = _these(open_, answer)
         parts.append(f"{these} too short, because the time ended before a deadline: {LONGER_TIME}")

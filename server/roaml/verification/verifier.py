@@ -719,6 +719,12 @@ class Verifier(Record, frozen=True):
     ) -> Result:
         got_stuck = stuck.stuck_in(self.target, self.checker, property_, answer)
         traces = Traces(self.target, self.checker, property_, self.options)
+        if not is_interrupted and (cut := answer.tally.ends.get(End.CUT)) is not None:
+            from roaml.verification.growth import growth_in_trace  # noqa: PLC0415 - few traces are cut
+
+            answer = replace(
+                answer, growth=growth_in_trace(replace(traces, options=answer.options), cut.shortest.trace)
+            )
         estimated = Estimated(answer, choices, got_stuck, traces, is_interrupted)
         verdicts = _verdicts(self.target, self.expected(property_), estimated, exact, self.uniform)
         outcome: Outcome = estimated
