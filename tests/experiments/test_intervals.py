@@ -166,6 +166,25 @@ def test_bounds_enclose_all_values_of_a_grid(loss: str, tmp_path: Path, capsys: 
     assert (least, greatest) == pytest.approx((min(values), max(values)), abs=1e-9)
 
 
+def test_an_interval_of_the_parameter_of_an_instance(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """It has the same bounds as one of the system. An unused parameter changes nothing."""
+    path = system(tmp_path)
+    loss = '<parameter name="loss" type="float64" value="0.1" min="0" max="1" />'
+    unused = loss.replace('"loss"', '"unused"')
+    (tmp_path / "main.xml").write_text(
+        MAIN.replace(loss, unused).replace('src="radio.ascxml"', 'src="radio.ascxml" name="near"'), encoding="utf-8"
+    )
+    radio = (tmp_path / "radio.ascxml").read_text(encoding="utf-8")
+    count = '<parameter name="count" type="int32" value="5" />'
+    radio = radio.replace("    <datamodel>", f"    {loss}\n    {count}\n    <datamodel>", 1).replace(
+        "sent &lt; 5", "sent &lt; count"
+    )
+    (tmp_path / "radio.ascxml").write_text(radio, encoding="utf-8")
+    assert bounds(capsys, path, "--set", "near.loss=[0.1,0.3]") == pytest.approx((0.03691, 0.27333), abs=1e-6)
+    assert run(["verify", path, "--set", "near.count=[2,5]"]) == 2
+    assert "not only probabilities depend on them" in capsys.readouterr().err
+
+
 def test_what_users_read(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = system(tmp_path)
     assert run(["verify", path, "--set", "loss=[0.1,0.3]", "--expect", "alarmed <= 0.5"]) == 0
@@ -195,6 +214,7 @@ def test_expectations_are_compared_with_the_worst_value(
     ("arguments", "reason"),
     [
         (["--set", "limit=[1,3]"], "not only probabilities depend on them"),
+        (["--set", "limit=[1,2]"], "not only probabilities depend on them"),
         (["--set", "loss=[0.3,0.1]"], "the smaller end first"),
         (["--set", "loss=[0.1]"], "is not an interval of `loss`"),
         (["--set", "loss=[0.1,0.3]", "--method", "adaptive"], "leave out the options for random traces"),

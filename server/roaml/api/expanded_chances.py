@@ -16,13 +16,13 @@ from roaml.expansion.channels import CHANNEL, LOSS
 from roaml.experiments.parametric import Chances
 from roaml.experiments.sweeps import Setting
 from roaml.project.analysis import Analysis
+from roaml.project.checking import own_severity
 from roaml.record import Record, replace
 from roaml.xml_syntax import Document, Element
 
 Place: TypeAlias = tuple[str, int, int]
 """The path under which an expanded text is analysed, how many expansions were made before the one of an edit, and the
 offset of the edit in the text before it: for the first expansion, in the file of the user."""
-_REAL_TYPES = ("float64", "float32")
 _PLACES = (0.41, 0.59)
 """Where the values of a parameter that are compared are between its least and its greatest value."""
 
@@ -56,9 +56,6 @@ def expanded_chances(analysis: Analysis, path: str, ranges: Mapping[str, tuple[f
     expanded = analysis.expanded(path)
     if expanded is None or expanded.expansion.drawn:  # the values of draws may depend on the parameters
         return None
-    types = {parameter.name.value: parameter.type for parameter in expanded.expansion.declared}
-    if not all(types.get(name) in _REAL_TYPES for name in ranges):
-        return None
     low, high = (
         {name: repr(least + (most - least) * place) for name, (least, most) in ranges.items()} for place in _PLACES
     )
@@ -83,7 +80,7 @@ def _texts(analysis: Analysis, path: str, setting: Setting) -> dict[Place, str] 
     if expanded is None:
         return None
     findings = (finding for of_file in expanded.expansion.findings.values() for finding in of_file)
-    if any(finding.severity not in (Severity.INFORMATION, Severity.HINT, Severity.WARNING) for finding in findings):
+    if any(own_severity(finding) is Severity.ERROR for finding in findings):
         return None
     return {
         (name, number, edit.span.start): edit.new_text

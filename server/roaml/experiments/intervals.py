@@ -88,8 +88,8 @@ def lifted_target(
     if len(intervals) > MAX_INTERVALS:
         raise IntervalError(f"{len(intervals)} parameters have intervals; at most {MAX_INTERVALS} are possible")
     names = ", ".join(f"`{interval.name}`" for interval in intervals)
-    middle = _setting(intervals, [0.5] * len(intervals), fixed)
-    if model.chances({i.name: (float(i.low), float(i.high)) for i in intervals}, middle) is None:
+    low = _setting(intervals, [0.0] * len(intervals), fixed)  # the middle may be no integer
+    if model.chances({i.name: (float(i.low), float(i.high)) for i in intervals}, low) is None:
         raise IntervalError(
             f"no bounds are known for intervals of {names}, because not only probabilities depend on them, or none "
             "does; `as2fm-lsp experiment` computes single values"

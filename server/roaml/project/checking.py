@@ -212,7 +212,7 @@ class RuleRunner:
             for subject in subjects
             if subject is not None
             for finding in sorted(self._findings(subject), key=lambda finding: finding.span)
-            if _own_severity(finding) is Severity.ERROR
+            if own_severity(finding) is Severity.ERROR
         ]
         return tuple(self._published(errors))
 
@@ -255,25 +255,25 @@ class RuleRunner:
         """
         path, system = subject.path, subject.system_path
         own = expanded.expansion.findings.get(path, ())
-        broken = [finding.span for finding in own if _own_severity(finding) is Severity.ERROR]
+        broken = [finding.span for finding in own if own_severity(finding) is Severity.ERROR]
         has_invalid_draw = any(finding.code in _INVALID_DRAWS for finding in own)
         of_variants = self._mapped_findings(expanded, path, system)
         if path in expanded.expansion.variants and any(
-            _own_severity(f) < Severity.ERROR for fs in of_variants for f in fs
+            own_severity(f) < Severity.ERROR for fs in of_variants for f in fs
         ):
             analysis = self.analysis
             varied = analysis.expanded(system, varied=True) if system else analysis.expanded_file(path, varied=True)
             assert varied is not None
             others = self._mapped_findings(varied, path, system)
             of_variants = [
-                [f for f in findings if _own_severity(f) is Severity.ERROR or _stated(f) in always]
+                [f for f in findings if own_severity(f) is Severity.ERROR or _stated(f) in always]
                 for findings, always in zip(of_variants, ({_stated(f) for f in fs} for fs in others), strict=True)
             ]
         findings = [
             finding
             for finding in itertools.chain.from_iterable(of_variants)
             if not any(span.start < finding.span.end and finding.span.start < span.end for span in broken)
-            and (_own_severity(finding) is Severity.ERROR or not has_invalid_draw)
+            and (own_severity(finding) is Severity.ERROR or not has_invalid_draw)
         ]
         known = {(finding.code, finding.span) for finding in findings}
         unseen = (f for f in self._replaced_findings(expanded, subject) if (f.code, f.span) not in known)
@@ -320,7 +320,7 @@ class RuleRunner:
 
     def _severity(self, finding: Finding) -> Severity:
         severity = self.settings.severities.get(finding.code)
-        return _own_severity(finding) if severity is None else severity
+        return own_severity(finding) if severity is None else severity
 
     def _published(self, findings: Iterable[tuple[SourceFile, Finding, Severity]]) -> Iterator[Diagnostic]:
         """Findings in texts, with their severities, as diagnostics."""
@@ -378,7 +378,7 @@ def _in_all_copies(text: ExpandedText, findings: tuple[Finding, ...]) -> tuple[F
     for finding, place in zip(findings, places, strict=True):
         if (copies := text.places(finding.span)) == 1:
             kept[finding] = finding
-        elif _own_severity(finding) is Severity.ERROR or count[place] >= copies:
+        elif own_severity(finding) is Severity.ERROR or count[place] >= copies:
             kept.setdefault(place, finding)
     return tuple(kept.values())
 
@@ -447,7 +447,8 @@ def _hides(comment: Suppression, finding: Finding) -> bool:
     return comment.hides(finding) and not (is_about_comments and comment.codes is None)
 
 
-def _own_severity(finding: Finding) -> Severity:
+def own_severity(finding: Finding) -> Severity:
+    """The severity of a finding if no setting changes that of its rule."""
     if finding.severity is not None:
         return finding.severity
     return BY_CODE[finding.code].severity if finding.code in BY_CODE else Severity.ERROR
