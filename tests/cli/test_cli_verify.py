@@ -914,6 +914,34 @@ def test_a_property_in_xml_is_shown_as_a_sentence(command: Command, robot: Path,
         assert row["comment"] == second.strip()
 
 
+def test_the_sentence_of_a_property_in_jani_names_topics_as_ros_does(command: Command, tmp_path: Path) -> None:
+    node = """<ascxml name="Robot" version="1.0" initial="s">
+  <ros_topic_publisher name="out" topic="arrived" type="std_msgs/Int16" />
+  <ros_topic_subscriber name="in" topic="arrived" type="std_msgs/Int16" />
+  <ros_time_rate name="t" rate_hz="1" />
+  <state id="s">
+    <ros_rate_callback name="t" target="s">
+      <ros_topic_publish name="out"><field name="data" expr="1" /></ros_topic_publish>
+    </ros_rate_callback>
+    <ros_topic_callback name="in" target="s" />
+  </state>
+</ascxml>
+"""
+    system = """<roaml>
+  <parameters><max_time value="2" unit="s" /></parameters>
+  <node_models><input type="node-ascxml" src="robot.ascxml" namespace="r0/arm" /></node_models>
+  <properties><input type="jani" src="p.jani" /></properties>
+</roaml>
+"""
+    message = "topic_r0__arm__arrived_msg"
+    goal = op("F", op("∧", f"{message}.valid", op("=", f"{message}__ros_fields__data", 1)))
+    properties = json.dumps({"properties": [{"name": "p", "expression": probability(goal)}]})
+    for name, text in (("main.xml", system), ("robot.ascxml", node), ("p.jani", properties)):
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    out = command("verify", "main.xml").out
+    assert "  `/r0/arm/arrived.valid ∧ /r0/arm/arrived.data = 1` holds at some time.\n" in out
+
+
 def test_the_comment_of_a_property_in_jani_is_its_sentence(command: Command, robot: Path) -> None:
     path = robot / "properties.jani"
     written = json.loads(path.read_text(encoding="utf-8"))

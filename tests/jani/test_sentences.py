@@ -4,21 +4,23 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 
 import pytest
 from smc_models import Json, op, probability
 
 from roaml.jani.property_text import read_property_text
 from roaml.jani.reader import read_properties
+from roaml.jani.semantics import Value
 from roaml.jani.sentences import MAX_LENGTH, sentence
 from roaml.json_syntax import parse
 
 
-def said(expression: object) -> str:
+def said(expression: object, constants: Mapping[str, Value] | None = None) -> str:
     value, _ = parse(json.dumps({"properties": [{"name": "p", "expression": expression}]}))
     (property_,), findings = read_properties(value)
     assert not findings
-    return sentence(property_.expression)
+    return sentence(property_.expression, constants)
 
 
 @pytest.mark.parametrize(
@@ -49,6 +51,24 @@ def said(expression: object) -> str:
 )
 def test_sentences(text: str, expected: str) -> None:
     assert said(read_property_text(text).expression) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("R{price * fuel}=? [ F x = limit ]", "until `x = limit` holds (price = 0.25, limit = 3)."),
+        (
+            "R{price}=? [ C<=limit ]",
+            " total of `price` in the first limit steps (price = 0.25, limit = 3).",
+        ),
+        ("P=? [ F (fast & x = list) ]", " holds at some time (fast = true)."),
+        ("P=? [ F (x > limit | y > limit) ]", "`x > limit ∨ y > limit` holds at some time (limit = 3)."),
+        ("P=? [ F done ]", "`done` holds at some time."),
+    ],
+)
+def test_sentences_give_the_values_of_the_constants_that_they_name(text: str, expected: str) -> None:
+    values: dict[str, Value] = {"limit": 3, "price": 0.25, "fast": True, "other": 1}
+    assert said(read_property_text(text).expression, values).endswith(expected)
 
 
 def test_deadlocks() -> None:

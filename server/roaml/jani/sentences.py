@@ -5,6 +5,8 @@ because results name the one that they state."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from roaml.jani.expressions import Binary, Boolean, Expression, Integer, Name, Real, Unary
 from roaml.jani.operators import BinaryOperator, UnaryOperator
 from roaml.jani.properties import (
@@ -22,7 +24,9 @@ from roaml.jani.properties import (
     UnaryFormula,
     UnaryPath,
     UnaryPathOperator,
+    identifiers,
 )
+from roaml.jani.semantics import Value
 
 MAX_LENGTH = 160
 """The maximum number of characters of a sentence. Longer ones are harder to read than formulas."""
@@ -38,14 +42,27 @@ class _UnsaidError(Exception):
     """A formula has no sentence."""
 
 
-def sentence(formula: Formula) -> str:
+def sentence(formula: Formula, constants: Mapping[str, Value] | None = None) -> str:
     """What a property requires of a trace, or which value it asks for, as a sentence; "" if there is none, because a
-    part has no simple words or the sentence would be long."""
+    part has no simple words or the sentence would be long.
+
+    Args:
+        constants: the values of constants, which follow the sentence if it names them, such as `(limit = 3)`.
+    """
     try:
         text = _asked(formula)
     except _UnsaidError:
         return ""
-    return f"{text[:1].upper()}{text[1:]}." if len(text) < MAX_LENGTH else ""
+    if len(text) >= MAX_LENGTH:
+        return ""
+    known = constants or {}
+    named = dict.fromkeys(name for name, _ in identifiers(formula) if isinstance(known.get(name), (bool, int, float)))
+    values = ", ".join(f"{name} = {_value(known[name])}" for name in named)
+    return f"{text[:1].upper()}{text[1:]}{f' ({values})' if values else ''}."
+
+
+def _value(value: Value) -> str:
+    return str(value).lower() if isinstance(value, bool) else f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def _asked(formula: Formula) -> str:

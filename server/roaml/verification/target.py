@@ -7,15 +7,20 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
 from roaml.comparison import Comparison
+from roaml.jani.constants import constant_values
+from roaml.jani.expressions import Name
 from roaml.jani.model import Model
 from roaml.jani.nesting import is_nested
-from roaml.jani.node import Origin
+from roaml.jani.node import Node, Origin
 from roaml.jani.properties import Property, walk
+from roaml.jani.rewrite import rewrite
 from roaml.jani.sentences import sentence
 from roaml.record import Record, field, replace
-from roaml.scxml.names import CLOCK_VARIABLES, assumptions_of
+from roaml.scxml.names import CLOCK_VARIABLES, FLAG, assumptions_of
 from roaml.text import SourceFile
 from roaml.verification.expectations import Expectation, expectation_of
+from roaml.views.ends import is_translation
+from roaml.views.event_words import message_phrases
 
 if TYPE_CHECKING:
     from roaml.expansion.draws import DrawnNumber
@@ -105,17 +110,36 @@ def target_of(
 
 def with_sentences(model: Model) -> Model:
     """The model with sentences as the comments of the properties that have none."""
-    return replace(model, properties=tuple(p if p.comment else _commented(p) for p in model.properties))
+    says = _Sentences(model)
+    commented = (p if p.comment else replace(p, comment=says(p) or None) for p in model.properties)
+    return replace(model, properties=tuple(commented))
 
 
 def own_words(target: VerificationTarget, name: str) -> str:
     """What the files say about a property in words; "" if its sentence is computed from its formula."""
-    comments = (p.comment for p in target.properties if p.name == name and p.comment != sentence(p.expression))
+    says = _Sentences(target.model)
+    comments = (p.comment for p in target.properties if p.name == name and p.comment != says(p))
     return next(comments, None) or ""
 
 
-def _commented(property_: Property) -> Property:
-    return replace(property_, comment=sentence(property_.expression) or None)
+class _Sentences:
+    """Sentences for the properties of a model, with the names of topics as in ROS and the values of constants."""
+
+    def __init__(self, model: Model) -> None:
+        self._constants = constant_values(model)
+        self._clients = frozenset(a.name for a in model.automata) if is_translation(model) else None
+
+    def __call__(self, property_: Property) -> str:
+        expression = rewrite(property_.expression, self._in_words)
+        return sentence(expression, self._constants)
+
+    def _in_words(self, node: Node) -> Node:
+        if self._clients is None or not isinstance(node, Name):
+            return node
+        (phrase,) = message_phrases((node.identifier,), self._clients)
+        if not phrase.startswith("/"):  # a clause, such as `a request to /adder`, is no operand
+            return node
+        return replace(node, identifier=f"{phrase}.{FLAG}" if node.identifier.endswith(f".{FLAG}") else phrase)
 
 
 def asking(target: VerificationTarget, names: Iterable[str]) -> VerificationTarget:
