@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from roaml.explicit.spreads import Spread, growing, variables_of
-from roaml.record import Record, replace
+from roaml.record import Record
 from roaml.scxml.names import CLOCK
 from roaml.smc.model import ModelChecker
 from roaml.smc.names import Storage
@@ -17,7 +17,7 @@ from roaml.views.ends import is_event, is_translation
 from roaml.views.variables import variable_phrases
 
 if TYPE_CHECKING:
-    from roaml.verification.results import Traces
+    from roaml.smc.record import Recorder
 
 MAX_VARIABLES = 3
 """The maximum number of variables that are named."""
@@ -72,21 +72,25 @@ def growing_variables(checker: ModelChecker, search: Any) -> tuple[GrowingVariab
     return (*own[:MAX_VARIABLES], *(variable for variable in named if variable.is_time))
 
 
-def growth_in_trace(traces: Traces, trace: int) -> str:
+def growth_in_trace(checker: ModelChecker, recorder_of: Callable[[int], Recorder], steps: int, trace: int) -> str:
     """What grows through a trace that was cut, and what to do, as a phrase for users; "" if nothing does, or if time
-    passes in it. While a variable grows, no state repeats, so the repetition of states cannot decide the trace."""
-    steps = traces.options.max_steps
-    is_system = is_translation(traces.checker.model)
+    passes in it. While a variable grows, no state repeats, so the repetition of states cannot decide the trace.
+
+    Args:
+        recorder_of: a maximum number of steps -> a recorder with this limit.
+        steps: the number of steps after which the trace was cut.
+    """
+    is_system = is_translation(checker.model)
     storages = [
         (instance, storage)
-        for instance, storage in variables_of(traces.checker)
+        for instance, storage in variables_of(checker)
         if storage.kind == INT and not storage.shape and not (is_system and instance is None)
     ]
     if steps < MIN_STEPS or not storages:
         return ""
-    rows = zip(*_values(traces, trace, [storage for _, storage in storages]), strict=True)
+    rows = zip(*_values(recorder_of, steps, trace, [storage for _, storage in storages]), strict=True)
     grown = [
-        _named(traces.checker, Spread(instance, s.name, steps, row[0], row[-1], s.bounds[1] is not None))
+        _named(checker, Spread(instance, s.name, steps, row[0], row[-1], s.bounds[1] is not None))
         for (instance, s), row in zip(storages, rows, strict=True)
         if all(earlier < later for earlier, later in pairwise(row))
     ]
@@ -98,16 +102,17 @@ def growth_in_trace(traces: Traces, trace: int) -> str:
     return f"{text} {verb}, so no state repeats, and more steps seldom help; {advice(named)}"
 
 
-def _values(traces: Traces, trace: int, storages: Sequence[Storage]) -> Iterator[list[int]]:
+def _values(
+    recorder_of: Callable[[int], Recorder], steps: int, trace: int, storages: Sequence[Storage]
+) -> Iterator[list[int]]:
     """The values of integers at the start of a trace and at the end of each of its parts."""
     from roaml.smc.record import Recording  # noqa: PLC0415 - few traces are cut
 
-    recorder = traces.recorder()
+    recorder = recorder_of(steps)
     recorder.initial((), trace)
     yield [recorder.integer(storage) for storage in storages]
     for part in range(1, _PARTS + 1):
-        options = replace(traces.options, max_steps=traces.options.max_steps * part // _PARTS)
-        recorder = replace(traces, options=options).recorder()
+        recorder = recorder_of(steps * part // _PARTS)
         recorder.rush(Recording(trace))
         yield [recorder.integer(storage) for storage in storages]
 

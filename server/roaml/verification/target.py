@@ -13,14 +13,12 @@ from roaml.jani.model import Model
 from roaml.jani.nesting import is_nested
 from roaml.jani.node import Node, Origin
 from roaml.jani.properties import Property, walk
-from roaml.jani.rewrite import rewrite
 from roaml.jani.sentences import sentence
 from roaml.record import Record, field, replace
 from roaml.scxml.names import CLOCK_VARIABLES, FLAG, assumptions_of
 from roaml.text import SourceFile
 from roaml.verification.expectations import Expectation, expectation_of
 from roaml.views.ends import is_translation
-from roaml.views.event_words import message_phrases
 
 if TYPE_CHECKING:
     from roaml.expansion.draws import DrawnNumber
@@ -130,12 +128,17 @@ class _Sentences:
         self._clients = frozenset(a.name for a in model.automata) if is_translation(model) else None
 
     def __call__(self, property_: Property) -> str:
-        expression = rewrite(property_.expression, self._in_words)
-        return sentence(expression, self._constants)
+        if self._clients is None:
+            return sentence(property_.expression, self._constants)
+        from roaml.jani.rewrite import rewrite  # noqa: PLC0415 - models that are no systems have no topics
+
+        return sentence(rewrite(property_.expression, self._in_words), self._constants)
 
     def _in_words(self, node: Node) -> Node:
         if self._clients is None or not isinstance(node, Name):
             return node
+        from roaml.views.event_words import message_phrases  # noqa: PLC0415 - as above
+
         (phrase,) = message_phrases((node.identifier,), self._clients)
         if not phrase.startswith("/"):  # a clause, such as `a request to /adder`, is no operand
             return node

@@ -68,6 +68,7 @@ from roaml.views.actors import actors
 from roaml.views.ends import marks, observer_outputs
 
 if TYPE_CHECKING:
+    from roaml.smc.record import Recorder
     from roaml.verification.searches import Searches
 
 PULSE_INTERVAL_S = 0.1
@@ -248,7 +249,8 @@ class Verifier(Record, frozen=True):
         explorations: the exact values that several properties share.
         budget: the limits of all searches for exact values that are not requested.
         reaction_budget: those of all searches under the assumption that machines react at once.
-        failed: what a search was about -> the search, which gave no values.
+        failed: what a search was about -> if it gave no values, the number of states at which it stopped, the limit and
+            the reason (`Choices`).
     """
 
     target: VerificationTarget
@@ -262,7 +264,7 @@ class Verifier(Record, frozen=True):
     explorations: Explorations = field(default_factory=Explorations)
     budget: Budget = field(default_factory=Budget)
     reaction_budget: Budget = field(default_factory=lambda: Budget(REACTION_LIMITS))
-    failed: dict[object, Attempt] = field(default_factory=dict)
+    failed: dict[object, tuple[int, str, str]] = field(default_factory=dict)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -421,7 +423,7 @@ class Verifier(Record, frozen=True):
             subjects = {self._subject(other) for other in self.checker.compiled_properties}
             limits = self.budget.share(len(subjects), setup_cost(self.checker))
             if limits is None:
-                self.failed[self._subject(property_)] = NOTHING_LEFT
+                self._note_failed(property_, NOTHING_LEFT)
                 return None
             attempted = self._attempted(property_, limits, pulse)
             if attempted.is_cut and cut is not None:
@@ -482,8 +484,11 @@ class Verifier(Record, frozen=True):
         attempted = attempt(self.checker, property_, limits, watch, is_repeated=is_repeated)
         self.budget.spend(attempted.transitions)
         if attempted.exact is None:
-            self.failed[self._subject(property_)] = attempted
+            self._note_failed(property_, attempted)
         return attempted
+
+    def _note_failed(self, property_: CompiledProperty, search: Attempt) -> None:
+        self.failed[self._subject(property_)] = search.explored, search.limit, search.reason
 
     def _shown(self, small: Exact | None) -> Exact | None:
         """The exact values that the result contains. If traces can get stuck, the result contains them only as the
@@ -519,8 +524,8 @@ class Verifier(Record, frozen=True):
             compared = small if self.exact_if_small else self._beside(property_, answer)
             if compared is None:
                 choices = self.checker.choices(property_, answer, pool, pulse)
-                if failed := self.failed.get(self._subject(property_)):
-                    choices = replace(choices, explored=failed.explored, limit=failed.limit, reason=failed.reason)
+                explored, limit, reason = self.failed.get(self._subject(property_), (0, "", ""))
+                choices = replace(choices, explored=explored, limit=limit, reason=reason)
             else:
                 choices = choices_of(compared, NO_NONDETERMINISM if self.checker.is_deterministic else "")
         result = self._with_verdicts(property_, answer, choices, time.monotonic() - began, self._shown(small))
@@ -722,9 +727,13 @@ class Verifier(Record, frozen=True):
         if not is_interrupted and (cut := answer.tally.ends.get(End.CUT)) is not None:
             from roaml.verification.growth import growth_in_trace  # noqa: PLC0415 - few traces are cut
 
-            answer = replace(
-                answer, growth=growth_in_trace(replace(traces, options=answer.options), cut.shortest.trace)
-            )
+            options = answer.options
+
+            def recorder_of(steps: int) -> Recorder:
+                return replace(traces, options=replace(options, max_steps=steps)).recorder()
+
+            growth = growth_in_trace(self.checker, recorder_of, options.max_steps, cut.shortest.trace)
+            answer = replace(answer, growth=growth)
         estimated = Estimated(answer, choices, got_stuck, traces, is_interrupted)
         verdicts = _verdicts(self.target, self.expected(property_), estimated, exact, self.uniform)
         outcome: Outcome = estimated
