@@ -220,7 +220,7 @@ class RuleRunner:
         """The codes of the warnings of the rules about a system."""
         subjects = (self.analysis.subject(path, system, self._inspection) for path in self.analysis.files_of(system))
         found = (finding for subject in subjects if subject is not None for finding in self._findings(subject))
-        return {finding.code for finding in found if _own_severity(finding) >= Severity.WARNING}
+        return {finding.code for finding in found if own_severity(finding) >= Severity.WARNING}
 
     def findings(self, path: str, system: str | None) -> tuple[Finding, ...]:
         """The findings of the rules in the file `path` as a part of `system`. If `system` is `None`, the file is not in
