@@ -312,7 +312,12 @@ def counter(folder: Path, limit: int, value: str) -> list[Diagnostic]:
 
 
 @pytest.mark.parametrize(("value", "part"), [("weights[next]", "next"), ("6 % (3 - next)", "3 - next")])
-def test_an_undefined_operation_that_a_run_executes_is_an_error(tmp_path: Path, value: str, part: str) -> None:
+@pytest.mark.parametrize("is_simulated", [True, False])
+def test_an_undefined_operation_that_a_run_executes_is_an_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, value: str, part: str, is_simulated: bool
+) -> None:
+    if is_simulated:
+        monkeypatch.setattr(exploration, "_searched", lambda model: None)
     assert counter(tmp_path, 3, value) == []
     [found] = counter(tmp_path, 8, value)
     text = (tmp_path / "counter.ascxml").read_text(encoding="utf-8")

@@ -17,13 +17,16 @@ from roaml.model.syntax import Expression
 from roaml.model.system import System
 from roaml.project.analysis import Analysis
 from roaml.project.exploration import MAX_BYTES, MAX_STATES, MAX_STEPS
+from roaml.record import Record
 from roaml.rules.expressions import division_by_zero, index_out_of_bounds
 from roaml.rules.properties import model_fault
 from roaml.rules.rule import Rule
 from roaml.scxml.names import CLOCK, CLOCK_VARIABLES
+from roaml.smc.batch import TraceProblem
 from roaml.smc.fault import FaultCode
+from roaml.smc.model import ModelChecker
 from roaml.smc.program import UNKNOWN
-from roaml.smc.record import SELECTED
+from roaml.smc.record import SELECTED, Recorder
 from roaml.smc.story import build_story
 from roaml.text import Location, Span
 from roaml.views.ends import is_event
@@ -34,6 +37,8 @@ from roaml.views.turns import Turn
 
 MAX_TURNS = 4
 """The maximum number of turns that are shown, the last ones before the operation."""
+MAX_SIMULATED = 150_000
+"""The maximum number of steps of a simulated run that is recorded again."""
 _RULES: dict[FaultCode, Rule] = {
     FaultCode.INDEX: index_out_of_bounds.RULE,
     FaultCode.EMPTY: index_out_of_bounds.RULE,
@@ -42,26 +47,55 @@ _RULES: dict[FaultCode, Rule] = {
 """The rules that report such an operation without an exploration. `model-fault` reports the others."""
 
 
-def finding_about_fault(analysis: Analysis, path: str, system: System, space: Space) -> Iterator[tuple[str, Finding]]:
-    """The path of a file, and the finding in it, for a search that an undefined operation has ended.
+class FaultyRun(Record, frozen=True):
+    """A run of a system that executes an undefined operation.
+
+    Attributes:
+        checker: the model of the system.
+        problem: the operation.
+        recorder: records the run again.
+        trace: the number of the run, for the recorder.
+    """
+
+    checker: ModelChecker
+    problem: TraceProblem
+    recorder: Recorder
+    trace: int
+
+
+def searched_run(space: Space) -> FaultyRun:
+    """The run to an undefined operation that has ended a search."""
+    space = _with_all_steps(space)
+    assert space.problem is not None
+    root, steps = path_to(space, space.fault_at)
+    path = Path(space.fault_at, tuple(steps), UNKNOWN, is_end=False, root=space.roots.index(root))
+    recorder = PathRecorder(space.checker, space.compiled_property, path)
+    return FaultyRun(space.checker, space.problem, recorder, SELECTED)
+
+
+def simulated_run(checker: ModelChecker, problem: TraceProblem) -> FaultyRun:
+    """A simulated run to an undefined operation."""
+    return FaultyRun(checker, problem, Recorder(checker, checker.stuck, 0, MAX_SIMULATED), problem.trace)
+
+
+def finding_about_fault(analysis: Analysis, path: str, system: System, run: FaultyRun) -> Iterator[tuple[str, Finding]]:
+    """The path of a file, and the finding in it, for a run that executes an undefined operation.
 
     Args:
         path: the path of the system file.
     """
-    space = _with_all_steps(space)
-    assert space.problem is not None
-    fault, code = space.checker.fault(space.problem), FaultCode(space.problem.code)
+    fault, code = run.checker.fault(run.problem), FaultCode(run.problem.code)
     if fault.origin is None:
         return
     span = fault.origin.span
     if fault.origin.path in analysis.machines_in(system):
         span = _place(analysis, path, fault.origin, code)
     rule, severity, remedy = _RULES.get(code, model_fault.RULE), Severity.ERROR, ""
-    if code is FaultCode.INDEX and space.problem.size == system.parameters.max_array_size:
+    if code is FaultCode.INDEX and run.problem.size == system.parameters.max_array_size:
         # The limit belongs to the translation, not to the user's array, and the run may be longer than what matters.
         severity, remedy = Severity.INFORMATION, " (`max_array_size`)"
     message = f"a run of this system executes this undefined operation: {fault.message}{remedy}"
-    yield fault.origin.path, rule.at(span, message, severity=severity, related=tuple(_trace(space)))
+    yield fault.origin.path, rule.at(span, message, severity=severity, related=tuple(_trace(run)))
 
 
 def _with_all_steps(space: Space) -> Space:
@@ -109,14 +143,11 @@ def _parts(tree: Expr, code: FaultCode) -> Sequence[Expr]:
             return [tree]
 
 
-def _trace(space: Space) -> Iterator[Related]:
+def _trace(run: FaultyRun) -> Iterator[Related]:
     """What machines do last before the operation."""
-    checker = space.checker
-    root, steps = path_to(space, space.fault_at)
-    path = Path(space.fault_at, tuple(steps), UNKNOWN, is_end=False, root=space.roots.index(root))
-    recorder = PathRecorder(checker, space.compiled_property, path)
-    has_clock = {storage.name for storage in recorder.shared}.issuperset(CLOCK_VARIABLES)
-    story = build_story(recorder, SELECTED, CLOCK_VARIABLES if has_clock else None)
+    checker = run.checker
+    has_clock = {storage.name for storage in run.recorder.shared}.issuperset(CLOCK_VARIABLES)
+    story = build_story(run.recorder, run.trace, CLOCK_VARIABLES if has_clock else None)
     events = {automaton.name for automaton in checker.model.automata if is_event(automaton)}
     shown = [turn for turn in read_trace(story).turns if _is_shown(turn, events)]
     for turn in shown[-MAX_TURNS:]:

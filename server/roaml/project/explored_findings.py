@@ -106,9 +106,9 @@ def _known(
             if is_settled:
                 break
     except ReachedFaultError as fault:
-        from roaml.project.explored_faults import finding_about_fault  # noqa: PLC0415 - few systems have one
+        from roaml.project.explored_faults import finding_about_fault, searched_run  # noqa: PLC0415 - few systems have one
 
-        return [*(known or ()), *finding_about_fault(analysis, path, system, fault.space)]
+        return [*(known or ()), *finding_about_fault(analysis, path, system, searched_run(fault.space))]
     if known is None or blame is None:
         return simulated()
     if late:
@@ -130,13 +130,20 @@ def _in_simulations(
 ) -> list[tuple[str, Finding]] | None:
     """What is found in a system that has too many states; `None` if it cannot be simulated."""
     from roaml.project.blame import Blame  # noqa: PLC0415
-    from roaml.project.simulation import simulated  # noqa: PLC0415 - only large systems are simulated
+    from roaml.project.simulation import SimulatedFaultError, simulated  # noqa: PLC0415 - only large systems
 
     known: list[tuple[str, Finding]] | None = None
-    for reached in simulated(analysis, path, more_time):
-        known = list(_all(analysis, system, nodes, reached, missed, Blame(analysis, system, reached)))
-        if not known:
-            break
+    try:
+        for reached in simulated(analysis, path, more_time):
+            known = list(_all(analysis, system, nodes, reached, missed, Blame(analysis, system, reached)))
+            if not known:
+                break
+    except SimulatedFaultError as fault:
+        if more_time > 1:
+            return None  # the system ends before this run does
+        from roaml.project.explored_faults import finding_about_fault, simulated_run  # noqa: PLC0415
+
+        return list(finding_about_fault(analysis, path, system, simulated_run(fault.checker, fault.problem)))
     return _late(analysis, path, nodes, reached) or known if known else known
 
 

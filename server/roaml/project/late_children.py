@@ -59,13 +59,16 @@ def _is_late(reached: Reached, nodes: ByNumber, node: Instance) -> bool:
 def _sufficient(analysis: Analysis, path: str, instances: list[Instance], attribute: Attribute) -> int | None:
     """A time in ms with which the child of one of the instances of a node succeeds in some simulated run; `None` if it
     never does."""
-    from roaml.project.simulation import simulated  # noqa: PLC0415 - few systems are simulated
+    from roaml.project.simulation import SimulatedFaultError, simulated  # noqa: PLC0415 - few systems are simulated
 
     for factor in FACTORS:
         time = factor * int(attribute.value)
         file = instances[0].source.path
         other = edited(analysis, path, {file: [TextEdit(attribute.value_span, str(time))]})
-        again = next(simulated(other, path), None)
+        try:
+            again = next(simulated(other, path), None)
+        except SimulatedFaultError:
+            return None
         if again is not None and any(SUCCESS in again.statuses.get(node.children[0], ()) for node in instances):
             return time
     return None

@@ -18,6 +18,7 @@ from roaml.project.exploration import Reached, reached_by, ways_taken
 from roaml.project.explored_steps import ExploredWay
 from roaml.project.translation import program_of
 from roaml.record import replace
+from roaml.smc.batch import TraceProblem
 from roaml.smc.fault import FaultError
 from roaml.smc.model import ModelChecker
 from roaml.smc.record import Recorder, Recording
@@ -31,12 +32,29 @@ RUNS_OF_VALUES = 5
 """The number of runs in which values are read."""
 
 
+class SimulatedFaultError(Exception):
+    """A simulated run executes an undefined operation.
+
+    Attributes:
+        checker: simulates the run again.
+        problem: the operation, and the number of the run.
+    """
+
+    def __init__(self, checker: ModelChecker, problem: TraceProblem) -> None:
+        super().__init__()
+        self.checker = checker
+        self.problem = problem
+
+
 def simulated(analysis: Analysis, path: str, more_time: int = 1) -> Iterator[Reached]:
     """What simulated runs of a system reach, first few runs, then more; first with machines that react at once, then
-    with the reaction time of the system. The iterator ends before runs that execute an undefined operation.
+    with the reaction time of the system.
 
     Args:
         more_time: how many times the maximum time of the system the runs last.
+
+    Raises:
+        SimulatedFaultError: a run executes an undefined operation.
     """
     program = program_of(analysis, path)
     time = program.parameters.max_time
@@ -61,13 +79,20 @@ def _runs(model: Model) -> Iterator[Reached]:
 def _ways_of(model: Model) -> list[ExploredWay] | None:
     """The steps of a model; `None` if an undefined operation is executed."""
     known = None
-    for checker, taken, _ in _taken(model):
-        known = checker, taken
+    try:
+        for checker, taken, _ in _taken(model):
+            known = checker, taken
+    except SimulatedFaultError:
+        return None
     return None if known is None else list(ways_taken(*known))
 
 
 def _taken(model: Model) -> Iterator[tuple[ModelChecker, bytes, int]]:
-    """For growing numbers of runs: a model checker, whether each way of an edge is taken, and the number of runs."""
+    """For growing numbers of runs: a model checker, whether each way of an edge is taken, and the number of runs.
+
+    Raises:
+        SimulatedFaultError: a run executes an undefined operation.
+    """
     try:
         checker = ModelChecker(model, (), marks(model))
     except FaultError:
@@ -82,7 +107,7 @@ def _taken(model: Model) -> Iterator[tuple[ModelChecker, bytes, int]]:
                 for _, way in ways:
                     taken[way] = 1
             if recording.problem is not None:
-                return
+                raise SimulatedFaultError(checker, recording.problem)
             checkpoint()
         first += runs
         yield checker, bytes(taken), first
