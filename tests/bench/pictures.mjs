@@ -155,6 +155,24 @@ window.sent = []; window.acquireVsCodeApi = () => ({ postMessage: (message) => w
 </script><script>${script}</script></body></html>`;
 }
 
+/** What is wrong with the chips of a picture that a page shows: each leader begins at the line that it continues, and its
+ * chip names the other end of the line. */
+function wrongLeaders({ nodes, edges }) {
+    const labels = new Map(nodes.map(({ id, label }) => [id, label]));
+    return [...document.querySelectorAll(".leaders > [data-exit]")].flatMap(({ dataset, firstElementChild: leader }) => {
+        const edge = edges[Number(dataset.exit)];
+        const names = dataset.chip.split("\n");
+        const isNamed = [edge.source, edge.target].some((id) => names.includes(labels.get(id)));
+        const start = leader.getPointAtLength(0).matrixTransform(leader.getScreenCTM());
+        const links = document.querySelectorAll(`.scene > :is(.link, .edge)[data-edges~="${dataset.exit}"] > .line`);
+        const isAtLine = [...links].some((line) => {
+            const { left, right, top, bottom } = line.getBoundingClientRect();
+            return start.x > left - 2 && start.x < right + 2 && start.y > top - 2 && start.y < bottom + 2;
+        });
+        return isNamed && isAtLine ? [] : [`${edge.source} → ${edge.target}: ${dataset.chip}`];
+    });
+}
+
 const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox", "--disable-gpu"] });
 const jobs = JSON.parse(await text(process.stdin));
 for (const theme of Object.keys(COLORS)) {
@@ -192,6 +210,8 @@ for (const theme of Object.keys(COLORS)) {
         }
         // The second frame contains what the first one has laid out.
         await tab.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+        const wrong = picture ? await tab.evaluate(wrongLeaders, { nodes: picture.nodes, edges: picture.edges }) : [];
+        if (wrong.length > 0) throw new Error(`${name}: chips that do not belong to their lines: ${wrong.join("; ")}`);
         await tab.screenshot({ path: path.join(folder, `${name}.${theme}.png`) });
         await tab.close();
     }

@@ -12,7 +12,10 @@ import {
     hasVisibleEnd,
     inARow,
     NO_BANDS,
+    placedChips,
+    type Chip,
     type DrawnLine,
+    type Exit,
 } from "../src/pictures/view/exits";
 import { beside, trimsOf } from "../src/pictures/view/find";
 import { edgesOf } from "../src/pictures/view/surroundings";
@@ -64,14 +67,13 @@ test("lines without a visible end, with two, or that end at a label have no exit
     assert.deepEqual(exitsOf(lines, BOXES, SIGHT, 100, 100), []);
 });
 
-test("a line between two visible ends that leads outside has an exit at both places", () => {
-    const exits = exitsOf([line(0, 2, "M 50 40 L 50 -20 L 130 -20 L 130 50 L 90 50")], BOXES, SIGHT, 100, 100);
+test("a line between two visible ends has no exit, unless it ends outside at a label", () => {
+    const around = "M 50 40 L 50 -20 L 130 -20 L 130 50";
+    assert.deepEqual(exitsOf([line(0, 2, `${around} L 90 50`)], BOXES, SIGHT, 100, 100), []);
+    const exits = exitsOf([line(0, 2, around)], BOXES, SIGHT, 100, 100);
     assert.deepEqual(
         exits.map(({ side, at, node, isOut }) => [side, at, node, isOut]),
-        [
-            ["top", 50, 2, true],
-            ["right", 50, 0, false],
-        ],
+        [["top", 50, 2, true]],
     );
 });
 
@@ -82,34 +84,71 @@ test("a line leads only through a window that shows neither of its ends, nor a p
     assert.ok(hasVisibleEnd(line(0, 1, ""), BOXES, SIGHT, 100, 100));
 });
 
+function named(chips: readonly Chip[]): unknown[] {
+    return chips.map(({ lines, isOut, exits }) => [lines.map(({ at }) => at), isOut, exits.map(({ node }) => node)]);
+}
+
+function exitAt(at: number, node: number, isOut = true, distance = at): Exit {
+    return { side: "bottom", at, edge: at, node, isOut, distance };
+}
+
 test("neighbouring exits of a direction share a chip, which names each node once, the nearest first", () => {
-    const exit = (at: number, node: number, distance: number, isOut = true) =>
-        ({ side: "top", at, edge: at, node, isOut, distance }) as const;
-    const chips = chipsOf(
-        [exit(30, 3, 90), exit(10, 1, 50), exit(20, 2, 10), exit(25, 2, 10), exit(15, 4, 5, false)],
-        15,
-    );
-    assert.deepEqual(
-        chips.map(({ from, to, way, exits }) => [from, to, way, exits.map(({ node }) => node)]),
-        [
-            [10, 25, "out", [2, 1]],
-            [15, 15, "in", [4]],
-            [30, 30, "out", [3]],
-        ],
-    );
+    const exits = [exitAt(30, 3, true, 90), exitAt(10, 1, true, 50), exitAt(20, 2, true, 10), exitAt(25, 2, true, 10)];
+    const other = exitAt(15, 4, false, 5);
+    assert.deepEqual(named(chipsOf(exits, 15)), [
+        [[10, 20, 25], true, [2, 1]],
+        [[30], true, [3]],
+    ]);
+    assert.deepEqual(named(chipsOf([...exits, other], 15)), [
+        [[10], true, [1]],
+        [[15], false, [4]],
+        [[20, 25, 30], true, [2, 3]],
+    ]);
+    assert.deepEqual(named(chipsOf([...exits, other], 15, true)), [
+        [[10, 20, 25], true, [2, 1]],
+        [[15], false, [4]],
+        [[30], true, [3]],
+    ]);
 });
 
-test("a chip for the lines of one node reaches from the first to the last, unless others are between them", () => {
-    const exit = (at: number, node: number, isOut = true) =>
-        ({ side: "bottom", at, edge: at, node, isOut, distance: at }) as const;
-    const named = (...exits: Parameters<typeof chipsOf>[0]) =>
-        chipsOf(exits, 15).map(({ from, to, way, exits: own }) => [from, to, way, own.map(({ node }) => node)]);
-    assert.deepEqual(named(exit(10, 1), exit(90, 1), exit(400, 1, false)), [[10, 400, "both", [1]]]);
-    assert.deepEqual(named(exit(10, 1), exit(90, 2), exit(400, 1)), [
-        [10, 10, "out", [1]],
-        [90, 90, "out", [2]],
-        [400, 400, "out", [1]],
+test("lines of one node share a chip if they are near, but those that leave it and those that enter it do not", () => {
+    const exits = [exitAt(10, 1), exitAt(90, 1), exitAt(95, 1, false), exitAt(400, 1)];
+    assert.deepEqual(named(chipsOf(exits, 15)), [
+        [[10, 90], true, [1]],
+        [[95], false, [1]],
+        [[400], true, [1]],
     ]);
+});
+
+test("each leader leads from the place of its line to a chip that names its other end, also in a narrow row", () => {
+    let seed = 1;
+    const random = (below: number) => (seed = (seed * 16807) % 2147483647) % below;
+    for (let round = 0; round < 200; round++) {
+        const exits = Array.from({ length: 1 + random(40) }, () => exitAt(10 + random(900), random(12), random(2) > 0));
+        const row = {
+            low: 4,
+            high: 900,
+            gap: 4,
+            round: 8,
+            sizeOf: ({ exits: own }: Chip) => 60 * Math.min(2, own.length),
+        };
+        const placed = placedChips(exits, 50, row);
+        const leaders = placed.flatMap((one) => one.leaders);
+        assert.deepEqual(new Set(leaders.map(({ exit }) => exit)), new Set(exits));
+        assert.equal(leaders.length, exits.length);
+        let free = row.low;
+        for (const { chip, start, size, leaders: own } of placed) {
+            assert.ok(start >= free - 0.01 && start + size <= row.high + 0.01);
+            free = start + size + row.gap;
+            for (const { exit, end } of own) {
+                assert.ok(end > start && end < start + size);
+                assert.equal(exit.isOut, chip.isOut);
+                assert.ok(chip.exits.some(({ node }) => node === exit.node));
+                // The chip is moved only if others are at its place.
+                if (exits.length === 1 && exit.at > 50 && exit.at < 850) assert.equal(end, exit.at);
+            }
+        }
+    }
 });
 
 test("bands for chips are at the sides at which the drawing goes on", () => {

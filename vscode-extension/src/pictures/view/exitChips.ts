@@ -5,38 +5,35 @@ import type { Box, Drawing, Picture } from "../contract";
 import {
     NO_BANDS,
     SIDES,
-    CHIP,
     bandsOf,
-    chipsOf,
+    LEADER,
     cornersOf,
     exitsOf,
     hasVisibleEnd,
-    inARow,
+    placedChips,
     type Bands,
     type Chip,
     type DrawnLine,
     type Exit,
+    type PlacedChip,
     type Side,
 } from "./exits";
 import { MAP_DISTANCE, beside, gutter, type Sight } from "./find";
-import type { Scene } from "./scene";
+import { element, type Scene } from "./scene";
 
 /** The distance of chips from each other and from the border, and the height of a chip, in pixels. */
 const GAP = 4;
 const HEIGHT = 19;
-/** The distance of chips from the ends of their lines, in pixels. */
-const FROM_LINE = 2;
 /** Lines within this distance at a border share a chip, in pixels; more if there is no space for the chips. */
 const NEAR: Readonly<Record<Side, number>> = { top: 50, bottom: 50, left: 12, right: 12 };
-/** The distance of the ends of a chip from the lines that lead to it, in pixels. */
-const ROUND = 8;
-const ARROWS: Readonly<Record<Side, Readonly<Record<Chip["way"], string>>>> = {
-    top: { out: "↑", in: "↓", both: "↕" },
-    bottom: { out: "↓", in: "↑", both: "↕" },
-    left: { out: "←", in: "→", both: "↔" },
-    right: { out: "→", in: "←", both: "↔" },
+/** The minimum distance of the ends of a chip from the lines that lead to it, in pixels. */
+const ROUND: Readonly<Record<Side, number>> = { top: 8, bottom: 8, left: 5, right: 5 };
+const ARROWS: Readonly<Record<Side, readonly [out: string, into: string]>> = {
+    top: ["↑", "↓"],
+    bottom: ["↓", "↑"],
+    left: ["←", "→"],
+    right: ["→", "←"],
 };
-const SIGNS: Readonly<Record<Chip["way"], string>> = { out: "→", in: "←", both: "↔" };
 
 interface ShownLine extends DrawnLine {
     readonly group: SVGGElement;
@@ -55,6 +52,7 @@ export class ExitChips {
     private drawn = { width: 0, height: 0 };
     /** What is behind the chips and the map at each side, so that they cover nothing. */
     private readonly bands = new Map(SIDES.map((side) => [side, document.createElement("div")]));
+    private readonly leaders = element("svg", { class: "leaders scene", "aria-hidden": "true" });
     private readonly buttons = new Map<string, HTMLButtonElement>();
     private readonly sizes = new Map<string, number>();
 
@@ -68,7 +66,7 @@ export class ExitChips {
     ) {
         this.layer.className = "exits";
         for (const [side, band] of this.bands) band.className = `band is-${side}`;
-        this.layer.append(...this.bands.values());
+        this.layer.append(...this.bands.values(), this.leaders);
     }
 
     /** Take the lines of a drawing. Trees have none: their order says what is beside the view. */
@@ -94,11 +92,25 @@ export class ExitChips {
 
     /** The bands beside a view: those for chips at the sides where lines leave it, and that for the map. */
     bandsOf(sight: Sight, width: number, height: number, map: Size | undefined): Bands {
-        const most = this.lines.length > 0 ? bandsOf(sight, this.drawn, width, height) : NO_BANDS;
-        const used = new Set(this.exits(sight, width, height, most).map(({ side }) => side));
-        const size = (side: Side) => (used.has(side) ? most[side] : 0);
-        const right = Math.max(size("right"), map ? gutter(map) : 0);
-        return { top: size("top"), bottom: size("bottom"), left: size("left"), right };
+        if (this.lines.length === 0) return { ...NO_BANDS, right: map ? gutter(map) : 0 };
+        const most = bandsOf(sight, this.drawn, width, height);
+        const right = (size: number) => Math.max(size, map ? gutter(map) : 0);
+        let bands = { ...most, right: right(most.right) };
+        // In narrower bands, other lines may leave the view.
+        for (let pass = 0; pass < 2; pass++) {
+            const exits = this.exits(sight, width, height, bands);
+            const size = (side: Side) => {
+                const sizes = exits.filter((exit) => exit.side === side).map(({ node }) => this.widthOf(side, node));
+                return sizes.length === 0 ? 0 : isRow(side) ? most[side] : Math.min(most[side], Math.max(...sizes));
+            };
+            bands = { top: size("top"), bottom: size("bottom"), left: size("left"), right: right(size("right")) };
+        }
+        return bands;
+    }
+
+    /** The width that a chip needs beside a picture, with its leader, in pixels. */
+    private widthOf(side: Side, node: number): number {
+        return LEADER + this.sizeOf(`${ARROWS[side][0]} ${this.label(node)}`) + GAP;
     }
 
     /** The places where lines to named nodes leave a view, in pixels of the window. */
@@ -112,7 +124,8 @@ export class ExitChips {
     clear(): void {
         this.lines = [];
         this.buttons.clear();
-        this.layer.replaceChildren(...this.bands.values());
+        this.leaders.replaceChildren();
+        this.layer.replaceChildren(...this.bands.values(), this.leaders);
         for (const band of this.bands.values()) band.removeAttribute("style");
     }
 
@@ -126,26 +139,25 @@ export class ExitChips {
         }
         const exits = this.exits(sight, width, height, bands);
         const shown = new Set<string>();
+        this.leaders.replaceChildren();
         for (const side of SIDES) {
             const own = exits.filter((exit) => exit.side === side);
             if (own.length === 0 || bands[side] < HEIGHT) continue;
             const [low, high] = isRow(side)
                 ? [bands.left + GAP, width - bands.right - GAP]
                 : [bands.top + GAP, height - Math.max(bands.bottom, mapHeight(side, map)) - GAP];
-            const sizeOf = (chip: Chip) =>
-                isRow(side) ? Math.max(this.sizeOf(this.text(chip)), chip.to - chip.from + 2 * ROUND) : HEIGHT;
-            const chips = fitting(own, NEAR[side], high - low, sizeOf);
-            const things = chips.map((chip) => ({ at: (chip.from + chip.to) / 2, size: sizeOf(chip) }));
-            const places = inARow(things, low, high, GAP);
-            for (const [index, chip] of chips.entries()) {
-                const key = `${side} ${chip.way} ${chip.exits.map(({ edge }) => edge).join(" ")}`;
-                shown.add(key);
-                const { style } = this.buttons.get(key) ?? this.made(key, chip);
-                style[isRow(side) ? "left" : "top"] = `${places[index] ?? 0}px`;
-                if (isRow(side)) style.width = `${things[index]?.size ?? 0}px`;
-                if (side === "top" || side === "bottom") style[side] = `${bands[side] - HEIGHT - FROM_LINE}px`;
-                else if (side === "left") style.right = `${width - bands.left + FROM_LINE}px`;
-                else style.left = `${width - bands.right + FROM_LINE}px`;
+            const sizeOf = (chip: Chip) => (isRow(side) ? this.sizeOf(this.text(chip)) : HEIGHT);
+            const row = { low, high, gap: GAP, round: ROUND[side], sizeOf };
+            // The border between the picture and the band.
+            const border = {
+                top: bands.top,
+                bottom: height - bands.bottom,
+                left: bands.left,
+                right: width - bands.right,
+            };
+            for (const placed of placedChips(own, NEAR[side], row)) {
+                shown.add(this.place(placed, border[side], width, bands));
+                this.leaders.append(...this.leadersOf(placed, border[side]));
             }
         }
         for (const [key, button] of this.buttons)
@@ -155,15 +167,45 @@ export class ExitChips {
             }
     }
 
+    /** Show a chip at its place, and return its key. */
+    private place({ chip, start, size }: PlacedChip, border: number, width: number, bands: Bands): string {
+        const { side, isOut, exits } = chip;
+        const key = `${side} ${isOut} ${exits.map(({ edge }) => edge).join(" ")}`;
+        const { style } = this.buttons.get(key) ?? this.made(key, chip);
+        style[isRow(side) ? "left" : "top"] = `${start}px`;
+        if (isRow(side)) style.width = `${size}px`;
+        else style.maxWidth = `${bands[side] - LEADER}px`;
+        if (side === "top") style.top = `${border - LEADER - HEIGHT}px`;
+        else if (side === "bottom") style.top = `${border + LEADER}px`;
+        else if (side === "left") style.right = `${width - border + LEADER}px`;
+        else style.left = `${border + LEADER}px`;
+        return key;
+    }
+
+    /** The lines from a border to a chip, which look like the lines that they continue. */
+    private leadersOf({ chip: { side, exits }, leaders }: PlacedChip, border: number): SVGGElement[] {
+        const outside = border + (side === "top" || side === "left" ? -LEADER : LEADER);
+        return leaders.map(({ exit, end }) => {
+            const [from, to] = isRow(side)
+                ? [`${exit.at} ${border}`, `${end} ${outside}`]
+                : [`${border} ${exit.at}`, `${outside} ${end}`];
+            const look = this.lines.find(({ edge }) => edge === exit.edge)?.group.getAttribute("class") ?? "";
+            const group = element("g", { class: look, "data-exit": exit.edge });
+            group.dataset["chip"] = exits.map(({ node }) => this.label(node)).join("\n");
+            group.append(element("path", { class: "line", d: `M ${from} L ${to}` }));
+            return group;
+        });
+    }
+
     private label(node: number): string {
         return this.picture?.nodes[node]?.label ?? "";
     }
 
-    private text({ side, way, exits }: Chip): string {
+    private text({ side, isOut, exits }: Chip): string {
         const most = isRow(side) ? 2 : 1;
         const names = exits.slice(0, most).map(({ node }) => this.label(node));
         const more = exits.length > most ? ` +${exits.length - most}` : "";
-        return `${ARROWS[side][way]} ${names.join(", ")}${more}`;
+        return `${ARROWS[side][isOut ? 0 : 1]} ${names.join(", ")}${more}`;
     }
 
     private sizeOf(text: string): number {
@@ -184,8 +226,7 @@ export class ExitChips {
         button.className = `exit is-${chip.side}`;
         button.textContent = this.text(chip);
         const names = chip.exits.map(({ node }) => this.label(node));
-        if (!isRow(chip.side)) button.style.maxWidth = `${CHIP - 2 * FROM_LINE}px`;
-        button.title = `${SIGNS[chip.way]} ${names.join(", ")}`;
+        button.title = `${chip.isOut ? "→" : "←"} ${names.join(", ")}`;
         button.setAttribute("aria-label", button.title);
         const edges = chip.exits.map(({ edge }) => edge);
         button.addEventListener("click", () => {
@@ -204,18 +245,6 @@ export class ExitChips {
         this.layer.append(button);
         return button;
     }
-}
-
-/** The chips of exits that fit into a length, of which each is for lines within a distance if possible. */
-function fitting(
-    exits: readonly Exit[],
-    distance: number,
-    length: number,
-    sizeOf: (chip: Chip) => number,
-): readonly Chip[] {
-    const chips = chipsOf(exits, distance);
-    const needed = chips.reduce((sum, chip) => sum + sizeOf(chip) + GAP, 0);
-    return needed <= length || distance > length ? chips : fitting(exits, 1.5 * distance, length, sizeOf);
 }
 
 function isRow(side: Side): boolean {

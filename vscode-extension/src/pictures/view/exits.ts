@@ -27,9 +27,11 @@ export interface Exit {
     readonly distance: number;
 }
 
-/** The height of the bands with chips above and below a picture, and the width of those beside it, in pixels. */
-const BAND = 24;
-export const CHIP = 120;
+/** The distance of chips from the picture, in which leaders join them to their lines, in pixels. */
+export const LEADER = 12;
+/** The height of the bands with chips above and below a picture, and the largest width of those beside it, in pixels. */
+const BAND = 22 + LEADER;
+export const CHIP = 200;
 /** Smaller windows have no space for bands above and below a picture, or beside it, in pixels. */
 const SMALLEST_WINDOW = { width: 480, height: 240 };
 
@@ -76,8 +78,8 @@ export function hasVisibleEnd(
 /** A line ends at its node if it is not farther from it, in pixels of the drawing; others end at their labels. */
 const AT_NODE = 12;
 
-/** The places where lines leave a window: of those that have one visible end, and both places of those that have two but
- * lead outside between them. */
+/** The places where lines with one visible end leave a window. Lines between two visible nodes have none, also if they
+ * lead outside between them, except if they end there at a label with the name of their target. */
 export function exitsOf(
     lines: readonly DrawnLine[],
     boxes: ReadonlyMap<number, Box>,
@@ -100,17 +102,11 @@ export function exitsOf(
         };
         const isOut = isVisible(middle(from));
         const path = points.map(seen);
-        if (isOut && isVisible(middle(to))) {
-            return [true, false].flatMap((way) => {
-                const outside = (way ? path : path.toReversed()).find((point) => !isVisible(point));
-                if (!outside) return [];
-                const entry = inside(outside);
-                return [exitAt(way, sideOf(outside, entry), entry)];
-            });
-        }
-        if (!isOut && !isVisible(middle(to))) return [];
         const [first, last] = [points[0], points.at(-1)];
-        if (!isOut && last && distanceTo(to, last) > AT_NODE) return [];
+        const endsAtLabel = last !== undefined && distanceTo(to, last) > AT_NODE;
+        if (isVisible(middle(to))) {
+            if (isOut ? !endsAtLabel || isVisible(seen(last)) : endsAtLabel) return [];
+        } else if (!isOut) return [];
         const inwards = isOut ? path.toReversed() : path;
         for (const [index, start] of inwards.entries()) {
             const end = inwards[index + 1];
@@ -136,44 +132,97 @@ function sideOf(outside: Point, crossing: Point): Side {
     return outside.x < crossing.x ? "left" : "right";
 }
 
-/** Exits that share a chip, the nearest node first. The lines are between `from` and `to`. */
+/** Lines of a direction that share a chip. */
 export interface Chip {
     readonly side: Side;
-    readonly from: number;
-    readonly to: number;
-    /** Whether the lines lead out of the view, or into it, or both. */
-    readonly way: "out" | "in" | "both";
+    /** Whether the lines lead out of the view, not into it. */
+    readonly isOut: boolean;
+    /** The lines from the first to the last place. */
+    readonly lines: readonly Exit[];
+    /** One line for each node that the chip names, the nearest first. */
     readonly exits: readonly Exit[];
 }
 
 /** Lines of a direction to the same node at this distance share a chip, in pixels. */
 const SAME_NODE = 160;
 
-/** The exits at one side of a window, grouped so that neighbours of a direction within a distance share a chip, and those
- * that lead to the same node if they are not far from each other, or if no other one is between them. */
-export function chipsOf(exits: readonly Exit[], distance: number): Chip[] {
+/** The exits at one side of a window, grouped so that those of a direction within a distance share a chip, and those
+ * that lead to the same node if they are not far from each other. Those of a chip are neighbours, unless `skips`: then
+ * others may be between them. */
+export function chipsOf(exits: readonly Exit[], distance: number, skips = false): Chip[] {
     const groups: Exit[][] = [];
     for (const exit of exits.toSorted((one, other) => one.at - other.at)) {
-        const previous = groups.at(-1);
-        if (previous?.every(({ node }) => node === exit.node)) {
-            previous.push(exit);
-            continue;
-        }
-        const group = groups.findLast((others) => others.every(({ isOut }) => isOut === exit.isOut));
+        const last = groups.at(-1);
+        const group = skips ? groups.findLast((others) => isAlike(others, exit)) : last;
         const isSame = group?.some(({ node, at }) => node === exit.node && exit.at - at <= SAME_NODE);
-        if (group && (isSame || exit.at - (group[0]?.at ?? -Infinity) <= distance)) group.push(exit);
+        const isNear = isSame === true || exit.at - (group?.[0]?.at ?? -Infinity) <= distance;
+        if (group && isAlike(group, exit) && isNear) group.push(exit);
         else groups.push([exit]);
     }
-    return groups.flatMap((group) => {
-        const [first, last] = [group[0], group.at(-1)];
-        if (!first || !last) return [];
+    return groups.flatMap((lines) => {
+        const [first] = lines;
+        if (!first) return [];
         const nodes = new Set<number>();
-        const own = group.toSorted((one, other) => one.distance - other.distance);
+        const own = lines.toSorted((one, other) => one.distance - other.distance);
         const different = own.filter(({ node }) => !nodes.has(node) && nodes.add(node));
-        const isMixed = group.some(({ isOut }) => isOut !== first.isOut);
-        const way = isMixed ? "both" : first.isOut ? "out" : "in";
-        return [{ side: first.side, from: first.at, to: last.at, way, exits: different }];
+        return [{ side: first.side, isOut: first.isOut, lines, exits: different }];
     });
+}
+
+function isAlike(others: readonly Exit[], { isOut }: Exit): boolean {
+    return others.every((other) => other.isOut === isOut);
+}
+
+/** From a place where a line leaves a view to the place where it ends at its chip, along the side. */
+export interface Leader {
+    readonly exit: Exit;
+    readonly end: number;
+}
+
+/** A chip with its place along its side, in pixels. */
+export interface PlacedChip {
+    readonly chip: Chip;
+    readonly start: number;
+    readonly size: number;
+    readonly leaders: readonly Leader[];
+}
+
+/** How chips are placed at a side: between two limits, at a distance from each other, with sizes of which that of a chip
+ * is at least the one that its text needs. Leaders end at a distance from the ends of a chip. All in pixels. */
+export interface Row {
+    readonly low: number;
+    readonly high: number;
+    readonly gap: number;
+    readonly round: number;
+    readonly sizeOf: (chip: Chip) => number;
+}
+
+/** The chips of exits, each as near to its lines as the others allow. Lines within `near` share a chip, and more if there
+ * is no space. */
+export function placedChips(exits: readonly Exit[], near: number, row: Row): PlacedChip[] {
+    const { low, high, gap, round } = row;
+    const extent = ({ lines }: Chip) => [lines[0]?.at ?? 0, lines.at(-1)?.at ?? 0] as const;
+    const things = fittingChips(exits, near, row).map((chip) => {
+        const [from, to] = extent(chip);
+        return { chip, at: (from + to) / 2, size: Math.min(row.sizeOf(chip), high - low) };
+    });
+    const places = inARow(things, low, high, gap);
+    return things.map(({ chip, size }, index) => {
+        const start = places[index] ?? low;
+        const end = (at: number) => within(at, start + round, start + size - round);
+        return { chip, start, size, leaders: chip.lines.map((exit) => ({ exit, end: end(exit.at) })) };
+    });
+}
+
+function fittingChips(exits: readonly Exit[], near: number, { low, high, gap, sizeOf }: Row): Chip[] {
+    const fits = (chips: readonly Chip[]) => chips.reduce((sum, chip) => sum + sizeOf(chip) + gap, -gap) <= high - low;
+    const middle = ({ lines }: Chip) => (lines[0]?.at ?? 0) + (lines.at(-1)?.at ?? 0);
+    for (let distance = near; distance <= 1.5 * (high - low); distance *= 1.5)
+        for (const skips of [false, true]) {
+            const chips = chipsOf(exits, distance, skips).toSorted((one, other) => middle(one) - middle(other));
+            if (fits(chips)) return chips;
+        }
+    return chipsOf(exits, Infinity, true);
 }
 
 /** The places of the starts of things in a row, each near the place of its middle, between two limits. */
