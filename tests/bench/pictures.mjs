@@ -159,6 +159,7 @@ window.sent = []; window.acquireVsCodeApi = () => ({ postMessage: (message) => w
  * chip names the other end of the line. */
 function wrongLeaders({ nodes, edges }) {
     const labels = new Map(nodes.map(({ id, label }) => [id, label]));
+    const HEAD = 12;
     return [...document.querySelectorAll(".leaders > [data-exit]")].flatMap(({ dataset, firstElementChild: leader }) => {
         const edge = edges[Number(dataset.exit)];
         const names = dataset.chip.split("\n");
@@ -167,7 +168,9 @@ function wrongLeaders({ nodes, edges }) {
         const links = document.querySelectorAll(`.scene > :is(.link, .edge)[data-edges~="${dataset.exit}"] > .line`);
         const isAtLine = [...links].some((line) => {
             const { left, right, top, bottom } = line.getBoundingClientRect();
-            return start.x > left - 2 && start.x < right + 2 && start.y > top - 2 && start.y < bottom + 2;
+            // The head of an arrow is between the end of its line and a node just behind the border.
+            const isNear = (at, low, high) => at > low - HEAD && at < high + HEAD;
+            return isNear(start.x, left, right) && isNear(start.y, top, bottom);
         });
         return isNamed && isAtLine ? [] : [`${edge.source} → ${edge.target}: ${dataset.chip}`];
     });

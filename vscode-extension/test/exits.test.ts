@@ -11,6 +11,7 @@ import {
     exitsOf,
     hasVisibleEnd,
     inARow,
+    isWhole,
     NO_BANDS,
     placedChips,
     type Chip,
@@ -91,6 +92,13 @@ function named(chips: readonly Chip[]): unknown[] {
 function exitAt(at: number, node: number, isOut = true, distance = at): Exit {
     return { side: "bottom", at, edge: at, node, isOut, distance };
 }
+
+test("a window shows a whole box, or only a part of it", () => {
+    const box = { x: 10, y: 10, width: 20, height: 20 };
+    assert.ok(isWhole(box, { x: 5, y: 5, scale: 2 }, 50, 50));
+    assert.ok(!isWhole(box, { x: 5, y: 5, scale: 2 }, 49, 50));
+    assert.ok(!isWhole(box, { x: 11, y: 5, scale: 2 }, 90, 50));
+});
 
 test("neighbouring exits of a direction share a chip, which names each node once, the nearest first", () => {
     const exits = [exitAt(30, 3, true, 90), exitAt(10, 1, true, 50), exitAt(20, 2, true, 10), exitAt(25, 2, true, 10)];

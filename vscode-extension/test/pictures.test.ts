@@ -215,7 +215,19 @@ test("a picture is legible at first, and drawn in the direction that suits the w
     assert.equal(bestDrawing([wide, wide, outline], 800, 600, 0.6), 0);
     assert.equal(bestDrawing([{ width: 1150, height: 900 }, wide, outline], 1000, 1600), 2);
     assert.ok(Math.abs(fitLegibly({ width: 500, height: 800 }, 1000, 800).scale - 0.96) < 1e-9);
-    // The smallest texts have 12 px, and no first view shows them with less than 11 px.
+    // The smallest texts have 12 px. A first view shows them with at least 10 px if it shows all, otherwise with 11 px.
+    assert.ok(Math.abs(fitLegibly({ width: 500, height: 900 }, 1000, 800).scale - 768 / 900) < 1e-9);
+    assert.equal(
+        bestDrawing(
+            [
+                { width: 1150, height: 800 },
+                { width: 800, height: 1500 },
+            ],
+            1000,
+            800,
+        ),
+        0,
+    );
     for (const size of [
         { width: 500, height: 940 },
         { width: 500, height: 1200 },

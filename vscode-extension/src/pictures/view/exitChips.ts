@@ -10,6 +10,7 @@ import {
     cornersOf,
     exitsOf,
     hasVisibleEnd,
+    isWhole,
     placedChips,
     type Bands,
     type Chip,
@@ -39,6 +40,13 @@ interface ShownLine extends DrawnLine {
     readonly group: SVGGElement;
 }
 
+interface ShownLabel {
+    readonly group: SVGGElement;
+    readonly box: Box;
+    /** The lines of the label. */
+    readonly lines: readonly ShownLine[];
+}
+
 interface Size {
     readonly width: number;
     readonly height: number;
@@ -49,6 +57,8 @@ export class ExitChips {
     private picture: Picture | undefined;
     private lines: readonly ShownLine[] = [];
     private boxes: ReadonlyMap<number, Box> = new Map();
+    /** The labels of lines, of which those that the border of a view would cut are hidden. */
+    private labels: readonly ShownLabel[] = [];
     private drawn = { width: 0, height: 0 };
     /** What is behind the chips and the map at each side, so that they cover nothing. */
     private readonly bands = new Map(SIDES.map((side) => [side, document.createElement("div")]));
@@ -86,7 +96,19 @@ export class ExitChips {
             if (from === undefined || to === undefined) return [];
             const paths = [...group.querySelectorAll(":scope > .line")];
             const points = paths.flatMap((path) => cornersOf(path.getAttribute("d") ?? ""));
+            group.append(...gapsOf(paths));
             return [{ edge, source: from, target: to, points, group }];
+        });
+        this.labels = this.lines.length === 0 ? [] : this.labelsOf(scene);
+    }
+
+    private labelsOf({ root }: Scene): ShownLabel[] {
+        return [...root.querySelectorAll<SVGGElement>(":scope > .label")].map((group) => {
+            const edges = [...group.querySelectorAll<SVGGElement>("[data-edges]")].flatMap(({ dataset }) =>
+                (dataset["edges"] ?? "").split(" ").map(Number),
+            );
+            const lines = this.lines.filter(({ edge }) => edges.includes(edge));
+            return { group, box: group.getBBox(), lines };
         });
     }
 
@@ -123,19 +145,27 @@ export class ExitChips {
 
     clear(): void {
         this.lines = [];
+        this.labels = [];
         this.buttons.clear();
         this.leaders.replaceChildren();
         this.layer.replaceChildren(...this.bands.values(), this.leaders);
         for (const band of this.bands.values()) band.removeAttribute("style");
     }
 
-    /** Show the bands of a view with their chips; lines that only lead through it are pale. `map` is the size of the map in the lower right corner. */
+    /** Show the bands of a view with their chips; lines that only lead through it are hidden. `map` is the size of the map in the lower right corner. */
     look(sight: Sight, width: number, height: number, bands: Bands, map: Size | undefined): void {
         for (const [side, band] of this.bands) band.style[isRow(side) ? "height" : "width"] = `${bands[side]}px`;
         const inner = beside(sight, width, height, bands);
         for (const line of this.lines) {
             const isThrough = !hasVisibleEnd(line, this.boxes, inner.sight, inner.width, inner.height);
             line.group.classList.toggle("through", isThrough);
+            line.group.classList.remove("unlabelled");
+        }
+        for (const { group, box, lines } of this.labels) {
+            const isCut = !isWhole(box, inner.sight, inner.width, inner.height);
+            const isThrough = lines.length > 0 && lines.every((line) => line.group.classList.contains("through"));
+            group.classList.toggle("through", isCut || isThrough);
+            if (isCut) for (const line of lines) line.group.classList.add("unlabelled");
         }
         const exits = this.exits(sight, width, height, bands);
         const shown = new Set<string>();
@@ -245,6 +275,16 @@ export class ExitChips {
         this.layer.append(button);
         return button;
     }
+}
+
+/** The parts of a line below its label, which are drawn while the label is hidden. */
+function gapsOf(paths: readonly Element[]): SVGPathElement[] {
+    return paths.slice(1).flatMap((path, index) => {
+        const [end] = cornersOf(paths[index]?.getAttribute("d") ?? "").slice(-1);
+        const [start] = cornersOf(path.getAttribute("d") ?? "");
+        if (!end || !start) return [];
+        return [element("path", { class: "line gap", d: `M ${end.x} ${end.y} L ${start.x} ${start.y}` })];
+    });
 }
 
 function isRow(side: Side): boolean {

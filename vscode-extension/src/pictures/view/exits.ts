@@ -75,6 +75,13 @@ export function hasVisibleEnd(
     );
 }
 
+/** Whether a window shows a whole box. */
+export function isWhole(box: Box, { x, y, scale }: Sight, width: number, height: number): boolean {
+    return (
+        box.x >= x && box.x + box.width <= x + width / scale && box.y >= y && box.y + box.height <= y + height / scale
+    );
+}
+
 /** A line ends at its node if it is not farther from it, in pixels of the drawing; others end at their labels. */
 const AT_NODE = 12;
 

@@ -58,6 +58,8 @@ export interface Sight extends Point {
 const MARGIN = 16;
 /** The minimum legible scale: the smallest texts have 12 px, and need at least 11 px on the screen. */
 const LEGIBLE = 11 / 12;
+/** The smallest scale at which a drawing is shown as a whole first: the smallest texts have at least 10 px. */
+const LEGIBLE_WHOLE = 10 / 12;
 type Area = Pick<Drawing, "width" | "height">;
 
 function scaleOf(drawing: Area, width: number, height: number): number {
@@ -73,7 +75,8 @@ export function fit(drawing: Area, width: number, height: number): Sight {
 /** The view that shows a whole drawing if it is legible, otherwise as much of it as is legible, or at least has a scale,
  * beginning at its start. */
 export function fitLegibly(drawing: Area, width: number, height: number, least = LEGIBLE): Sight {
-    return at(drawing, width, height, Math.max(least, scaleOf(drawing, width, height)));
+    const scale = scaleOf(drawing, width, height);
+    return at(drawing, width, height, scale >= Math.min(least, LEGIBLE_WHOLE) ? scale : least);
 }
 
 /** The size of the largest map of a drawing, in pixels. */
@@ -98,7 +101,8 @@ export const OUTLINE = DIRECTIONS.indexOf("outline");
 export function bestDrawing(drawings: readonly Area[], width: number, height: number, least = LEGIBLE): number {
     const rank = (drawing: Area): readonly number[] => {
         const scale = scaleOf(drawing, width, height);
-        if (scale >= least) return [1, Number(drawings.indexOf(drawing) < OUTLINE), scale];
+        if (scale >= Math.min(least, LEGIBLE_WHOLE))
+            return [scale >= least ? 2 : 1, Number(drawings.indexOf(drawing) < OUTLINE), scale];
         const beside = width - gutter(mapOf(drawing, LARGEST_MAP.width, LARGEST_MAP.height));
         const across = Math.min(1, (beside - 2 * MARGIN) / (drawing.width * least));
         const along = Math.min(1, (height - 2 * MARGIN) / (drawing.height * least));

@@ -1001,7 +1001,8 @@ function coverageLegend(coverage: Coverage, { coverage: words }: Words): HTMLEle
 
 function entry({ tone, text, isLine, kind, symbol }: LegendEntry): HTMLElement {
     const made = document.createElement("span");
-    const sample = element("svg", { width: isLine ? 24 : 10, height: 10, class: "scene", "aria-hidden": "true" });
+    const width = isLine ? 24 : symbol === "double" ? 18 : 10;
+    const sample = element("svg", { width, height: 10, class: "scene", "aria-hidden": "true" });
     const group = element("g", { class: `link tone-${tone} is-${kind}` });
     group.append(...(isLine ? [element("path", { d: "M 1 5 H 23", class: "line" })] : symbolOf(symbol)));
     sample.append(group);
@@ -1009,7 +1010,7 @@ function entry({ tone, text, isLine, kind, symbol }: LegendEntry): HTMLElement {
     return made;
 }
 
-/** A symbol of 10 x 10 pixels; a colored square by default. */
+/** A symbol of 10 x 10 pixels, or of 18 x 10 for the border of a state; a colored square by default. */
 function symbolOf(symbol: LegendEntry["symbol"]): SVGElement[] {
     switch (symbol) {
         case "dot":
@@ -1018,8 +1019,8 @@ function symbolOf(symbol: LegendEntry["symbol"]): SVGElement[] {
             return [element("rect", { x: 4, y: 0, width: 3, height: 10, rx: 1.5, class: "bar" })];
         case "double":
             return [
-                element("rect", { x: 0.5, y: 0.5, width: 9, height: 9, rx: 2, class: "legend-border" }),
-                element("rect", { x: 3, y: 3, width: 4, height: 4, rx: 1, class: "legend-border" }),
+                element("rect", { x: 0.5, y: 0.5, width: 17, height: 9, rx: 2, class: "legend-border" }),
+                element("rect", { x: 2.5, y: 2.5, width: 13, height: 5, rx: 1, class: "legend-border" }),
             ];
         case undefined:
             return [element("rect", { x: 0, y: 0, width: 10, height: 10, rx: 2, class: "badge" })];
