@@ -32,8 +32,11 @@ _TEXT_MARGIN = 9.0
 """The distance of the name of a state from its beginning, where arrows of messages are, in pixels."""
 _DOT = 7.0
 """The size of the mark at the sender of a message, in pixels."""
-_SIDEWAYS = 10.0
-"""The minimum distance of the arrows of messages, in pixels: those at one instant are side by side."""
+_HEAD_DISTANCE = 8.0
+"""The distance of the head of an arrow from the middle of its lane, in pixels, where dots of other messages at the same
+instant may be."""
+_LEAST_BAR = 3.0
+"""The minimum drawn width of states that are drawn as one, in pixels."""
 _LEAST = 5.0
 """The minimum width of a state, in pixels. Adjacent states that are narrower are drawn as one, and so are messages
 without arrows whose distance is smaller."""
@@ -313,7 +316,8 @@ class _Painter:
         return next(fitting, max(parts, key=lambda part: part[1] - part[0]))
 
     def _busy(self, lane: Lane, first: int, number: int, x: float, end: float, y: float) -> Group:
-        box = Box(max(x, 0.0), y, max(min(end, self._view.width) - max(x, 0.0), 2.0), _SPAN)
+        box = Box(max(x, 0.0), y, max(min(end, self._view.width) - max(x, 0.0), _LEAST_BAR), _SPAN)
+        box = box._replace(x=max(0.0, min(box.x, self._view.width - box.width)))
         count = number - first
         counted = lane.states[first] if count == 1 else f"{count:,} states from step {lane.starts[first]:,}"
         tones = {_tone(lane, state) for state in lane.states[first : min(number, first + _SAMPLE)]}
@@ -355,7 +359,7 @@ class _Painter:
             items += texts
             free_from = max(free_from, end + 6.0, *(text.box.right + 6.0 for text in texts))
             if has_arrows:
-                items += self._arrows(marked[0], self._arrow_places[number - 1 - first][0] - x)
+                items += self._arrows(marked[0])
             # There, the message is in the ROS graph, and the next step is at the line that receives it.
             step = marked[0].received - 1 if len(marked) == 1 else None
             yield Group("event", Tone.PLAIN, tuple(items), hint=self._message_hint(name, marked), step=step)
@@ -368,21 +372,16 @@ class _Painter:
 
     def _placed_arrows(self) -> list[tuple[float, float, float]]:
         """The horizontal position of the arrow of each visible message, and the vertical range that it crosses; empty
-        if there are too many. Arrows at one instant are from left to right in the order of their messages."""
+        if there are too many."""
         first, last = self._visible_messages()
         if last - first > self._view.width / _ARROW_DISTANCE:
             return []
         messages = self._timeline.messages[first:last]
-        places: list[float] = []
-        for message in messages:
-            places.append(max(self._x(message.received), places[-1] + _SIDEWAYS if places else -math.inf))
-        limit = self._view.width - _DOT
-        for number in range(len(places) - 1, -1, -1):
-            if self._x(messages[number].received) <= self._view.width:
-                places[number] = min(places[number], limit)
-                limit = places[number] - _SIDEWAYS
         crossed = [[_middle(lane) for lane in (message.sender, *message.receivers)] for message in messages]
-        return [(x, min(lanes) - _DOT, max(lanes) + _DOT) for x, lanes in zip(places, crossed, strict=True)]
+        return [
+            (self._x(message.received), min(lanes) - _DOT, max(lanes) + _DOT)
+            for message, lanes in zip(messages, crossed, strict=True)
+        ]
 
     def _behind_mark(self, number: int, last: int) -> int:
         """The number of the first message after the mark that begins with a message."""
@@ -398,16 +397,13 @@ class _Painter:
             x = self._x(messages[following - 1].received)
         return following
 
-    def _arrows(self, message: SentMessage, sideways: float) -> Iterator[Item]:
-        """The lines from the sender to the receivers, with a dot at the sender.
-
-        Args:
-            sideways: the distance from the place of the message, if others are at the same place.
-        """
-        start = Point(self._x(message.sent) + sideways, _middle(message.sender))
+    def _arrows(self, message: SentMessage) -> Iterator[Item]:
+        """The lines from the sender to the receivers, with a dot at the sender."""
+        start = Point(self._x(message.sent), _middle(message.sender))
         others = [receiver for receiver in message.receivers if receiver != message.sender]
         for receiver in others:
-            end = Point(self._x(message.received) + sideways, _middle(receiver))
+            middle = _middle(receiver)
+            end = Point(self._x(message.received), middle - math.copysign(_HEAD_DISTANCE, middle - start.y))
             yield Polyline((start, end), True, "message", is_round=False)
         if others:
             yield Shape(Box(start.x - _DOT / 2, start.y - _DOT / 2, _DOT, _DOT), Outline.PILL, "dot")
