@@ -103,9 +103,9 @@ export class ExitChips {
     }
 
     private labelsOf({ root }: Scene): ShownLabel[] {
-        return [...root.querySelectorAll<SVGGElement>(":scope > .label")].map((group) => {
-            const edges = [...group.querySelectorAll<SVGGElement>("[data-edges]")].flatMap(({ dataset }) =>
-                (dataset["edges"] ?? "").split(" ").map(Number),
+        return [...root.querySelectorAll<SVGGElement>(":scope > :is(.label, .line-name)")].map((group) => {
+            const edges = [group, ...group.querySelectorAll<SVGGElement>("[data-edges]")].flatMap(({ dataset }) =>
+                dataset["edges"] === undefined ? [] : dataset["edges"].split(" ").map(Number),
             );
             const lines = this.lines.filter(({ edge }) => edges.includes(edge));
             return { group, box: group.getBBox(), lines };
