@@ -20,7 +20,7 @@ export function pictures(stage: Stage): void {
         await window.becomes(() => labels(picture), ["driving", "charging"]);
         assert.equal(await picture.locator(".scene .edge.is-ros").count(), 3);
         assert.equal(await picture.locator("svg.picture .dot").count(), 1);
-        assert.equal(await picture.locator("svg.picture .link .line").count(), 4);
+        assert.equal(await picture.locator("svg.picture .link .line:not(.gap)").count(), 4);
         const inside = picture.locator('.node[data-label="driving"] .edge.is-ros');
         assert.match((await inside.textContent()) ?? "", /timer second.*publish \/battery/);
         await picture.locator('.node[data-label="charging"]').click();
