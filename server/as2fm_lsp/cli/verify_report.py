@@ -96,9 +96,8 @@ def report_text(answered: Answered) -> str:
         return as_markdown(answered.results, _findings(answered), _assumptions(answered))
     if answered.options.format is not Format.TEXT:
         return render(_findings(answered), answered.options.format)
-    reason = _exit_reason(answered)
     if is_quiet():
-        return as_brief_text(answered.results, answered.place, answered.options.stuck) + reason
+        return as_brief_text(answered.results, answered.place, answered.options.stuck)
     # A story of a stuck trace ends with the waiting automata.
     has_story = STANDARD_OUTPUT_PATH in answered.options.explain and any(r.answer or r.exact for r in answered.results)
     has_story = has_story and not any(result.is_interrupted for result in answered.results)
@@ -111,7 +110,7 @@ def report_text(answered: Answered) -> str:
             where = _where_shown(answered, has_story)
             text += stuck_report.as_text(answered.stuck_result, answered.place, where, is_whole=is_verbose())
         text += "" if has_story else explained(text, answered.target.model, answered.place)
-    return text + "".join(f"{line}\n" for line in _assumptions(answered).splitlines()) + reason
+    return text + "".join(f"{line}\n" for line in _assumptions(answered).splitlines()) + _exit_reason(answered)
 
 
 def _exit_reason(answered: Answered) -> str:
