@@ -38,6 +38,7 @@ from roaml.smc.registers import REAL
 from roaml.text import Location
 from roaml.to_jani import translate
 from roaml.views.ends import marks, observer_outputs
+from roaml.xml_syntax.escapes import unescape
 
 MAX_SENDERS = 5
 """The maximum number of related places where an event is sent."""
@@ -177,7 +178,7 @@ class Causes:
 
     def _text(self, linked: LinkedProperty, part: Expr) -> str:
         source = self._analysis.source(linked.path)
-        return "this condition" if source is None else source.text[part.span.start : part.span.end]
+        return "this condition" if source is None else unescape(source.text[part.span.start : part.span.end])
 
     def _senders(self, observed: ObservedProperty, part: Expr, space: Space) -> Iterator[Related]:
         """The places that send the events on which a condition depends."""
