@@ -16,6 +16,7 @@ from roaml.ide.names.lookup import SymbolGroup, symbol_group
 from roaml.ide.names.occurrences import uses
 from roaml.ide.rename import RenameRefusal, Renaming, prepare, rename
 from roaml.jani.writer import write
+from roaml.project.explored_findings import CODES
 from roaml.project.settings import Settings
 from roaml.project.workspace import Snapshot
 from roaml.scxml.names import safe_name, sanitise
@@ -48,7 +49,8 @@ class System:
 
     def __init__(self, main: str, ros_paths: tuple[str, ...] = ()) -> None:
         self.main = main
-        result = api.check([main], ros_paths, Settings())
+        # After an edit, an editor explores the states later.
+        result = api.check([main], ros_paths, Settings(ignore=CODES))
         self.texts = {path: result.source(path).text for path in result.files}
         self.files = result.files
         self.snapshot: Snapshot = result.snapshot

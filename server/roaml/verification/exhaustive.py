@@ -49,13 +49,18 @@ class UndecidedError(Exception):
 
     Attributes:
         reason: why there is no value, as a phrase for users.
+        remedy: what to do, as a phrase for users.
         growing: the variables because of which there are so many states that a limit was reached.
     """
 
     def __init__(self, reason: str, remedy: str, growing: tuple[GrowingVariable, ...] = ()) -> None:
-        super().__init__(f"{reason}; {remedy}")
+        super().__init__(reason, remedy, growing)  # all of them, because other processes raise it, too
         self.reason = reason
+        self.remedy = remedy
         self.growing = growing
+
+    def __str__(self) -> str:
+        return f"{self.reason}; {self.remedy}"
 
 
 class ExplorationInterruptedError(KeyboardInterrupt):
