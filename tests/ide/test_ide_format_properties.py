@@ -67,8 +67,7 @@ def check(sample: Model, texts: dict[str, str]) -> api.CheckResult:
 
 
 def findings(result: api.CheckResult) -> list[tuple[str, str]]:
-    """The findings except missing spaces, which formatting inserts, and white space at the beginning of a file, which it
-    removes."""
+    """The findings except missing spaces, which formatting inserts, and white space before a file, which it removes."""
     mended = ("a space is missing", "must be at the very beginning")
     return sorted((d.code, d.message) for d in result.diagnostics if not any(text in d.message for text in mended))
 
