@@ -11,6 +11,7 @@ from marked import Case
 from roaml import api
 from roaml.ide.names.occurrence import Access, Occurrence
 from roaml.project.analysis import Analysis
+from roaml.project.explored_findings import CODES
 from roaml.project.settings import Settings
 
 WORDS = {Access.TEXT: "names", Access.READ: "reads", Access.WRITE: "writes"}
@@ -31,7 +32,7 @@ def load(folder: Path, files: dict[str, str]) -> Analysis:
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8", newline="")
-    return api.check([str(folder)], settings=Settings()).snapshot.analysis
+    return api.check([str(folder)], settings=Settings(ignore=CODES)).snapshot.analysis
 
 
 def load_marked(folder: Path, written: str) -> tuple[Analysis, dict[str, Case]]:

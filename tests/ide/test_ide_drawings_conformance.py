@@ -23,6 +23,7 @@ from roaml.ide.diagrams import (
     tree_picture,
 )
 from roaml.mocks.mock import read_mock
+from roaml.project.explored_findings import CODES
 from roaml.project.settings import Settings
 
 FOLDERS = sorted({path.parent for path in systems()})
@@ -30,7 +31,7 @@ FOLDERS = sorted({path.parent for path in systems()})
 
 @pytest.mark.parametrize("folder", FOLDERS, ids=lambda folder: folder.relative_to(ROOT).as_posix())
 def test_drawings(folder: Path) -> None:
-    analysis = api.check([str(folder)], settings=Settings()).snapshot.analysis
+    analysis = api.check([str(folder)], settings=Settings(ignore=CODES)).snapshot.analysis
     mains = [str(path) for path in systems() if path.parent == folder]
     machines = map(str, folder.rglob("*scxml"))
     subjects = [(DiagramKind.MACHINE, path) for path in machines]
@@ -57,7 +58,7 @@ TREES = sorted({path.parent for path in (ROOT / "trees").rglob("*.xml")})
 
 @pytest.mark.parametrize("folder", TREES, ids=lambda folder: folder.relative_to(ROOT).as_posix())
 def test_trees_without_a_system_with_mocks_and_with_collapsed_nodes(folder: Path) -> None:
-    analysis = api.check([str(folder)], settings=Settings()).snapshot.analysis
+    analysis = api.check([str(folder)], settings=Settings(ignore=CODES)).snapshot.analysis
     mocks = [read_mock("*: 0.9 in 1 s")]
     for path in map(str, folder.glob("*.xml")):
         for picture in (tree_picture(analysis, path), tree_picture(analysis, path, mocks)):
@@ -70,7 +71,7 @@ def test_trees_without_a_system_with_mocks_and_with_collapsed_nodes(folder: Path
 @pytest.mark.parametrize("mistake", mistakes(), ids=lambda mistake: mistake.id)
 def test_models_with_errors(mistake: Mistake) -> None:
     """They are drawn as far as possible."""
-    analysis = api.check([str(mistake.folder)], settings=Settings()).snapshot.analysis
+    analysis = api.check([str(mistake.folder)], settings=Settings(ignore=CODES)).snapshot.analysis
     for path in sorted(map(str, mistake.folder.rglob("*xml"))):
         for kind in DiagramKind:
             picture = picture_of(kind, analysis, path)
@@ -81,5 +82,5 @@ def test_models_with_errors(mistake: Mistake) -> None:
 def test_a_tree_without_nodes_has_no_picture(tmp_path: Path) -> None:
     file = tmp_path / "tree.xml"
     file.write_text('<root BTCPP_format="4"><BehaviorTree ID="T"/></root>')
-    analysis = api.check([str(tmp_path)], settings=Settings()).snapshot.analysis
+    analysis = api.check([str(tmp_path)], settings=Settings(ignore=CODES)).snapshot.analysis
     assert picture_of(DiagramKind.TREE, analysis, str(file)) is None
