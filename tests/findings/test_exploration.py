@@ -149,8 +149,8 @@ def test_related_places_in_changed_files_are_left_out(tmp_path: Path) -> None:
     assert related(explores=True) == {"dispenser.ascxml", "order.ascxml", "tree.xml"}
 
 
-LIFT = {
-    "main.xml": """
+LIFT = """
+-- main.xml --
 <roaml>
     <parameters>
         <max_time value="30" unit="s" reaction_time="instant" />
@@ -167,8 +167,7 @@ LIFT = {
         <input type="jani" src="properties.jani" />
     </properties>
 </roaml>
-""",
-    "tree.xml": """
+-- tree.xml --
 <root BTCPP_format="4">
     <BehaviorTree ID="Main">
         <Sequence>
@@ -177,8 +176,7 @@ LIFT = {
         </Sequence>
     </BehaviorTree>
 </root>
-""",
-    "go.ascxml": """
+-- go.ascxml --
 <ascxml name="Go" version="1.0" initial="ready">
     <bt_declare_port_in key="floor" type="int8" />
     <datamodel><data id="floor" type="int8"><expr><bt_get_input key="floor" /></expr></data></datamodel>
@@ -200,8 +198,7 @@ LIFT = {
         <bt_halt target="ready"><bt_return_halted /></bt_halt>
     </state>
 </ascxml>
-""",
-    "lift.ascxml": """
+-- lift.ascxml --
 <ascxml name="Lift" version="1.0" initial="still">
     <datamodel>
         <data id="floor" type="int16" expr="2" />
@@ -224,12 +221,16 @@ LIFT = {
         <ros_rate_callback name="motor" target="still"><ros_service_send_response name="lift" /></ros_rate_callback>
     </state>
 </ascxml>
-""",
-    "properties.jani": '{"properties": []}',
-    "as2fm.toml": 'ros-path = ["interfaces"]\n',
-    "interfaces/lift_interfaces/package.xml": "<package><name>lift_interfaces</name></package>",
-    "interfaces/lift_interfaces/srv/Go.srv": "int8 floor\n---\n",
-}
+-- properties.jani --
+{"properties": []}
+-- as2fm.toml --
+ros-path = ["interfaces"]
+-- interfaces/lift_interfaces/package.xml --
+<package><name>lift_interfaces</name></package>
+-- interfaces/lift_interfaces/srv/Go.srv --
+int8 floor
+---
+"""
 """A lift that goes up for one node and down for another one."""
 
 
@@ -249,10 +250,7 @@ def test_a_count_that_goes_the_wrong_way(
 ) -> None:
     if is_simulated:
         monkeypatch.setattr(exploration, "MAX_STATES", 1)
-    for name, text in LIFT.items():
-        path = tmp_path / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text.replace(old, new) if name == "lift.ascxml" and old else text, encoding="utf-8")
+    write_files(tmp_path, LIFT.replace(old, new) if old else LIFT)
     found = api.check([str(tmp_path)]).diagnostics
     assert not [d.message for d in found if d.severity is Severity.ERROR]
     blamed = [d for d in found if d.code == "never-taken"]
@@ -261,11 +259,8 @@ def test_a_count_that_goes_the_wrong_way(
 
 
 def test_a_message_names_the_values_that_occur(tmp_path: Path) -> None:
-    counted = LIFT | {"lift.ascxml": LIFT["lift.ascxml"].replace("floor - 1", "floor - 2")}
-    for name, text in (counted | {"tree.xml": LIFT["tree.xml"].replace('floor="3"', 'floor="1"')}).items():
-        path = tmp_path / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text.replace("floor + 1", "floor + 2"), encoding="utf-8")
+    counted = LIFT.replace("floor - 1", "floor - 2").replace("floor + 1", "floor + 2")
+    write_files(tmp_path, counted.replace('name="up" floor="3"', 'name="up" floor="1"'))
     [message] = [d.message for d in api.check([str(tmp_path)]).diagnostics if d.code == "never-taken"]
     assert "`floor` is between 0 and 2, `wanted` is 1 here" in message
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a check finds in the states that a whole system can reach.
 
-A system without errors is translated and explored (`roaml.project.exploration`). Nothing is reported about a system
-that is too large.
+A system without errors is translated and explored (`roaml.project.exploration`). If it has too many states, runs of it
+are simulated instead (`roaml.project.simulation`). Nothing is reported about a system whose translation is too large.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def findings_of(
     analysis: Analysis, path: str, expected: Mapping[str, Comparison]
 ) -> Mapping[str, tuple[Finding, ...]] | None:
     """Path of a file -> the findings in it, for a system without errors; `None` if the system is too large to be
-    explored.
+    explored and simulated.
 
     Args:
         expected: name of a property -> the result that the settings of the user expect.
