@@ -9,7 +9,7 @@ from typing import Any
 from roaml.smc.goal import UNIFORMLY, InitialFold, Question
 from roaml.smc.program import FALSE, TRUE
 from roaml.smc.statistics import Bounds
-from roaml.verification.number_text import exact_number, json_number
+from roaml.verification.number_text import ALMOST_ONE, exact_number, json_number
 from roaml.verification.results import EXACT_WIDTH, Computed, Exact, Proof, are_apart
 
 EXACT = "exact"
@@ -199,7 +199,7 @@ def _one_value(exact: Exact) -> str:
 def _least_below_one(exact: Exact) -> str:
     """As `_below_one`, for the minimum. A trace that fails excludes 1 even if the bounds are equal to 1."""
     if not exact.is_reward and exact.fails and exact.minimum.lower == 1:
-        return "almost 1 (fails, but too rarely to compute how often)"
+        return f"{ALMOST_ONE} (fails, but too rarely to compute how often)"
     return _below_one(exact, exact.minimum)
 
 
@@ -208,7 +208,7 @@ def _below_one(exact: Exact, bounds: Bounds) -> str:
     is_shown_as_one = f"{bounds.upper:.7g}" == "1" == f"{(bounds.lower + bounds.upper) / 2:.7g}"
     if exact.is_reward or bounds.upper >= 1.0 or not is_shown_as_one:
         return ""
-    return f"almost 1 (fails with a probability of at most {_upwards(1 - bounds.lower)})"
+    return f"{ALMOST_ONE} (fails with a probability of at most {_upwards(1 - bounds.lower)})"
 
 
 def _upwards(value: float) -> str:

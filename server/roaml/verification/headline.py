@@ -21,7 +21,7 @@ from roaml.smc.end import End
 from roaml.smc.goal import UNIFORMLY, InitialFold, Question
 from roaml.smc.lss import Side
 from roaml.smc.run import Answer
-from roaml.verification.number_text import number, with_interval
+from roaml.verification.number_text import ALMOST_ONE, number, with_interval
 from roaml.verification.results import Computed, CutShort, Estimated, Refused, Result, Sampled, SampledResult, Undecided
 from roaml.verification.schedulers import extreme_of, is_minimised
 
@@ -109,7 +109,7 @@ def exact_text(computed: Computed) -> str:
     bounds, value = computed.asked_value()
     text = _rounded(value, 4)
     is_below_one = bounds.upper < 1 or (is_minimised(computed.question) and computed.exact.fails)
-    return "almost 1" if text == "1" and is_below_one and not computed.question.is_reward else text
+    return ALMOST_ONE if text == "1" and is_below_one and not computed.question.is_reward else text
 
 
 def of_answer(answer: Answer, choices: Choices | None = None) -> Headline:
@@ -274,16 +274,12 @@ def _short(answer: Answer) -> str:
     if answer.tally.undecided and not answer.question.is_reward:
         return _between(answer).replace("at least ", "≥ ").replace("at most ", "≤ ")
     lower, upper = answer.bounds
+    if math.isfinite(answer.value) and upper == math.inf:
+        if lower > -math.inf:
+            return f"≥ {_rounded(lower)}"
+        return UNDECIDED if answer.tally.undecided else _rounded(answer.value)
     if math.isinf(answer.value):
         return _rounded(answer.value)
-    if upper == math.inf:
-        return (
-            f"≥ {_rounded(lower)}"
-            if lower > -math.inf
-            else UNDECIDED
-            if answer.tally.undecided
-            else _rounded(answer.value)
-        )
     return f"{_rounded(answer.value)} [{_rounded(lower)}, {_rounded(upper)}]"
 
 
