@@ -339,3 +339,14 @@ def test_an_expectation_of_the_settings_that_no_value_meets(tmp_path: Path, expe
     assert comparison is not None
     found = api.check([str(tmp_path / "main.xml")], settings=Settings(expectations={"heavy": comparison}))
     assert ("unmet-expectation" in [d.code for d in found.diagnostics]) is not is_met
+
+
+def test_only_a_check_explores(tmp_path: Path, searches: list[int]) -> None:
+    write_files(tmp_path, examples(CODE, "Bad")[0].text)
+    main = str(tmp_path / "main.xml")
+    api.load(main)
+    api.draw(main)
+    api.migrate([main])
+    assert searches == []
+    api.check([main])
+    assert searches

@@ -8,7 +8,7 @@ import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from roaml.api.checking import check
+from roaml.api.reading import read
 from roaml.figures.svg import CHANGE_STYLES, svg_file
 from roaml.figures.themes import AUTOMATIC
 from roaml.ide.diagrams import PAGE, DiagramKind, Picture, draw_for, picture_of, tree_picture
@@ -52,7 +52,7 @@ class ComparedVersion(Record, frozen=True):
 
     Attributes:
         path: the file of the system, machine or tree.
-        settings: as for `check`.
+        settings: as for `read`.
         texts: path -> content that replaces that of the file.
         mocks: the mocks that the picture of a tree without a system shows; `None` for those beside it.
     """
@@ -88,7 +88,7 @@ def compare_structure(old: ComparedVersion, new: ComparedVersion, ros_paths: Ite
 
     Args:
         old, new: the versions: two systems, two machines or two trees. JANI models have no pictures.
-        ros_paths: as for `check`.
+        ros_paths: as for `read`.
 
     Raises:
         PathError: a path does not exist or cannot be read.
@@ -181,8 +181,7 @@ class _Side:
     """One version of a model."""
 
     def __init__(self, version: ComparedVersion, ros_paths: Iterable[str]) -> None:
-        result = check([version.path], ros_paths, version.settings, version.texts)
-        self.analysis: Analysis = result.snapshot.analysis
+        self.analysis: Analysis = read([version.path], ros_paths, version.settings, version.texts).snapshot.analysis
         self.path = os.path.abspath(version.path)
         self.mocks = version.mocks
         self.files = self.analysis.files_of(self.path) or (self.path,)

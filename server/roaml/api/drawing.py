@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping, Sequence
 
-from roaml.api.checking import check
+from roaml.api.reading import read
 from roaml.figures.layout import LayoutDirection
 from roaml.figures.pdf import pdf_file
 from roaml.figures.svg import svg_file
@@ -97,14 +97,14 @@ def draw(
         outline: draw a tree in a narrow column: a row for each node, with its children indented below it.
         interfaces: draw each topic, service and action of a large ROS graph as a node. By default, if the graph has
             more than 60 nodes, most of them are rows of the node that publishes or serves them.
-        ros_paths, settings, texts: as for `check`.
+        ros_paths, settings, texts: as for `read`.
 
     Raises:
         DrawingError: the file contains nothing of this kind, or nothing that matches.
         PathError: the path does not exist or cannot be read.
     """
-    result = check([path], ros_paths, settings, texts)
-    analysis, drawn = result.snapshot.analysis, os.path.abspath(path)
+    found = read([path], ros_paths, settings, texts)
+    analysis, drawn = found.snapshot.analysis, os.path.abspath(path)
     if machine is not None:
         kind, drawn = DiagramKind.MACHINE, _file_of(analysis, machine, path)
     kind = _fitting(analysis, drawn) if kind is None else DiagramKind(kind)
@@ -120,7 +120,7 @@ def draw(
     else:
         drawing = _draw(kind, picture, LayoutDirection(direction)) if direction else draw_for(kind, picture, *PAGE)
     size, svg = drawing.size, svg_file(drawing, picture.title, theme)
-    return DrawnPicture(svg, picture.title, kind, size.width, size.height, result.files)
+    return DrawnPicture(svg, picture.title, kind, size.width, size.height, found.files)
 
 
 def _picture(

@@ -6,8 +6,8 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping
 
-from roaml.api.checking import check
 from roaml.api.jani_files import PathError
+from roaml.api.reading import read
 from roaml.model.kinds import FileKind
 from roaml.project.analysis import Analysis
 from roaml.project.configuration import find_settings
@@ -61,25 +61,26 @@ def migrate(
         settings, _ = find_settings(paths[0] if paths else os.getcwd())
     # Findings that the user has switched off are needed for the migration as well.
     settings = replace(settings, select=frozenset(), ignore=frozenset())
-    result = check(paths, ros_paths, settings)
-    analysis = result.snapshot.analysis
+    found = read(paths, ros_paths, settings)
+    analysis = found.snapshot.analysis
     named = {path for path in paths if not os.path.isdir(path)}
     trees = [
         path
-        for path in result.files
+        for path in found.files
         if analysis.kind(path) is FileKind.TREE and (path in named or not analysis.memberships.get(path))
     ]
-    systems = _systems(paths, result.snapshot)
+    systems = _systems(paths, found.snapshot)
     for path in named:
         if path not in systems and path not in trees:
             raise PathError(f"{path}: neither a system file nor a tree; name one of these")
 
     def snapshot_of(texts: Mapping[str, str]) -> Snapshot:
-        return check([*systems, *trees], ros_paths, settings, texts).snapshot
+        return read([*systems, *trees], ros_paths, settings, texts).snapshot
 
     migrations = _migrate(systems, trees, snapshot_of) if systems or trees else ()
     for migration in migrations:
-        if result.source(migration.path).undecodable is not None:
+        source = analysis.source(migration.path)
+        if source is None or source.undecodable is not None:
             raise PathError(f"{migration.path}: not valid UTF-8; fix the encoding")
     around = _around(systems, trees, analysis, settings) if migrations else None
     shared = {} if around is None else _broken(migrations, frozenset(systems), around)

@@ -7,8 +7,8 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from roaml.api.checking import check
 from roaml.api.jani_files import PathError
+from roaml.api.reading import read
 from roaml.model.kinds import FileKind
 from roaml.project.settings import Settings
 from roaml.record import Record
@@ -46,7 +46,7 @@ def mock_system(
     """Create mocks for the leaves of a system that have no plugin. No file is written.
 
     Args:
-        settings, ros_paths, texts: as for `check`.
+        settings, ros_paths, texts: as for `read`.
 
     Raises:
         PathError: the path cannot be read, or is not a system file.
@@ -65,7 +65,7 @@ def mock_system(
     from roaml.project.system_leaves import missing_leaves, plugin_paths, tick_rates  # noqa: PLC0415
     from roaml.text import apply_edits  # noqa: PLC0415
 
-    analysis = check([path], ros_paths, settings, texts).snapshot.analysis
+    analysis = read([path], ros_paths, settings, texts).snapshot.analysis
     main = os.path.abspath(path)
     system, document = analysis.system(main), analysis.document(main)
     if analysis.kind(main) is not FileKind.SYSTEM or system is None or document is None or document.root is None:

@@ -7,8 +7,9 @@ import os
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from roaml.api.checking import CheckResult, check
+from roaml.api.checking import CheckResult
 from roaml.api.jani_files import PathError
+from roaml.api.reading import read
 from roaml.jani.model import Model
 from roaml.jani.properties import Property
 from roaml.jani.selection import select
@@ -101,7 +102,7 @@ def load(
 
     Args:
         path: the system file.
-        ros_paths, settings, texts: as for `check`.
+        ros_paths, settings, texts: as for `read`.
         overrides: parameters that replace those in the system file.
         parameters: name of a parameter that the models declare -> its value, such as `{"capacity": 80}`; the name
             `INSTANCE.NAME` is that of one instance (docs/spec/parameters.md#values).
@@ -115,7 +116,7 @@ def load(
         settings, _ = find_settings(os.path.abspath(path))
         settings = replace(settings, ament_prefixes=ament_prefixes())
     overrides = with_parameters(overrides, parameters or {})
-    snapshot = check([path], ros_paths, replace(settings, overrides=overrides), texts).snapshot
+    snapshot = read([path], ros_paths, replace(settings, overrides=overrides), texts).snapshot
     return loaded(snapshot, os.path.abspath(path))
 
 
@@ -159,8 +160,8 @@ def values_of_parameters(
     path: str, ros_paths: Iterable[str], settings: Settings, texts: Mapping[str, str | bytes]
 ) -> dict[str, str]:
     """Name of a parameter of a system -> the text of its value, even if the system has errors. The arguments are those
-    of `check`."""
-    return _parameters(check([path], ros_paths, settings, texts).snapshot.analysis, os.path.abspath(path))
+    of `read`."""
+    return _parameters(read([path], ros_paths, settings, texts).snapshot.analysis, os.path.abspath(path))
 
 
 def unknown_parameter(analysis: Analysis, systems: Iterable[str], overrides: Overrides) -> str:

@@ -7,8 +7,9 @@ import os
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from roaml.api.checking import CheckResult, check
+from roaml.api.checking import CheckResult
 from roaml.api.jani_files import PathError
+from roaml.api.reading import read
 from roaml.api.systems import ModelError
 from roaml.diagnostics import Diagnostic, Severity
 from roaml.model.kinds import FileKind
@@ -47,7 +48,7 @@ def load_tree(
     Args:
         path: the file of the tree.
         options: its mocks and parameters.
-        settings, texts: as for `check`.
+        settings, texts: as for `read`.
 
     Raises:
         PathError: the path cannot be read, or is not a file of trees.
@@ -55,7 +56,7 @@ def load_tree(
         MissingMocksError: leaves have no mock.
     """
 
-    return loaded_tree(check([path], settings=settings, texts=texts).snapshot, os.path.abspath(path), options)
+    return loaded_tree(read([path], settings=settings, texts=texts).snapshot, os.path.abspath(path), options)
 
 
 def loaded_tree(snapshot: Snapshot, path: str, options: MockOptions) -> LoadedTree:
@@ -106,7 +107,7 @@ def propose_mocks(
     from roaml.mocks.proposal import mockable_leaves  # noqa: PLC0415
     from roaml.project.mock_files import mocks_beside  # noqa: PLC0415
 
-    snapshot, full = check([path], settings=settings, texts=texts).snapshot, os.path.abspath(path)
+    snapshot, full = read([path], settings=settings, texts=texts).snapshot, os.path.abspath(path)
     try:
         return mockable_leaves(_forest(snapshot, full), mocks_beside(snapshot.analysis, full))
     except TreeRefusal as refusal:
