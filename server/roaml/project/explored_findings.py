@@ -110,7 +110,7 @@ def _known(
 
         return [*(known or ()), *finding_about_fault(analysis, path, system, searched_run(fault.space))]
     if known is None or blame is None:
-        return simulated()
+        return _with_simulated_properties(analysis, path, expected, simulated())
     if late:
         known = late
     elif blame.has_unexplained and not blame.is_tree_at_fault:
@@ -145,6 +145,23 @@ def _in_simulations(
 
         return list(finding_about_fault(analysis, path, system, simulated_run(fault.checker, fault.problem)))
     return _late(analysis, path, nodes, reached) or known if known else known
+
+
+def _with_simulated_properties(
+    analysis: Analysis, path: str, expected: Mapping[str, Comparison], known: list[tuple[str, Finding]] | None
+) -> list[tuple[str, Finding]] | None:
+    """What is found in a system that has too many states, with what is found about its properties.
+
+    Args:
+        known: the other findings; `None` if the system cannot be simulated.
+    """
+    if known is None or any(finding.code in FAULT_CODES for _, finding in known):
+        return known
+    from roaml.project.simulated_properties import (  # noqa: PLC0415 - only large systems
+        findings_about_simulated_properties,
+    )
+
+    return [*known, *findings_about_simulated_properties(analysis, path, expected)]
 
 
 def _late(analysis: Analysis, path: str, nodes: ByNumber, reached: Reached) -> list[tuple[str, Finding]]:

@@ -10,7 +10,8 @@ too long, the finding says what it assumes.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING
 
 from roaml.comparison import Comparison
 from roaml.diagnostics import Finding
@@ -24,6 +25,8 @@ from roaml.project.analysis import Analysis
 from roaml.project.exploration import with_reactions
 from roaml.project.property_search import MAX_CAUSE_STEPS, MAX_STEPS, Doubt, Doubted, PropertySearch
 from roaml.project.translation import network_of, observed_properties_of, properties_of
+from roaml.record import Record
+from roaml.scxml.model import Network
 from roaml.scxml.names import sent_by
 from roaml.scxml.observed import ObservedProperty
 from roaml.smc.fault import FaultError
@@ -36,11 +39,14 @@ from roaml.to_jani import translate
 from roaml.to_jani.state_observers import with_state_observers
 from roaml.views.ends import marks, observer_outputs
 
+if TYPE_CHECKING:
+    from roaml.project.property_causes import Evidence
+
 TRACES, TRACE_STEPS = 20, 10_000
 """The number of random traces of each property, and their maximum length."""
 _SLACK = 1e-6
 """The difference between a value and the number of an expectation that is attributed to rounding."""
-_RELATIONS = {
+RELATIONS = {
     ">=": BinaryOperator.GREATER_EQUAL,
     "<=": BinaryOperator.LESS_EQUAL,
     ">": BinaryOperator.GREATER,
@@ -57,14 +63,10 @@ def findings_about_properties(
     Args:
         expected: name of a property -> the result that the settings of the user expect.
     """
-    observed = {p.name: p for p in observed_properties_of(analysis, path) if not p.assumptions}
-    in_jani = tuple(p for p in properties_of(analysis, path) if p.name in expected or _says_more(p))
-    system = analysis.system(path)
-    if system is None or not (observed or in_jani):
+    asked = asked_of(analysis, path, expected)
+    if asked is None:
         return
-    network = network_of(analysis, path)
-    model = translate(network, in_jani, tuple(observed.values()), has_activity=True)
-    model = with_state_observers(model, clock_step(system))
+    model, observed = asked.model, asked.observed
     search = PropertySearch(MAX_STEPS)
     doubted: dict[str, Doubted] | None = None
     for variant, is_instant in with_reactions(model):
@@ -72,16 +74,63 @@ def findings_about_properties(
         doubted = {name: doubt for name, doubt in {**(doubted or {}), **judged}.items() if doubt is not None}
         if not doubted:
             return
-    sent = {sent_by(edge.action or "") for automaton in model.automata for edge in automaton.edges}
-    doubted = {
-        name: each for name, each in (doubted or {}).items() if each.observed is None or _hears(each.observed, sent)
-    }
-    if doubted:
+    yield from findings_of_doubts(analysis, path, asked, (doubted or {}).values(), PropertySearch(MAX_CAUSE_STEPS))
+
+
+class Asked(Record, frozen=True):
+    """The properties of a system that are judged.
+
+    Attributes:
+        observed: the properties of XML files without assumptions, by name.
+        network: the system.
+        model: the system with its properties and their observers.
+    """
+
+    observed: Mapping[str, ObservedProperty]
+    network: Network
+    model: Model
+
+
+def asked_of(analysis: Analysis, path: str, expected: Mapping[str, Comparison]) -> Asked | None:
+    """The properties that are judged in a system without errors; `None` if there are none.
+
+    Args:
+        expected: see `findings_about_properties`.
+    """
+    observed = {p.name: p for p in observed_properties_of(analysis, path) if not p.assumptions}
+    in_jani = tuple(p for p in properties_of(analysis, path) if p.name in expected or _says_more(p))
+    system = analysis.system(path)
+    if system is None or not (observed or in_jani):
+        return None
+    network = network_of(analysis, path)
+    model = translate(network, in_jani, tuple(observed.values()), has_activity=True)
+    return Asked(observed, network, with_state_observers(model, clock_step(system)))
+
+
+def findings_of_doubts(
+    analysis: Analysis, path: str, asked: Asked, doubts: Iterable[Doubted], evidence: Evidence
+) -> Iterator[tuple[str, Finding]]:
+    """The paths of files, and the findings about properties with doubts.
+
+    Args:
+        evidence: answers further questions.
+    """
+    sent = {sent_by(edge.action or "") for automaton in asked.model.automata for edge in automaton.edges}
+    heard = [each for each in doubts if each.observed is None or _hears(each.observed, sent)]
+    if heard:
         from roaml.project.property_causes import Causes  # noqa: PLC0415 - most properties have no doubt
 
-        causes = Causes(analysis, path, network, PropertySearch(MAX_CAUSE_STEPS))
-        for each in doubted.values():
+        causes = Causes(analysis, path, asked.network, evidence)
+        for each in heard:
             yield from causes.findings(each)
+
+
+def wanted_of(
+    name: str, observed: Mapping[str, ObservedProperty], expected: Mapping[str, Comparison]
+) -> list[Comparison]:
+    """The expectations about the property `name`: its own, and that of the settings."""
+    own = observed.get(name)
+    return [c for c in (own.expected if own else None, expected.get(name)) if c is not None]
 
 
 def _hears(observed: ObservedProperty, sent: Collection[str]) -> bool:
@@ -120,18 +169,17 @@ def _judged(
         return
     for compiled in checker.compiled_properties:
         property_, question = compiled.property, compiled.question
-        own = observed.get(property_.name)
-        wanted = [c for c in (own.expected if own else None, expected.get(property_.name)) if c is not None]
+        own, wanted = observed.get(property_.name), wanted_of(property_.name, observed, expected)
         if question.is_conditional or not (wanted or question.threshold or not _is_tested(checker, compiled)):
             continue
         values = search.values(checker, compiled)
         if values is None:
             continue
         doubt = _untested(checker, compiled, search) if values.lower == 1.0 and not question.is_reward else None
-        unmet = next((c for c in wanted if not _can_meet(c, values)), None)
+        unmet = next((c for c in wanted if not can_meet(c, values)), None)
         if (
             question.threshold is not None
-            and not _can_be(question.threshold.relation, question.threshold.number, values)
+            and not can_be(question.threshold.relation, question.threshold.number, values)
         ) or unmet is not None:
             doubt = Doubt.UNMET
         elif own is not None and values.upper == 0.0 and not wanted:
@@ -165,11 +213,11 @@ def _untested(checker: ModelChecker, property_: CompiledProperty, search: Proper
     return None
 
 
-def _can_meet(expectation: Comparison, values: Bounds) -> bool:
-    return _can_be(_RELATIONS[expectation.relation], expectation.number, values)
+def can_meet(expectation: Comparison, values: Bounds) -> bool:
+    return can_be(RELATIONS[expectation.relation], expectation.number, values)
 
 
-def _can_be(relation: BinaryOperator, number: float, values: Bounds) -> bool:
+def can_be(relation: BinaryOperator, number: float, values: Bounds) -> bool:
     """Whether a value between bounds can have a relation to a number."""
     match relation:
         case BinaryOperator.EQUAL:

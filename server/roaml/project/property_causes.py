@@ -7,12 +7,11 @@ time. So it is judged exactly as in the property itself.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Protocol, TypeAlias
 
 from roaml.comparison import as_written
 from roaml.diagnostics import Finding, Related
-from roaml.explicit.space import Space
-from roaml.explicit.spreads import cell_value
 from roaml.expr.tree import Expr, Name, walk
 from roaml.jani.expressions import Binary as JaniBinary
 from roaml.jani.expressions import Expression as JaniExpression
@@ -21,21 +20,19 @@ from roaml.jani.model import Model
 from roaml.jani.operators import BinaryOperator
 from roaml.jani.properties import eventually, identifiers
 from roaml.model.property_links import LinkedProperty
-from roaml.observers.properties import CLOSE, LEFT, OPEN, RIGHT, Pattern, PatternProperty
+from roaml.observers.properties import ANY_TIME, CLOSE, LEFT, OPEN, RIGHT, Pattern, PatternProperty
 from roaml.project.analysis import Analysis
 from roaml.project.exploration import with_reactions
-from roaml.project.property_search import Doubt, Doubted, PropertySearch, values_in
+from roaml.project.property_search import Doubt, Doubted
 from roaml.record import replace
 from roaml.rules.properties import never_satisfied, unmet_expectation, vacuous_property
 from roaml.rules.support.known_parts import conjuncts
 from roaml.scxml.model import Network
 from roaml.scxml.names import flag_of, sent_by
-from roaml.scxml.observed import ObservedProperty, ObservedVariable, PortEvent
+from roaml.scxml.observed import ObservedPort, ObservedProperty
 from roaml.smc.fault import FaultError
 from roaml.smc.model import ModelChecker
-from roaml.smc.names import Storage
-from roaml.smc.registers import REAL
-from roaml.text import Location
+from roaml.text import Location, Span
 from roaml.to_jani import translate
 from roaml.views.ends import marks, observer_outputs
 from roaml.xml_syntax.escapes import unescape
@@ -44,6 +41,26 @@ MAX_SENDERS = 5
 """The maximum number of related places where an event is sent."""
 MAX_VALUES = 4
 """The maximum number of values that are listed one by one."""
+_NOT_TESTED = (Doubt.SCOPE, Doubt.TRIGGER)
+
+
+Values: TypeAlias = "Mapping[str, set[float]]"
+"""Variable of a port -> the values that it has after a message."""
+
+
+class Evidence(Protocol):
+    """Answers about all runs of a system, or about simulated ones."""
+
+    def never(self, checker: ModelChecker, ports: Sequence[ObservedPort], *, is_notable: bool) -> Values | None:
+        """The values that the variables of the ports have after a message, if what the only property of the model
+        checker states, that something happens at some time, is true in no run; otherwise `None`.
+
+        Args:
+            is_notable: whether this must be notable by itself: simulated runs must send many messages to each port.
+        """
+
+    def always(self, checker: ModelChecker) -> bool:
+        """Whether the only property of the model checker holds in all runs."""
 
 
 class Causes:
@@ -51,13 +68,13 @@ class Causes:
 
     Args:
         network: the system.
-        search: answers further questions about it.
+        evidence: answers further questions about it.
     """
 
-    def __init__(self, analysis: Analysis, path: str, network: Network, search: PropertySearch) -> None:
+    def __init__(self, analysis: Analysis, path: str, network: Network, evidence: Evidence) -> None:
         self._analysis = analysis
         self._network = network
-        self._search = search
+        self._evidence = evidence
         self._linked = {
             linked.name: linked
             for listed in analysis.listed(path)
@@ -71,13 +88,18 @@ class Causes:
         if linked is not None and observed is not None:
             cause = None if doubted.values.upper > 0.0 and doubted.doubt is Doubt.UNMET else observed
             found = None if cause is None else self._never_true(doubted, linked, cause)
-            if found is None and cause is not None and self._depends_on_reactions:
+            if found is None and cause is not None and not doubted.simulated and self._depends_on_reactions:
                 found = self._never_true(replace(doubted, is_instant=True), linked, cause)
             if found is not None:
                 yield linked.path, found
                 return
+            if cause is not None and (late := self._of_time(doubted, linked, observed)) is not None:
+                yield linked.path, late
+                return
             if doubted.doubt is not Doubt.UNMET:
-                yield linked.path, self._of_order(doubted, linked, observed)
+                # In few runs, what never happens in the right order may only be rare.
+                if not (doubted.simulated and doubted.doubt in _NOT_TESTED):
+                    yield linked.path, self._of_order(doubted, linked, observed)
                 return
         origin = doubted.property.origin or doubted.property.expression.origin
         expect = None if linked is None else linked.written.expect
@@ -97,12 +119,12 @@ class Causes:
         relevant = [observed.conditions[name] for name in _relevant(doubted.doubt, observed)]
         parts = [part for condition in relevant for part, holds in conjuncts(condition, holds=True) if holds]
         for part in dict.fromkeys((*parts, *relevant)):
-            space = self._when(observed, part, is_instant=doubted.is_instant)
-            if space is None:
+            values = self._when(doubted, observed, part)
+            if values is None:
                 continue
-            values = "; ".join(_values_text(space, observed, part))
-            why = f"`{self._text(linked, part)}` is never true" + (f" ({values})" if values else "")
-            return _finding(doubted, linked, part, why, self._senders(observed, part, space))
+            stated = "; ".join(f"`{name}` is {_listed(known)}" for name, known in values.items() if known)
+            why = f"`{self._text(linked, part)}` is never true" + (f" ({stated})" if stated else "")
+            return _finding(doubted, linked, part.span, why, self._senders(observed, part))
         return None
 
     @property
@@ -115,12 +137,12 @@ class Causes:
         model = translate(self._network, (), (asked,))
         return next(variant for variant, assumes_more in with_reactions(model) if assumes_more is is_instant)
 
-    def _when(self, observed: ObservedProperty, condition: Expr, *, is_instant: bool) -> Space | None:
-        """All states of the system if a condition is true in none of its runs; otherwise `None`."""
+    def _when(self, doubted: Doubted, observed: ObservedProperty, condition: Expr) -> Values | None:
+        """The values of the variables of a condition if it is true in no run of the system; otherwise `None`."""
         asked = replace(
             observed, property=PatternProperty(Pattern.EXISTENCE), conditions={LEFT: condition}, expected=None
         )
-        model = self._model(asked, is_instant=is_instant)
+        model = self._model(asked, is_instant=doubted.is_instant)
         [property_] = model.properties
         known = {variable.name for variable in model.variables}
         read = [*(name for name, _ in identifiers(property_.expression)), *_read(observed, condition)]
@@ -136,9 +158,7 @@ class Causes:
             return None
         if checker.refused:
             return None
-        space = self._search.space(checker, checker.compiled_properties[0])
-        values = None if space is None else values_in(space)
-        return space if values is not None and values.upper == 0.0 else None
+        return self._evidence.never(checker, _ports_of(observed, condition), is_notable=doubted.doubt in _NOT_TESTED)
 
     def _of_order(self, doubted: Doubted, linked: LinkedProperty, observed: ObservedProperty) -> Finding:
         """The finding about a property each of whose conditions is true in some run."""
@@ -155,11 +175,23 @@ class Causes:
             where = "inside of the scope" if OPEN in linked.conditions else "where the property requires something"
             why = f"`{self._text(linked, condition.tree)}` is never true {where}"
         else:
-            why = _why_never(observed, self._text(linked, condition.tree))
+            why = _why_never(observed, self._text(linked, condition.tree), doubted.simulated)
             if self._holds_exchanged(observed, is_instant=doubted.is_instant):
                 why += "; with both conditions exchanged, it always holds"
-            return never_satisfied.finding(condition.span, linked.name, why, others, is_instant=doubted.is_instant)
-        return vacuous_property.finding(condition.span, linked.name, why, others, is_instant=doubted.is_instant)
+        return _finding(doubted, linked, condition.span, why, others)
+
+    def _of_time(self, doubted: Doubted, linked: LinkedProperty, observed: ObservedProperty) -> Finding | None:
+        """The finding about a property that would always hold without its time interval; `None` for others."""
+        property_, intervals = observed.property, linked.written.intervals
+        if doubted.doubt in _NOT_TESTED or not isinstance(property_, PatternProperty) or not intervals:
+            return None
+        if property_.pattern is Pattern.RECURRENCE or property_.window.is_unbounded:
+            return None
+        relaxed = replace(observed, property=replace(property_, window=ANY_TIME))
+        if not self._always_holds(relaxed, is_instant=doubted.is_instant):
+            return None
+        why = "without this time interval, it always holds"
+        return _finding(doubted, linked, intervals[0].element.name_span, why, ())
 
     def _holds_exchanged(self, observed: ObservedProperty, *, is_instant: bool) -> bool:
         """Whether a property holds in all runs with its conditions exchanged."""
@@ -167,30 +199,31 @@ class Causes:
         if not isinstance(property_, PatternProperty) or not property_.pattern.is_binary:
             return False
         left, right = observed.conditions[LEFT], observed.conditions[RIGHT]
-        asked = replace(observed, conditions={**observed.conditions, LEFT: right, RIGHT: left}, expected=None)
-        model = self._model(asked, is_instant=is_instant)
+        exchanged = replace(observed, conditions={**observed.conditions, LEFT: right, RIGHT: left})
+        return self._always_holds(exchanged, is_instant=is_instant)
+
+    def _always_holds(self, asked: ObservedProperty, *, is_instant: bool) -> bool:
+        """Whether another property holds in all runs."""
+        model = self._model(replace(asked, expected=None), is_instant=is_instant)
         try:
             checker = ModelChecker(model, model.properties, marks(model), outputs=observer_outputs(model))
         except FaultError:
             return False
-        values = self._search.values(checker, checker.compiled_properties[0])
-        return values is not None and values.lower == 1.0
+        return self._evidence.always(checker)
 
     def _text(self, linked: LinkedProperty, part: Expr) -> str:
         source = self._analysis.source(linked.path)
         return "this condition" if source is None else unescape(source.text[part.span.start : part.span.end])
 
-    def _senders(self, observed: ObservedProperty, part: Expr, space: Space) -> Iterator[Related]:
+    def _senders(self, observed: ObservedProperty, part: Expr) -> Iterator[Related]:
         """The places that send the events on which a condition depends."""
-        names = _names(part)
         events = {
             event.name: variable.id
-            for port in observed.ports
+            for port in _ports_of(observed, part)
             for variable in port.variables
-            if variable.id in names
             for event in port.events
         }
-        edges = (edge for automaton in space.checker.model.automata for edge in automaton.edges)
+        edges = (edge for automaton in translate(self._network, (), ()).automata for edge in automaton.edges)
         found = {
             edge.origin: events[event]
             for edge in edges
@@ -198,6 +231,13 @@ class Causes:
         }
         for origin, variable in list(found.items())[:MAX_SENDERS]:
             yield Related(origin, f"sends `{variable}`")
+
+
+def _ports_of(observed: ObservedProperty, part: Expr) -> list[ObservedPort]:
+    """The ports of a property from which a condition reads variables, with these variables."""
+    names = _names(part)
+    ports = (replace(p, variables=tuple(v for v in p.variables if v.id in names)) for p in observed.ports)
+    return [port for port in ports if port.variables]
 
 
 def _relevant(doubt: Doubt, observed: ObservedProperty) -> list[str]:
@@ -214,23 +254,23 @@ def _relevant(doubt: Doubt, observed: ObservedProperty) -> list[str]:
     return [name for name in (LEFT, RIGHT, *scope) if name in names]
 
 
-def _why_never(observed: ObservedProperty, condition: str) -> str:
+def _why_never(observed: ObservedProperty, condition: str, simulated: int) -> str:
     """Why no run satisfies a property each of whose conditions is true in some run.
 
     Args:
         condition: the text of its first condition.
+        simulated: see `Doubted`.
     """
     pattern = observed.property.pattern if isinstance(observed.property, PatternProperty) else None
     if pattern in (Pattern.UNIVERSALITY, Pattern.ABSENCE):
         value = "false" if pattern is Pattern.UNIVERSALITY else "true"
-        return f"`{condition}` is {value} at some time in every run"
+        return f"`{condition}` is {value} at some time in every {'one' if simulated else 'run'}"
     return "each of its conditions is true in some run, but never as the pattern, its scope and its time require"
 
 
-def _finding(doubted: Doubted, linked: LinkedProperty, part: Expr, why: str, related: Iterable[Related]) -> Finding:
-    if doubted.doubt in (Doubt.SCOPE, Doubt.TRIGGER):
-        return vacuous_property.finding(part.span, linked.name, why, related, is_instant=doubted.is_instant)
-    return never_satisfied.finding(part.span, linked.name, why, related, is_instant=doubted.is_instant)
+def _finding(doubted: Doubted, linked: LinkedProperty, place: Span, why: str, related: Iterable[Related]) -> Finding:
+    finding = vacuous_property.finding if doubted.doubt in _NOT_TESTED else never_satisfied.finding
+    return finding(place, linked.name, why, related, is_instant=doubted.is_instant, simulated=doubted.simulated)
 
 
 def _unmet(doubted: Doubted, origin: Location) -> Finding:
@@ -238,6 +278,8 @@ def _unmet(doubted: Doubted, origin: Location) -> Finding:
     number = f"{expected.relation} {as_written(expected.number)}" if expected is not None else "of its formula"
     low, high = (f"{value:.6g}" for value in values)
     shown = f"{low} in this system" if low == high else f"from {low} to {high} in this system"
+    if doubted.simulated:
+        shown = f"satisfied in {round(values.lower * doubted.simulated)} of {doubted.simulated} simulated runs"
     return unmet_expectation.finding(origin.span, doubted.property.name, number, shown, is_instant=doubted.is_instant)
 
 
@@ -258,41 +300,9 @@ def _names(part: Expr) -> set[str]:
 # ----------------------------------------------------------------- reached values
 
 
-def _values_text(space: Space, observed: ObservedProperty, part: Expr) -> Iterator[str]:
-    """The values of the variables of a condition in all states, as phrases."""
-    names = _names(part)
-    for port in observed.ports:
-        for variable in port.variables:
-            if variable.id in names and variable.initial is not None:
-                values = _values(space, port.events, variable)
-                if values:
-                    yield f"`{variable.id}` is {_listed(values)}"
-
-
 def _listed(values: set[float]) -> str:
     ordered = sorted(values)
     if len(ordered) > MAX_VALUES:
         return f"from {ordered[0]:g} to {ordered[-1]:g}"
     texts = [f"{value:g}" for value in ordered]
     return texts[0] if len(texts) == 1 else f"{', '.join(texts[:-1])} or {texts[-1]}"
-
-
-def _values(space: Space, events: tuple[PortEvent, ...], variable: ObservedVariable) -> set[float]:
-    """The values that a variable of a port has after the events of the port; empty if they are not known."""
-    shared = {storage.name: storage for storage in space.checker.legend.layout.shared}
-    values: set[float] = set()
-    for event in events:
-        value, flag = shared.get(f"{event.name}__{variable.parameter}"), shared.get(flag_of(event.name))
-        if value is None or flag is None or value.shape:
-            return set()
-        cells = _cell(space, value), _cell(space, flag)
-        for state in range(space.states):
-            key = space.search.key(state)
-            if key[cells[1]]:
-                values.add(cell_value(key[cells[0]], value.kind))
-    return values
-
-
-def _cell(space: Space, storage: Storage) -> int:
-    program = space.checker.program
-    return program.instances + storage.base + (program.int_count if storage.kind == REAL else 0)

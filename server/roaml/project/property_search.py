@@ -4,19 +4,24 @@
 from __future__ import annotations
 
 import enum
+from collections.abc import Mapping, Sequence
 
 from roaml.comparison import Comparison
 from roaml.explicit.independence import can_be_reduced
 from roaml.explicit.space import LimitError, Space, StateLimits, explore
+from roaml.explicit.spreads import cell_value
 from roaml.explicit.values import NoValueError, values_of
 from roaml.interruption import checkpoint
 from roaml.jani.properties import Property
 from roaml.project.exploration import MAX_BYTES
 from roaml.record import Record
-from roaml.scxml.observed import ObservedProperty
+from roaml.scxml.names import flag_of
+from roaml.scxml.observed import ObservedPort, ObservedProperty, ObservedVariable, PortEvent
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
+from roaml.smc.names import Storage
+from roaml.smc.registers import REAL
 from roaml.smc.statistics import Bounds
 
 MAX_STATES = 20_000
@@ -52,6 +57,8 @@ class Doubted(Record, frozen=True):
         observed: its observer; `None` for a property in JANI.
         expected: its expectation that no value meets; `None` if there is none, or if it is a part of the formula.
         is_instant: whether the doubt is only known if all machines react at once.
+        simulated: the number of simulated runs from which the doubt is known, of which `values` is the share that
+            satisfies the property; 0 if all states are known.
     """
 
     doubt: Doubt
@@ -60,6 +67,7 @@ class Doubted(Record, frozen=True):
     observed: ObservedProperty | None
     expected: Comparison | None
     is_instant: bool
+    simulated: int = 0
 
 
 class PropertySearch:
@@ -90,6 +98,22 @@ class PropertySearch:
         self._left -= space.search.transitions + space.search.passed
         return space if space.problem is None else None
 
+    def never(
+        self, checker: ModelChecker, ports: Sequence[ObservedPort], *, is_notable: bool
+    ) -> Mapping[str, set[float]] | None:
+        """See `roaml.project.property_causes.Evidence`."""
+        space = self.space(checker, checker.compiled_properties[0])
+        values = None if space is None else values_in(space)
+        if space is None or values is None or values.upper > 0.0:
+            return None
+        variables = ((port, variable) for port in ports for variable in port.variables if variable.initial is not None)
+        return {variable.id: _reached(space, port.events, variable) for port, variable in variables}
+
+    def always(self, checker: ModelChecker) -> bool:
+        """See `roaml.project.property_causes.Evidence`."""
+        values = self.values(checker, checker.compiled_properties[0])
+        return values is not None and values.lower == 1.0
+
     def is_impossible(self, checker: ModelChecker, asked: Property) -> bool:
         """Whether the property `asked`, that something happens at some time, holds in no run."""
         try:
@@ -107,3 +131,24 @@ def values_in(space: Space) -> Bounds | None:
     except NoValueError:
         return None
     return Bounds(values.minimum.lower, values.maximum.upper)
+
+
+def _reached(space: Space, events: tuple[PortEvent, ...], variable: ObservedVariable) -> set[float]:
+    """The values that a variable of a port has after the events of the port; empty if they are not known."""
+    shared = {storage.name: storage for storage in space.checker.legend.layout.shared}
+    values: set[float] = set()
+    for event in events:
+        value, flag = shared.get(f"{event.name}__{variable.parameter}"), shared.get(flag_of(event.name))
+        if value is None or flag is None or value.shape:
+            return set()
+        cells = _cell(space, value), _cell(space, flag)
+        for state in range(space.states):
+            key = space.search.key(state)
+            if key[cells[1]]:
+                values.add(cell_value(key[cells[0]], value.kind))
+    return values
+
+
+def _cell(space: Space, storage: Storage) -> int:
+    program = space.checker.program
+    return program.instances + storage.base + (program.int_count if storage.kind == REAL else 0)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The rule `unmet-expectation`, which unmet_expectation.md describes. `roaml.project.explored_findings` reports it,
-because it needs all reachable states of a system."""
+because it needs the reachable states or runs of a system."""
 
 from __future__ import annotations
 
