@@ -63,7 +63,8 @@ class _Judge(Record, frozen=True, eq=False):
         doubts = {name: self._doubt(*judged) for name, judged in found.items()}
         # An expectation is about the probabilities of the model itself.
         unsure = {name for name, doubt in doubts.items() if doubt is not Doubt.UNMET}
-        for variant in [v for other, _ in with_reactions(model) for v in varied(other) if v is not model]:
+        others = (other for other, assumes_more in with_reactions(model) if assumes_more)
+        for variant in [v for each in (model, *others) for v in varied(each) if v is not model]:
             again = self._in(variant, unsure) if unsure else {}
             unsure = {name for name, judged in again.items() if self._doubt(*judged) is doubts[name]}
         for name, (compiled, outcome) in found.items():
