@@ -18,7 +18,7 @@ from roaml.model.property_file import WrittenProperty, WrittenScope
 from roaml.model.property_links import LinkedFile
 from roaml.model.syntax import Expression
 from roaml.model.values.evaluate import place_of
-from roaml.observers.properties import Pattern
+from roaml.observers.properties import Pattern, ScopeKind
 from roaml.rules.rule import MachineContext, PropertiesContext, Rule
 from roaml.rules.support.compared_numbers import required
 from roaml.text import Span
@@ -69,6 +69,7 @@ def check_properties(file: LinkedFile) -> Iterator[Finding]:
             yield from _implied(written, events)
         for scope in written.scopes:
             yield from _never_begun(scope)
+            yield from _decided_by_scope(written, scope, events)
         for expression in written.expressions:
             if not expression.broken:
                 yield from _repeated(expression.tree)
@@ -99,6 +100,26 @@ def _never_begun(scope: WrittenScope) -> Iterator[Finding]:
         yield RULE.at(until.span, message, related=[Related(event.span, "the begin of the scope")])
 
 
+def _decided_by_scope(written: WrittenProperty, scope: WrittenScope, events: Sequence[Expression]) -> Iterator[Finding]:
+    """Report a scope that ends before its event could happen in it, and one that begins with the event that must exist
+    in it."""
+    pattern = written.pattern.value if written.pattern is not None else ""
+    kind = scope.type.value if scope.type is not None else ""
+    if pattern not in (Pattern.ABSENCE.value, Pattern.EXISTENCE.value) or len(events) != 1:
+        return
+    is_absence = pattern == Pattern.ABSENCE.value
+    is_late = any(interval.after is not None for interval in written.intervals)
+    begin, end = (None, scope.event) if kind in _FROM_START else (scope.event, scope.until)
+    if end is not None and not end.broken and _parts(end) <= _parts(events[0]):
+        effect = f"so the property {'always' if is_absence else 'never'} holds; did you mean another?"
+        message = f"the scope ends before the event of the property, {effect}"
+        yield RULE.at(end.span, message, related=[Related(events[0].span, "the event that contains it")])
+    elif begin is not None and not begin.broken and not is_late and _parts(events[0]) <= _parts(begin):
+        effect = f"so the property {'never' if is_absence else 'always'} holds; did you mean another?"
+        message = f"the scope begins with this event, {effect}"
+        yield RULE.at(events[0].span, message, related=[Related(begin.span, "the begin of the scope")])
+
+
 def _parts(condition: Expression) -> set[str]:
     """The texts of the parts that a condition joins with `&&`."""
     parts = list(required(condition.tree))
@@ -114,6 +135,8 @@ def _compared_with_itself(tree: Expr) -> Iterator[Finding]:
                 yield RULE.at(node.right.span, message, related=[Related(node.left.span, "the same operand")])
 
 
+_FROM_START = (ScopeKind.BEFORE.value, ScopeKind.UNTIL.value)
+"""The scopes that begin at the start of the trace and end with their only event."""
 _ORDERED = (Pattern.RESPONSE.value, Pattern.PRECEDENCE.value)
 
 

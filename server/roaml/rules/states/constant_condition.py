@@ -23,7 +23,7 @@ from roaml.rules.support.compared_numbers import (
     by_type,
     compared_constants,
     comparisons,
-    contradictions,
+    decided_junctions,
     only_ways,
     required,
     result_for,
@@ -99,9 +99,8 @@ def check_properties(file: LinkedFile) -> Iterator[Finding]:
         limits = [limit for scope in written.scopes for limit in (scope.event, scope.until) if limit is not None]
         for expression in written.expressions:
             parts = [] if expression.broken else list(required(expression.tree))
-            for conjunction, name in () if expression.broken else contradictions(expression.tree):
-                message = f"this is never true: the comparisons of `{name}` contradict each other; did you mean `||`?"
-                yield RULE.at(conjunction.span, message)
+            for junction, name, holds in () if expression.broken else decided_junctions(expression.tree):
+                yield RULE.at(junction.span, _DECIDED[holds].format(name=name))
             for node, name, value in () if expression.broken else compared_constants(expression.tree):
                 type_, known = types.get(name), file.values.get(name)
                 of_type = None
@@ -128,6 +127,12 @@ def check_properties(file: LinkedFile) -> Iterator[Finding]:
                 )
                 if is_only_way and result_for(node, name, known, value) == FALSE:
                     yield _of_sent(node, name, known, FALSE)
+
+
+_DECIDED = {
+    False: "this is never true: the comparisons of `{name}` contradict each other; did you mean `||`?",
+    True: "this is always true: one of the comparisons of `{name}` holds for each value; did you mean `&&`?",
+}
 
 
 def _of_sent(node: Binary, name: str, known: ValueSet, result: ValueSet) -> Finding:

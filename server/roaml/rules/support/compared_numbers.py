@@ -4,16 +4,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from roaml.expr.infer import constant
-from roaml.expr.operators import MIRRORED, Operator, OperatorKind
-from roaml.expr.tree import Binary, Expr, Name, String, walk
+from roaml.expr.operators import MIRRORED, OPPOSITE, Operator, OperatorKind
+from roaml.expr.tree import Binary, Expr, Name, String, children, walk
 from roaml.expr.types import Scalar
 from roaml.model.values.analyse import of_type
 from roaml.model.values.describe import described
 from roaml.model.values.domain import BOTH, FALSE, TRUE, Origin, ValueSet, exactly
 from roaml.model.values.evaluate import compared
+from roaml.rules.support.alternatives import joined
 
 
 def comparisons(tree: Expr) -> Iterator[tuple[Binary, str, float]]:
@@ -44,19 +45,29 @@ def required(tree: Expr) -> Iterator[Expr]:
         yield from required(tree.right)
 
 
-def contradictions(tree: Expr) -> Iterator[tuple[Expr, str]]:
-    """The conjunctions in a condition whose comparisons of a variable with constants exclude each other, each with the
-    name of the variable."""
-    if not isinstance(tree, Binary) or tree.operator is not Operator.AND:
-        for side in (tree.left, tree.right) if isinstance(tree, Binary) else ():
-            yield from contradictions(side)
-        return
+def decided_junctions(tree: Expr) -> Iterator[tuple[Expr, str, bool]]:
+    """The conjunctions in a condition whose comparisons of a variable with constants exclude each other, and the
+    disjunctions one of whose comparisons always holds: each with the name of the variable and its value."""
+    parts: Sequence[Expr] = children(tree)
+    if isinstance(tree, Binary) and tree.operator in (Operator.AND, Operator.OR):
+        parts = joined(tree, tree.operator)
+        name = _excluded(parts, negated=tree.operator is Operator.OR)
+        if name is not None:
+            yield tree, name, tree.operator is Operator.OR
+            return
+    for part in parts:
+        yield from decided_junctions(part)
+
+
+def _excluded(parts: Iterable[Expr], *, negated: bool) -> str | None:
+    """The variable that has no value for which all comparisons among the parts hold, or none holds if `negated`."""
     allowed: dict[str, tuple[float, bool, float, bool]] = {}
-    for part in required(tree):
+    for part in parts:
         for node, name, number in comparisons(part) if isinstance(part, Binary) else ():
             operator = node.operator if isinstance(node.left, Name) else MIRRORED.get(node.operator)
             if node is not part or operator is None:
                 continue
+            operator = OPPOSITE[operator] if negated else operator
             low, open_low, high, open_high = allowed.get(name, (-math.inf, False, math.inf, False))
             if operator in (Operator.EQUAL, Operator.GREATER, Operator.GREATER_EQUAL):
                 low, open_low = max((low, open_low), (number, operator is Operator.GREATER))
@@ -66,8 +77,8 @@ def contradictions(tree: Expr) -> Iterator[tuple[Expr, str]]:
             allowed[name] = low, open_low, high, open_high
     for name, (low, open_low, high, open_high) in allowed.items():
         if low > high or (low == high and (open_low or open_high)):
-            yield tree, name
-            return
+            return name
+    return None
 
 
 def by_type(node: Binary, name: str, type_: Scalar, number: float) -> tuple[bool, str] | None:
