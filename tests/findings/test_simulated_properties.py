@@ -14,7 +14,7 @@ from roaml.diagnostics import Diagnostic
 from roaml.jani.equal_probabilities import with_equal_probabilities
 from roaml.jani.expressions import Integer
 from roaml.jani.model import Clause, Destination
-from roaml.project import exploration
+from roaml.project import exploration, explored_properties
 from roaml.project.settings import Settings
 from roaml.project.translation import network_of
 from roaml.record import replace
@@ -175,6 +175,17 @@ def test_an_expectation_of_the_settings(tmp_path: Path, expected: str, number: i
     assert comparison is not None
     rare = one("existence", "size == 4", '<scope type="globally" /><time_interval within="0.5" time_unit="s" />')
     assert len(found(tmp_path, rare, settings=Settings(expectations={"asked": comparison}))) == number
+
+
+def test_a_search_that_is_too_long_is_replaced_by_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(exploration, "MAX_STATES", 10_000)
+    property_ = one("existence", "width == 3")
+    [searched] = found(tmp_path, property_)
+    monkeypatch.setattr(explored_properties, "MAX_STEPS", 1)
+    [simulated] = found(tmp_path, property_)
+    assert searched.span == simulated.span
+    assert "simulated" not in searched.message
+    assert "simulated" in simulated.message
 
 
 def test_equal_probabilities_keep_what_is_impossible(tmp_path: Path) -> None:

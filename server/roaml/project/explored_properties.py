@@ -10,49 +10,31 @@ too long, the finding says what it assumes.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from roaml.comparison import Comparison
 from roaml.diagnostics import Finding
 from roaml.jani.expressions import Name
 from roaml.jani.model import Model
-from roaml.jani.nesting import is_nested
-from roaml.jani.operators import BinaryOperator
-from roaml.jani.properties import BinaryFormula, Filter, Property, eventually, walk
-from roaml.model.property_links import clock_step
+from roaml.jani.properties import eventually
 from roaml.project.analysis import Analysis
+from roaml.project.asked_properties import asked_of, can_be, can_meet, findings_of_doubts, wanted_of
 from roaml.project.exploration import with_reactions
 from roaml.project.property_search import MAX_CAUSE_STEPS, MAX_STEPS, Doubt, Doubted, PropertySearch
-from roaml.project.translation import network_of, observed_properties_of, properties_of
-from roaml.record import Record
-from roaml.scxml.model import Network
-from roaml.scxml.names import sent_by
 from roaml.scxml.observed import ObservedProperty
 from roaml.smc.fault import FaultError
 from roaml.smc.goal import NO_OUTPUTS, CompiledProperty
 from roaml.smc.kernel import Kernel
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import TRUE, UNKNOWN
-from roaml.smc.statistics import Bounds
-from roaml.to_jani import translate
-from roaml.to_jani.state_observers import with_state_observers
 from roaml.views.ends import marks, observer_outputs
 
 if TYPE_CHECKING:
-    from roaml.project.property_causes import Evidence
+    pass
 
 TRACES, TRACE_STEPS = 20, 10_000
 """The number of random traces of each property, and their maximum length."""
-_SLACK = 1e-6
-"""The difference between a value and the number of an expectation that is attributed to rounding."""
-RELATIONS = {
-    ">=": BinaryOperator.GREATER_EQUAL,
-    "<=": BinaryOperator.LESS_EQUAL,
-    ">": BinaryOperator.GREATER,
-    "<": BinaryOperator.LESS,
-    "==": BinaryOperator.EQUAL,
-}
 
 
 def findings_about_properties(
@@ -69,81 +51,18 @@ def findings_about_properties(
     model, observed = asked.model, asked.observed
     search = PropertySearch(MAX_STEPS)
     doubted: dict[str, Doubted] | None = None
+    unknown: set[str] = set()
     for variant, is_instant in with_reactions(model):
-        judged = dict(_judged(variant, search, observed, expected, doubted, is_instant=is_instant))
+        judged = dict(_judged(variant, search, observed, expected, doubted, unknown, is_instant=is_instant))
         doubted = {name: doubt for name, doubt in {**(doubted or {}), **judged}.items() if doubt is not None}
         if not doubted:
-            return
-    yield from findings_of_doubts(analysis, path, asked, (doubted or {}).values(), PropertySearch(MAX_CAUSE_STEPS))
+            break
+    known = doubted or {}
+    yield from findings_of_doubts(analysis, path, asked, known.values(), PropertySearch(MAX_CAUSE_STEPS))
+    if unknown - known.keys():
+        from roaml.project.simulated_properties import findings_in_runs  # noqa: PLC0415 - few searches are too long
 
-
-class Asked(Record, frozen=True):
-    """The properties of a system that are judged.
-
-    Attributes:
-        observed: the properties of XML files without assumptions, by name.
-        network: the system.
-        model: the system with its properties and their observers.
-    """
-
-    observed: Mapping[str, ObservedProperty]
-    network: Network
-    model: Model
-
-
-def asked_of(analysis: Analysis, path: str, expected: Mapping[str, Comparison]) -> Asked | None:
-    """The properties that are judged in a system without errors; `None` if there are none.
-
-    Args:
-        expected: see `findings_about_properties`.
-    """
-    observed = {p.name: p for p in observed_properties_of(analysis, path) if not p.assumptions}
-    in_jani = tuple(p for p in properties_of(analysis, path) if p.name in expected or _says_more(p))
-    system = analysis.system(path)
-    if system is None or not (observed or in_jani):
-        return None
-    network = network_of(analysis, path)
-    model = translate(network, in_jani, tuple(observed.values()), has_activity=True)
-    return Asked(observed, network, with_state_observers(model, clock_step(system)))
-
-
-def findings_of_doubts(
-    analysis: Analysis, path: str, asked: Asked, doubts: Iterable[Doubted], evidence: Evidence
-) -> Iterator[tuple[str, Finding]]:
-    """The paths of files, and the findings about properties with doubts.
-
-    Args:
-        evidence: answers further questions.
-    """
-    sent = {sent_by(edge.action or "") for automaton in asked.model.automata for edge in automaton.edges}
-    heard = [each for each in doubts if each.observed is None or _hears(each.observed, sent)]
-    if heard:
-        from roaml.project.property_causes import Causes  # noqa: PLC0415 - most properties have no doubt
-
-        causes = Causes(analysis, path, asked.network, evidence)
-        for each in heard:
-            yield from causes.findings(each)
-
-
-def wanted_of(
-    name: str, observed: Mapping[str, ObservedProperty], expected: Mapping[str, Comparison]
-) -> list[Comparison]:
-    """The expectations about the property `name`: its own, and that of the settings."""
-    own = observed.get(name)
-    return [c for c in (own.expected if own else None, expected.get(name)) if c is not None]
-
-
-def _hears(observed: ObservedProperty, sent: Collection[str]) -> bool:
-    """Whether an event is sent to each port of a property. `unsent-port` reports the others."""
-    return all(any(event.name in sent for event in port.events) for port in observed.ports)
-
-
-def _says_more(property_: Property) -> bool:
-    """Whether a property compares its value with a number, or contains nested formulas, such as a request and its
-    response. Others may be about what must never happen."""
-    formula = property_.expression
-    values = formula.values if isinstance(formula, Filter) else formula
-    return isinstance(values, BinaryFormula) or any(is_nested(part) for part in walk(formula))
+        yield from findings_in_runs(analysis, path, asked, expected, unknown - known.keys())
 
 
 def _judged(
@@ -152,6 +71,7 @@ def _judged(
     observed: Mapping[str, ObservedProperty],
     expected: Mapping[str, Comparison],
     names: Collection[str] | None,
+    unknown: set[str],
     *,
     is_instant: bool,
 ) -> Iterator[tuple[str, Doubted | None]]:
@@ -160,6 +80,7 @@ def _judged(
 
     Args:
         names: the names of the properties that are judged; `None` for all.
+        unknown: the names of those about which nothing is known are added.
         is_instant: whether the model assumes that machines react at once.
     """
     chosen = [p for p in model.properties if names is None or p.name in names]
@@ -174,6 +95,7 @@ def _judged(
             continue
         values = search.values(checker, compiled)
         if values is None:
+            unknown.add(property_.name)
             continue
         doubt = _untested(checker, compiled, search) if values.lower == 1.0 and not question.is_reward else None
         unmet = next((c for c in wanted if not can_meet(c, values)), None)
@@ -211,18 +133,3 @@ def _untested(checker: ModelChecker, property_: CompiledProperty, search: Proper
         if happens is not None and search.is_impossible(checker, eventually(property_.property.name, happens)):
             return doubt
     return None
-
-
-def can_meet(expectation: Comparison, values: Bounds) -> bool:
-    return can_be(RELATIONS[expectation.relation], expectation.number, values)
-
-
-def can_be(relation: BinaryOperator, number: float, values: Bounds) -> bool:
-    """Whether a value between bounds can have a relation to a number."""
-    match relation:
-        case BinaryOperator.EQUAL:
-            return values.lower - _SLACK <= number <= values.upper + _SLACK
-        case BinaryOperator.GREATER | BinaryOperator.GREATER_EQUAL:
-            return bool(relation.function(values.upper, number)) or 0 < number - values.upper <= _SLACK
-        case _:
-            return bool(relation.function(values.lower, number)) or 0 < values.lower - number <= _SLACK

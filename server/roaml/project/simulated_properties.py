@@ -8,15 +8,14 @@ with equal probabilities, and with machines that react at once.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 
 from roaml.comparison import Comparison
 from roaml.diagnostics import Finding
 from roaml.jani.model import Model
 from roaml.jani.operators import BinaryOperator
 from roaml.project.analysis import Analysis
-from roaml.project.exploration import with_reactions
-from roaml.project.explored_properties import (
+from roaml.project.asked_properties import (
     RELATIONS,
     Asked,
     asked_of,
@@ -25,6 +24,7 @@ from roaml.project.explored_properties import (
     findings_of_doubts,
     wanted_of,
 )
+from roaml.project.exploration import with_reactions
 from roaml.project.property_runs import RUNS, Outcome, PropertyRuns, outcomes, varied
 from roaml.project.property_search import Doubt, Doubted
 from roaml.record import Record
@@ -45,9 +45,15 @@ def findings_about_simulated_properties(
         expected: name of a property -> the result that the settings of the user expect.
     """
     asked = asked_of(analysis, path, expected)
-    if asked is None:
-        return
-    doubts = list(_Judge(asked, expected).doubts())
+    if asked is not None:
+        yield from findings_in_runs(analysis, path, asked, expected, {p.name for p in asked.model.properties})
+
+
+def findings_in_runs(
+    analysis: Analysis, path: str, asked: Asked, expected: Mapping[str, Comparison], names: Collection[str]
+) -> Iterator[tuple[str, Finding]]:
+    """The same for the properties in `names`."""
+    doubts = list(_Judge(asked, expected).doubts(names))
     owners = {a.name: a.thread_of for a in asked.network.automata if a.thread_of}
     yield from findings_of_doubts(analysis, path, asked, doubts, PropertyRuns(owners))
 
@@ -56,10 +62,10 @@ class _Judge(Record, frozen=True, eq=False):
     asked: Asked
     expected: Mapping[str, Comparison]
 
-    def doubts(self) -> Iterator[Doubted]:
-        """The properties of which all runs raise the same doubt."""
+    def doubts(self, names: Collection[str]) -> Iterator[Doubted]:
+        """The properties in `names` about which all runs raise the same doubt."""
         model = self.asked.model
-        found = self._in(model, {property_.name for property_ in model.properties})
+        found = self._in(model, names)
         doubts = {name: self._doubt(*judged) for name, judged in found.items()}
         # An expectation is about the probabilities of the model itself.
         unsure = {name for name, doubt in doubts.items() if doubt is not Doubt.UNMET}
@@ -75,7 +81,7 @@ class _Judge(Record, frozen=True, eq=False):
                 unmet = next((c for c in self._wanted(name) if not can_meet(c, _bounds(outcome))), None)
                 yield Doubted(doubt, share, compiled.property, own, unmet, is_instant=False, simulated=outcome.runs)
 
-    def _in(self, model: Model, names: set[str]) -> Mapping[str, tuple[CompiledProperty, Outcome]]:
+    def _in(self, model: Model, names: Collection[str]) -> Mapping[str, tuple[CompiledProperty, Outcome]]:
         """The properties about which all runs of a model raise a doubt, with their outcomes."""
         properties = {p.name: p for p in model.properties if p.name in names}
         return outcomes(model, properties, observer_outputs(model), lambda *judged: self._doubt(*judged) is not None)
