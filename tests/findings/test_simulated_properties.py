@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -15,7 +16,9 @@ from roaml.jani.equal_probabilities import with_equal_probabilities
 from roaml.jani.expressions import Integer
 from roaml.jani.model import Clause, Destination
 from roaml.project import exploration, explored_properties
+from roaml.project.property_runs import RUNS
 from roaml.project.settings import Settings
+from roaml.project.simulated_properties import MIN_FAILED
 from roaml.project.translation import network_of
 from roaml.record import replace
 from roaml.to_jani import translate
@@ -125,6 +128,12 @@ def _too_many_states(monkeypatch: pytest.MonkeyPatch) -> None:
         (one("existence", "width == 3"), "never-satisfied", "width == 3", "(`width` is 2 or 4)"),
         (one("existence", "width == 3", expect=' expect="&gt;= 0.5"'), "never-satisfied", "width == 3", "none of 100"),
         (one("universality", "size &lt; 2"), "never-satisfied", "size &lt; 2", "false at some time in every one"),
+        (
+            response("size == 8 || item &amp;&amp; size == 4", "size == 6"),
+            "never-satisfied",
+            "size == 6",
+            "none of 100 simulated runs of this system that test the property",
+        ),
         (response("item", "grasps", 'after="30"'), "never-satisfied", "time_interval", "without this time interval"),
         (
             one("existence", "item &amp;&amp; size == 4", expect=' expect="&lt;= 0.5"'),
@@ -162,6 +171,14 @@ def test_a_right_property_is_not_reported(tmp_path: Path, property_: str) -> Non
 @pytest.mark.parametrize("property_", [response("size == 8", "grasps"), one("existence", "size == 8")])
 def test_what_only_happens_rarely_is_no_mistake(tmp_path: Path, property_: str) -> None:
     assert found(tmp_path, property_) == []
+
+
+def test_runs_that_do_not_test_a_property_do_not_count(tmp_path: Path) -> None:
+    property_ = one("existence", "width == 6", '<scope type="after" event="item &amp;&amp; size == 4" />')
+    [finding] = found(tmp_path, property_, 2)
+    tested = re.search(r"none of (\d+) simulated runs of this system that test", finding.message)
+    assert tested is not None
+    assert MIN_FAILED <= int(tested[1]) < RUNS
 
 
 @pytest.mark.parametrize(("seconds", "number"), [(1, 0), (5, 1)])

@@ -41,12 +41,14 @@ class Outcome(Record, frozen=True):
 
     Attributes:
         passed, failed: the numbers of runs that satisfy it and of those that violate it; the others are undecided.
+        tested: the number of runs that satisfy it although they exercise it completely.
         activity: how far the most advanced run has exercised it.
     """
 
     runs: int
     passed: int
     failed: int
+    tested: int
     activity: Activity
 
     @property
@@ -54,7 +56,7 @@ class Outcome(Record, frozen=True):
         return self.runs - self.passed - self.failed
 
 
-NO_OUTCOME = Outcome(0, 0, 0, Activity.CLOSED)
+NO_OUTCOME = Outcome(0, 0, 0, 0, Activity.CLOSED)
 
 
 def outcomes(
@@ -86,7 +88,9 @@ def outcomes(
         for (number, before), rows in zip(list(known.items()), batch.questions, strict=True):
             passed, failed = before.passed + rows.verdicts.count(TRUE), before.failed + rows.verdicts.count(FALSE)
             activity = max(before.activity, *map(Activity, rows.activities))
-            outcome = Outcome(first, passed, failed, activity)
+            complete = zip(rows.verdicts, rows.activities, strict=True)
+            tested = before.tested + sum(v == TRUE and a == Activity.TRIGGERED for v, a in complete)
+            outcome = Outcome(first, passed, failed, tested, activity)
             if is_doubted(compiled[number], outcome):
                 known[number] = outcome
             else:

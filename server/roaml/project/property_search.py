@@ -58,7 +58,7 @@ class Doubted(Record, frozen=True):
         expected: its expectation that no value meets; `None` if there is none, or if it is a part of the formula.
         is_instant: whether the doubt is only known if all machines react at once.
         simulated: the number of simulated runs from which the doubt is known, of which `values` is the share that
-            satisfies the property; 0 if all states are known.
+            satisfies the property; for `NEVER`, of those that test it. 0 if all states are known.
     """
 
     doubt: Doubt

@@ -32,6 +32,8 @@ from roaml.smc.goal import Activity, CompiledProperty
 from roaml.smc.statistics import Bounds, confidence_sequence
 from roaml.views.ends import observer_outputs
 
+MIN_FAILED = 25
+"""The number of runs that must violate a property, if the others do not test it."""
 CONFIDENCE = 0.999
 """The confidence with which the runs must exclude an expectation."""
 
@@ -75,11 +77,13 @@ class _Judge(Record, frozen=True, eq=False):
             unsure = {name for name, judged in again.items() if self._doubt(*judged) is doubts[name]}
         for name, (compiled, outcome) in found.items():
             doubt = doubts[name]
-            if doubt is not None and (doubt is Doubt.UNMET or name in unsure):
+            is_sure = name in unsure and (doubt is not Doubt.NEVER or outcome.failed >= MIN_FAILED)
+            if doubt is not None and (doubt is Doubt.UNMET or is_sure):
                 share = Bounds(outcome.passed / outcome.runs, outcome.passed / outcome.runs)
                 own = self.asked.observed.get(name)
                 unmet = next((c for c in self._wanted(name) if not can_meet(c, _bounds(outcome))), None)
-                yield Doubted(doubt, share, compiled.property, own, unmet, is_instant=False, simulated=outcome.runs)
+                runs = outcome.failed if doubt is Doubt.NEVER else outcome.runs
+                yield Doubted(doubt, share, compiled.property, own, unmet, is_instant=False, simulated=runs)
 
     def _in(self, model: Model, names: Collection[str]) -> Mapping[str, tuple[CompiledProperty, Outcome]]:
         """The properties about which all runs of a model raise a doubt, with their outcomes."""
@@ -106,10 +110,10 @@ class _Judge(Record, frozen=True, eq=False):
                 return Doubt.UNMET
         if own is None or outcome.undecided:
             return None
-        if outcome.failed == outcome.runs:
-            return None if wanted else Doubt.NEVER
-        if outcome.passed < outcome.runs or not question.can_be_vacuous or outcome.activity is Activity.TRIGGERED:
+        if outcome.tested or (outcome.passed and not question.can_be_vacuous):
             return None
+        if outcome.failed:
+            return None if wanted else Doubt.NEVER
         return Doubt.SCOPE if outcome.activity is Activity.CLOSED else Doubt.TRIGGER
 
 

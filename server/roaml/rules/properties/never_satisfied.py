@@ -19,14 +19,14 @@ def finding(
     Args:
         why: the reason, or what to change, as a clause.
         is_instant: whether this is only known if all machines react at once.
-        simulated: the number of simulated runs from which this is known; 0 if all runs are known.
+        simulated: the number of simulated runs from which this is known, without those that do not test the property; 0
+            if all runs are known.
     """
     assumed = " if all machines react at once" if is_instant else ""
-    no_run = f"none of {simulated} simulated runs" if simulated else "no run"
-    message = (
-        f"{no_run} of this system satisfies the property `{name}`{assumed}: {why}; check the property and the system, "
-        'or write `expect="= 0"` if this is intended'
-    )
+    known = f"no run of this system satisfies the property `{name}`{assumed}"
+    if simulated:
+        known = f"none of {simulated} simulated runs of this system that test the property `{name}` satisfies it"
+    message = f'{known}: {why}; check the property and the system, or write `expect="= 0"` if this is intended'
     return RULE.at(span, message, related=related)
 
 
