@@ -36,7 +36,7 @@ MIN_MESSAGES = 50
 """The number of messages from which on it is notable that none of them has a value."""
 
 
-class Outcome(Record, frozen=True):
+class RunOutcome(Record, frozen=True):
     """What a number of runs says about a property.
 
     Attributes:
@@ -56,15 +56,15 @@ class Outcome(Record, frozen=True):
         return self.runs - self.passed - self.failed
 
 
-NO_OUTCOME = Outcome(0, 0, 0, 0, Activity.CLOSED)
+NO_OUTCOME = RunOutcome(0, 0, 0, 0, Activity.CLOSED)
 
 
 def outcomes(
     model: Model,
     properties: Mapping[str, Property],
     outputs: Mapping[str, ObserverOutputs],
-    is_doubted: Callable[[CompiledProperty, Outcome], bool],
-) -> Mapping[str, tuple[CompiledProperty, Outcome]]:
+    is_doubted: Callable[[CompiledProperty, RunOutcome], bool],
+) -> Mapping[str, tuple[CompiledProperty, RunOutcome]]:
     """The properties that remain in doubt after all runs, with their outcomes, by name. There are none if the runs are
     too long, or if one of them executes an undefined operation."""
     try:
@@ -90,7 +90,7 @@ def outcomes(
             activity = max(before.activity, *map(Activity, rows.activities))
             complete = zip(rows.verdicts, rows.activities, strict=True)
             tested = before.tested + sum(v == TRUE and a == Activity.TRIGGERED for v, a in complete)
-            outcome = Outcome(first, passed, failed, tested, activity)
+            outcome = RunOutcome(first, passed, failed, tested, activity)
             if is_doubted(compiled[number], outcome):
                 known[number] = outcome
             else:

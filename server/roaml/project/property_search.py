@@ -9,7 +9,6 @@ from collections.abc import Mapping, Sequence
 from roaml.comparison import Comparison
 from roaml.explicit.independence import can_be_reduced
 from roaml.explicit.space import LimitError, Space, StateLimits, explore
-from roaml.explicit.spreads import cell_value
 from roaml.explicit.values import NoValueError, values_of
 from roaml.interruption import checkpoint
 from roaml.jani.properties import Property
@@ -135,6 +134,8 @@ def values_in(space: Space) -> Bounds | None:
 
 def _reached(space: Space, events: tuple[PortEvent, ...], variable: ObservedVariable) -> set[float]:
     """The values that a variable of a port has after the events of the port; empty if they are not known."""
+    from roaml.explicit.spreads import cell_value  # noqa: PLC0415 - most properties have no doubt
+
     shared = {storage.name: storage for storage in space.checker.legend.layout.shared}
     values: set[float] = set()
     for event in events:

@@ -25,7 +25,7 @@ from roaml.project.asked_properties import (
     wanted_of,
 )
 from roaml.project.exploration import with_reactions
-from roaml.project.property_runs import RUNS, Outcome, PropertyRuns, outcomes, varied
+from roaml.project.property_runs import RUNS, PropertyRuns, RunOutcome, outcomes, varied
 from roaml.project.property_search import Doubt, Doubted
 from roaml.record import Record
 from roaml.smc.goal import Activity, CompiledProperty
@@ -85,7 +85,7 @@ class _Judge(Record, frozen=True, eq=False):
                 runs = outcome.failed if doubt is Doubt.NEVER else outcome.runs
                 yield Doubted(doubt, share, compiled.property, own, unmet, is_instant=False, simulated=runs)
 
-    def _in(self, model: Model, names: Collection[str]) -> Mapping[str, tuple[CompiledProperty, Outcome]]:
+    def _in(self, model: Model, names: Collection[str]) -> Mapping[str, tuple[CompiledProperty, RunOutcome]]:
         """The properties about which all runs of a model raise a doubt, with their outcomes."""
         properties = {p.name: p for p in model.properties if p.name in names}
         return outcomes(model, properties, observer_outputs(model), lambda *judged: self._doubt(*judged) is not None)
@@ -93,7 +93,7 @@ class _Judge(Record, frozen=True, eq=False):
     def _wanted(self, name: str) -> list[Comparison]:
         return wanted_of(name, self.asked.observed, self.expected)
 
-    def _doubt(self, property_: CompiledProperty, outcome: Outcome) -> Doubt | None:
+    def _doubt(self, property_: CompiledProperty, outcome: RunOutcome) -> Doubt | None:
         """The doubt that the outcome of some runs raises; `None` if there is none."""
         question, own = property_.question, self.asked.observed.get(property_.property.name)
         if question.is_conditional or question.is_reward or question.asks_for_extreme_state:
@@ -117,7 +117,7 @@ class _Judge(Record, frozen=True, eq=False):
         return Doubt.SCOPE if outcome.activity is Activity.CLOSED else Doubt.TRIGGER
 
 
-def _bounds(outcome: Outcome) -> Bounds:
+def _bounds(outcome: RunOutcome) -> Bounds:
     """The bounds of the probability of a property. As long as there are few runs, they are the share of these runs, so
     that the doubt remains until there are more."""
     if outcome.runs < RUNS:
