@@ -136,7 +136,22 @@ def test_conditions(text: str, fails: bool) -> None:
     assert bool(list(check_condition(script, lambda name: TYPES.get(name, Type.UNKNOWN)))) is fails
 
 
-@pytest.mark.parametrize(("text", "count"), [("a b := 1", 1), ("a := 1 b", 0), ("a == 1; c := 2", 1), ("a := 1; b", 0)])
-def test_statements_without_effect(text: str, count: int) -> None:
+@pytest.mark.parametrize(
+    ("text", "has_value", "places"),
+    [
+        ("a b := 1", False, ["a"]),
+        ("a := 1 b", False, []),
+        ("a == 1; c := 2", True, ["=="]),
+        ("a := 1; b", False, []),
+        ("a == 1", True, []),
+        ("a == 1", False, ["=="]),
+        ("a < 1", False, ["a < 1"]),
+        ("a := 1; a - 1", False, ["a - 1"]),
+        ("b && (a := 1)", False, []),
+        ("1", False, []),
+    ],
+)
+def test_statements_without_effect(text: str, has_value: bool, places: list[str]) -> None:
     script, _ = parse(Decoded(text, 0))
-    assert len(list(statements_without_effect(script))) == count
+    spans = [problem.span for problem in statements_without_effect(script, has_value=has_value)]
+    assert [text[span.start : span.end] for span in spans] == places

@@ -42,7 +42,7 @@ LEAVES: st.SearchStrategy[Expr] = st.one_of(
 def larger(parts: st.SearchStrategy[Expr]) -> st.SearchStrategy[Expr]:
     comparisons = st.lists(st.sampled_from(COMPARISONS), min_size=1, max_size=3).flatmap(
         lambda operators: st.lists(parts, min_size=len(operators) + 1, max_size=len(operators) + 1).map(
-            lambda operands: Comparison(NOWHERE, tuple(operators), tuple(operands))
+            lambda operands: Comparison(NOWHERE, tuple(operators), NOWHERE, tuple(operands))
         )
     )
     return st.one_of(

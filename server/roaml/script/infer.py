@@ -123,14 +123,27 @@ def assignments_as_conditions(script: Script) -> Iterator[ScriptProblem]:
         yield ScriptProblem(last.operator_span, f"`{last.operator}` assigns a value; `==` compares", compared)
 
 
-def statements_without_effect(script: Script) -> Iterator[ScriptProblem]:
-    """The statements that assign nothing and are not the last one. Either an operator is missing after them, or they
-    are superfluous."""
-    for statement in script.statements[:-1]:
-        if not any(isinstance(expr, Assignment | ErrorExpr) for expr in walk(Script(script.span, (statement,)))):
-            yield ScriptProblem(
-                statement.span, "this statement has no effect; add the operator that is missing after it, or remove it"
-            )
+def statements_without_effect(script: Script, *, has_value: bool) -> Iterator[ScriptProblem]:
+    """The statements that assign nothing. Either an operator is missing after them, they compare instead of assigning,
+    or they are superfluous. A last statement that is only a name or a constant is a placeholder.
+
+    Args:
+        has_value: whether the value of the script is used, which is that of the last statement.
+    """
+    for index, statement in enumerate(script.statements):
+        is_last = index == len(script.statements) - 1
+        if is_last and (has_value or isinstance(statement, Name | Number | Boolean | String)):
+            continue
+        if any(isinstance(expr, Assignment | ErrorExpr) for expr in walk(Script(script.span, (statement,)))):
+            continue
+        if isinstance(statement, Comparison) and statement.operators == ("==",) and _name(statement.operands[0]):
+            message = "this comparison has no effect; `:=` assigns a value"
+            yield ScriptProblem(statement.operator_span, message, ":=")
+        elif is_last:
+            yield ScriptProblem(statement.span, "this statement has no effect, because nothing uses its value")
+        else:
+            message = "this statement has no effect; add the operator that is missing after it, or remove it"
+            yield ScriptProblem(statement.span, message)
 
 
 def _operation(expr: Expr, entry: Callable[[str], Type]) -> Iterator[ScriptProblem]:

@@ -335,7 +335,7 @@ class _Parser:
                 operators.append(self.next().text)
                 operands.append(self.expression(_COMPARISON + 1))
                 self.height = max(height, self.height)
-            return Comparison(self.since(start), tuple(operators), tuple(operands))
+            return Comparison(self.since(start), tuple(operators), self.span(operator), tuple(operands))
         self.enter_family(operator)
         is_right = self.is_old and operator.text in _RIGHT_BEFORE_4_9
         right = self.expression(strength if is_right else strength + 1)

@@ -61,10 +61,11 @@ class Binary(Record, frozen=True):
 
 class Comparison(Record, frozen=True):
     """One or more comparisons, such as `a < b == c`. Each of `operators` is between two of `operands`, and all
-    comparisons must be true."""
+    comparisons must be true. `operator_span` is the place of the first operator."""
 
     span: Span
     operators: tuple[str, ...]
+    operator_span: Span
     operands: tuple[Expr, ...]
 
 

@@ -17,8 +17,9 @@ def check(context: TreeContext) -> Iterator[Finding]:
             message = f"script of `{use.attribute.name}`: {problem.message}"
             yield RULE.at(problem.span, message, *fixes(context, use.attribute, problem))
         if not problems:
-            for problem in statements_without_effect(script):
-                yield RULE.at(problem.span, problem.message, severity=Severity.WARNING)
+            for problem in statements_without_effect(script, has_value=use.is_condition):
+                own_fixes = fixes(context, use.attribute, problem)
+                yield RULE.at(problem.span, problem.message, *own_fixes, severity=Severity.WARNING)
 
 
 RULE = Rule("script-syntax", Severity.ERROR, "A script does not follow the grammar of scripts.", tree=check)
