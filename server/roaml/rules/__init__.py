@@ -193,6 +193,7 @@ from roaml.rules.trees import (
     inconsistent_branch,
     invalid_port,
     late_condition,
+    missing_else,
     missing_inverter,
     missing_port,
     mixed_entries,
