@@ -32,6 +32,8 @@ _RANGES = {
     "unsigned": (0, 2**32 - 1),
     "uint64": (0, 2**64 - 1),
 }
+INTEGER_TYPES = frozenset(_RANGES)
+"""The normal names of the integer types."""
 SIMPLE_TYPES = (*_RANGES, "double", "float", "bool", "string", "NodeStatus")
 """The types without templates and namespaces."""
 _REALS = ("double", "float", "chrono::milliseconds", "chrono::seconds")

@@ -96,7 +96,7 @@ class _Analysis:
         self.entries = entries
         self.grammar = grammar_of(forest.settings.version)
         self.files = dict(forest.files)
-        self.tracked = frozenset(_tracked(forest, entries))
+        self.tracked = frozenset(scripted_entries(forest, entries))
         self.results: dict[tuple[TreeNode, str], ConditionResult] = {}
         self.visits = 0
         self._written: dict[tuple[int, TreeNode], frozenset[str]] = {}
@@ -287,7 +287,7 @@ class _Evaluation:
         return value
 
 
-def _tracked(forest: Forest, entries: Entries) -> Iterator[str]:
+def scripted_entries(forest: Forest, entries: Entries) -> Iterator[str]:
     """The keys of the entries that only scripts write, and that no program sets."""
     for key, uses in entries.by_entry.items():
         is_hosted = any(bound.use.name.removeprefix("@") in forest.host_entries for bound in uses)

@@ -218,6 +218,7 @@ from roaml.rules.trees import (
     tree_name,
     tree_semantics,
     tree_structure,
+    unchanged_entry,
     undeclared_port,
     unknown_node,
     unknown_port,

@@ -10,11 +10,14 @@ from roaml.forest.entries import Use
 from roaml.forest.forest import Forest
 from roaml.libraries import node_in_libraries
 from roaml.model.gaps import GapAct
+from roaml.model.system import System
 from roaml.model.tree import TreeNode
 from roaml.roles import Direction, NodeKind
 from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, replacements
 from roaml.rules.support.blackboard import described, places, renamings
 from roaml.rules.support.entries import entries_of
+from roaml.rules.support.forest import trees_of
+from roaml.rules.support.unread_entries import unread_entries
 from roaml.scxml.names import BLACKBOARD_WRITE_PREFIX
 from roaml.suggest import nearest_name
 
@@ -23,6 +26,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     """Report variables that are written but not read. Variables that a property observes are not reported.
     blackboard-never-written reports variables that are neither read nor written."""
     system = context.system
+    yield from _instead_of_others(context)
     if system is None:
         yield from _in_vain(context)
         return
@@ -33,7 +37,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
         entry = system.entries.get(variable)
         if variable in read or (entry is not None and entry.read) or not any(bound.port.written for bound in ports):
             continue
-        if system.is_observed(f"{BLACKBOARD_WRITE_PREFIX}{variable}") or system.may(GapAct.VARIABLE, variable):
+        if not _is_unobserved(system, variable):
             continue
         for bound, span, written in places(context, variable, ports):
             if bound.port.direction is Direction.IN:
@@ -45,6 +49,27 @@ def check(context: TreeContext) -> Iterator[Finding]:
                 close = close_names(own, [name.removeprefix(prefix) for name in unwritten if name.startswith(prefix)])
                 message = f"no node reads {described(own, written)}{did_you_mean(close)}"
                 yield RULE.at(span, message, *renamings(span, written, own, close))
+
+
+def _instead_of_others(context: TreeContext) -> Iterator[Finding]:
+    """Report entries that are probably written in the place of another one. A port of a system that writes such an
+    entry is reported in any case."""
+    forest, system = trees_of(context), context.system
+    for unread in unread_entries(forest).values() if forest is not None else ():
+        use = unread.writer.use
+        name = described(unread.writer.variable, use.name)
+        if system is not None and not (use.script and _is_unobserved(system, unread.writer.variable)):
+            continue
+        if unread.meant is not None and use.path == context.source.path:
+            message = f"no node reads {name}, and `{unread.meant}` is always {unread.value}"
+            message += did_you_mean((unread.meant,))
+            fixes = () if use.script else replacements(use.span, [f"{{{unread.meant}}}"])
+            yield RULE.at(use.span, message, *fixes)
+
+
+def _is_unobserved(system: System, variable: str) -> bool:
+    is_observed = system.is_observed(f"{BLACKBOARD_WRITE_PREFIX}{variable}")
+    return not is_observed and not system.may(GapAct.VARIABLE, variable)
 
 
 def _in_vain(context: TreeContext) -> Iterator[Finding]:

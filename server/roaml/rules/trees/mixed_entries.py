@@ -16,8 +16,9 @@ from roaml.model.tree import PortSetting, TreeNode
 from roaml.rules.rule import Rule, TreeContext, replacements
 from roaml.rules.support.entries import entries_of
 from roaml.rules.support.forest import trees_of
+from roaml.rules.support.unread_entries import unread_entries
 from roaml.rules.support.words import difference, words_of
-from roaml.text import TextEdit
+from roaml.text import Location, TextEdit
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
@@ -27,7 +28,10 @@ def check(context: TreeContext) -> Iterator[Finding]:
     for _, node in forest.own_nodes:
         if not forest.calls_tree(node):
             yield from _half_exchanged(node)
-    yield from _unread(context, forest)
+    found = list(_unread(context, forest))
+    yield from found
+    reported = {finding.span for finding in found}
+    yield from (finding for finding in _passed_over(context, forest) if finding.span not in reported)
 
 
 def _half_exchanged(node: TreeNode) -> Iterator[Finding]:
@@ -77,6 +81,21 @@ def _unread(context: TreeContext, forest: Forest) -> Iterator[Finding]:
                     related = [Related(uses[tree, other][0].span, f"`{other}` is written")]
                     fixes = replacements(use.span, (f"{{{other}}}",))
                     yield RULE.at(use.span, message, *fixes, related=related if use.path == context.source.path else [])
+
+
+def _passed_over(context: TreeContext, forest: Forest) -> Iterator[Finding]:
+    """Report a port, also of a subtree, that reads another entry although nothing reads the one with its name."""
+    for unread in unread_entries(forest).values():
+        use = unread.writer.use
+        if unread.reader is not None and unread.reader[0] == context.source.path:
+            setting = unread.reader[1]
+            message = (
+                f"this port reads `{setting.value.value}`, although nothing reads `{{{use.name}}}`, which `{use.port}` "
+                f"of `{use.node.type_name}` writes; did you mean that?"
+            )
+            related = [Related(Location(use.path, use.span), f"`{use.name}` is written")]
+            fixes = replacements(setting.value.span, (f"{{{use.name}}}",))
+            yield RULE.at(setting.value.span, message, *fixes, related=related)
 
 
 RULE = Rule(

@@ -12,12 +12,12 @@ from roaml.libraries.programs.statuses import RUNNING
 from roaml.model.tree import TreeNode
 from roaml.rules.rule import Rule, TreeContext
 from roaml.rules.support.forest import trees_of
+from roaml.rules.support.loops import LOOPS
 
 CONTROLLERS = frozenset(("RateController", "DistanceController", "SpeedController"))
 """The nodes of Nav2 that tick their child again after some time or distance."""
 _ONCE = frozenset(("Sequence", "AsyncSequence", "SequenceWithMemory"))
 """The nodes that do not tick a child again that has succeeded while a later child is RUNNING."""
-_LOOPS = frozenset(("Repeat", "KeepRunningUntilFailure", "LoopDouble", "LoopString"))
 
 
 def check(context: TreeContext) -> Iterator[Finding]:
@@ -33,7 +33,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
         is_library = known.behaviour and node_in_libraries(known.name) is not None
         later = parent.children[parent.children.index(node) + 1 :]
         running = next((o for o in later if RUNNING in statuses_of(forest).statuses(o)[o].ever), None)
-        if not is_library or running is None or any(outer.type_name in _LOOPS for outer in _around(parent, above)):
+        if not is_library or running is None or any(outer.type_name in LOOPS for outer in _around(parent, above)):
             continue
         message = (
             f"`{known.name}` has no effect in a `{parent.type_name}`, which does not tick it again while "
