@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 
 from roaml.diagnostics import Finding, Severity
 from roaml.expr.operators import Operator
@@ -14,6 +14,7 @@ from roaml.forest.scripts import ScriptUse, parsed, scripts_of
 from roaml.model.property_file import WrittenProperty
 from roaml.model.property_links import LinkedFile
 from roaml.model.syntax import Expression
+from roaml.model.tree import TreeNode
 from roaml.model.value_types import CONDITIONS
 from roaml.model.values.describe import described
 from roaml.model.values.domain import FALSE, MAX_LISTED, TRUE, ValueSet
@@ -43,6 +44,7 @@ from roaml.rules.support.forest import trees_of
 from roaml.rules.support.jani_formulas import constant_comparisons
 from roaml.rules.support.ranges import always_within
 from roaml.rules.support.sent_values import never_handled, never_sent
+from roaml.rules.trees import never_ticked
 from roaml.script.tree import Comparison
 from roaml.script.tree import walk as walk_script
 from roaml.text import Decoded, Span
@@ -174,19 +176,48 @@ def check_trees(context: TreeContext) -> Iterator[Finding]:
     from roaml.forest.script_values import condition_results  # noqa: PLC0415 - few trees contain conditions
 
     results = condition_results(forest, entries_of(forest))
+    above = {child: (node, index) for _, node in forest.own_nodes for index, child in enumerate(node.children)}
     for use in conditions:
         result = results.get((use.node, use.attribute.name))
         if result is None or len(result.truth) != 1 or not result.values:
             continue
         (holds,) = result.truth
-        skips = _SKIPPING.get(use.attribute.name) is holds
         is_setting = all(values.value is not None for values in result.values.values())
-        if not skips and (is_setting or use.attribute.name not in _SKIPPING or not _compares_equal(use)):
-            continue
-        why = because(stated_values(result.values.items()))
+        is_of_node = use.attribute.name in _SKIPPING
+        skips = _SKIPPING.get(use.attribute.name) is holds
         effect = "the node is never ticked" if skips else "it has no effect"
-        message = f"this condition is {'always' if holds else 'never'} true{why}, so {effect}"
-        yield RULE.at(use.attribute.value_span, message, facts=ConstantCondition(holds))
+        if not is_of_node:
+            effect = "" if is_setting else _effect_around(use, above, holds=holds)
+        elif not skips and (is_setting or not _compares_equal(use)):
+            continue
+        if effect:
+            why = because(stated_values(result.values.items()))
+            message = f"this condition is {'always' if holds else 'never'} true{why}, so {effect}"
+            yield RULE.at(use.attribute.value_span, message, facts=ConstantCondition(holds))
+
+
+def _effect_around(use: ScriptUse, above: Mapping[TreeNode, tuple[TreeNode, int]], *, holds: bool) -> str:
+    """What a constant condition in a port of a node prevents; "" if it prevents nothing."""
+    if use.node.type_name == "Precondition":
+        return "" if holds else "the child is never ticked"
+    node, succeeds = use.node, holds
+    if node.scripts or use.node.type_name != "ScriptCondition":
+        return ""
+    while node in above:
+        parent, index = above[node]
+        behind = parent.children[index + 1 :]
+        if parent.type_name == "Inverter" and not parent.scripts:
+            node, succeeds = parent, not succeeds
+            continue
+        needed = never_ticked.needed(parent.type_name)
+        if needed == never_ticked.SUCCEEDS and not succeeds:
+            return f"`{behind[0].type_name}` is never ticked" if behind else f"`{parent.type_name}` never succeeds"
+        if needed == never_ticked.FAILS and succeeds and behind:
+            return f"`{behind[0].type_name}` is never ticked"
+        if parent.type_name in _BRANCHING and index == 0 and len(behind) > succeeds:
+            return f"`{behind[1 if succeeds else 0].type_name}` is never ticked"
+        return ""
+    return ""
 
 
 def _compares_equal(use: ScriptUse) -> bool:
@@ -195,6 +226,7 @@ def _compares_equal(use: ScriptUse) -> bool:
     return any(isinstance(part, Comparison) and "==" in part.operators for part in walk_script(script))
 
 
+_BRANCHING = ("IfThenElse", "WhileDoElse")
 _SKIPPING = {"_skipIf": True, "_failureIf": True, "_successIf": True, "_while": False}
 """Conditions of a node -> the result with which the node is not ticked."""
 
