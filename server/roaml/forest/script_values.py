@@ -4,6 +4,7 @@ conditions in scripts (docs/spec/scripts.md#values).
 
 - An entry may have any value until a script assigns one, because a tree may be executed again.
 - The values after a node include those of every moment at which it can end or be halted.
+- Each pass through a loop with a constant number of passes is followed; others are repeated until nothing changes.
 - Below a node that may tick a child while another one is RUNNING, entries that the other child writes have any value.
 """
 
@@ -99,6 +100,7 @@ class _Analysis:
         self.tracked = frozenset(scripted_entries(forest, entries))
         self.results: dict[tuple[TreeNode, str], ConditionResult] = {}
         self.visits = 0
+        self.repetitions = 1  # how often the loops around a node repeat it, as far as each pass is followed
         self._written: dict[tuple[int, TreeNode], frozenset[str]] = {}
 
     def run(self, number: int) -> None:
@@ -157,7 +159,20 @@ class _Analysis:
             return result if result is not None else before
         if name in TRANSPARENT and len(node.children) == 1:
             return self._node(frame, node.children[0], before, volatile)
+        passes = _passes(node)
+        if passes and self.repetitions * passes <= MAX_PASSES:
+            return self._repeated(frame, node, before, volatile, passes)
         return self._in_any_order(frame, node, before, volatile)
+
+    def _repeated(self, frame: Frame, node: TreeNode, before: Values, volatile: frozenset[str], passes: int) -> Values:
+        """The values after a node that ticks its only child until it ends, at most `passes` times."""
+        self.repetitions *= passes
+        after = result = before
+        for _ in range(passes):
+            after = self._node(frame, node.children[0], after, volatile)
+            result = joined_valuations(result, after)
+        self.repetitions //= passes
+        return result
 
     def _in_any_order(self, frame: Frame, node: TreeNode, before: Values, volatile: frozenset[str]) -> Values:
         """The values after children that are ticked any number of times, in any order."""
@@ -285,6 +300,24 @@ class _Evaluation:
         if key in self.tracked:
             self.values[key] = value
         return value
+
+
+def _passes(node: TreeNode) -> int:
+    """How often a loop ticks its only child at most; 0 if this is not a constant."""
+    port = _COUNTED.get(node.type_name)
+    attribute = node.element.get(port) if port is not None and len(node.children) == 1 else None
+    text = attribute.value.strip() if attribute is not None else ""
+    if port == "queue" and "{" not in text:
+        return len(text.split(";")) if text else 0
+    return int(text) if text.isdecimal() and len(text) <= len(str(MAX_PASSES)) else 0
+
+
+_COUNTED = {
+    "Repeat": "num_cycles",
+    "RetryUntilSuccessful": "num_attempts",
+    **dict.fromkeys(("LoopInt", "LoopBool", "LoopDouble", "LoopString"), "queue"),
+}
+"""The loops that end after a number of passes -> the port that states this number."""
 
 
 def scripted_entries(forest: Forest, entries: Entries) -> Iterator[str]:
