@@ -159,6 +159,10 @@ class _Analysis:
             return result if result is not None else before
         if name in TRANSPARENT and len(node.children) == 1:
             return self._node(frame, node.children[0], before, volatile)
+        if name == "IfThenElse":
+            tested = self._node(frame, node.children[0], before, volatile)
+            branches = [self._node(frame, child, tested, volatile) for child in node.children[1:]]
+            return functools.reduce(joined_valuations, branches, tested)
         passes = _passes(node)
         if passes and self.repetitions * passes <= MAX_PASSES:
             return self._repeated(frame, node, before, volatile, passes)

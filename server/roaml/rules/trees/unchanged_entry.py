@@ -10,6 +10,7 @@ from roaml.forest.cpp_types import ANY, INTEGER_TYPES, normal
 from roaml.forest.entries import BoundUse
 from roaml.forest.forest import Forest
 from roaml.forest.scripts import parsed, scripts_of
+from roaml.forest.statuses import RETRYING
 from roaml.libraries.scripts import CONDITIONS
 from roaml.model.tree import TreeNode
 from roaml.rules.rule import Rule, TreeContext
@@ -18,7 +19,7 @@ from roaml.rules.support.entries import entries_of
 from roaml.rules.support.forest import trees_of
 from roaml.rules.support.loops import nodes_above, repeats
 from roaml.rules.support.unread_entries import unread_entries
-from roaml.script.tree import Comparison, Name, walk
+from roaml.script.tree import Comparison, Expr, Name, Number, walk
 from roaml.text import Decoded, Location
 
 _FIRST = (0, 1)
@@ -53,23 +54,24 @@ def check(context: TreeContext) -> Iterator[Finding]:
 
 
 def _loop(forest: Forest, reader: BoundUse, writer: BoundUse) -> tuple[str, TreeNode] | None:
-    """The innermost loop around `reader` that does not contain `writer`, with the path of its file."""
+    """The innermost loop around `reader` that does not contain `writer`, with the path of its file. To test the same
+    value again is in vain also after a failure."""
     around = set(nodes_above(forest, writer))
     for frame, node in nodes_above(forest, reader):
         if (frame, node) in around:
             return None
-        if repeats(node):
+        if repeats(node) or (reader.use.script and node.type_name in RETRYING):
             return frame.tree.path, node
     return None
 
 
 def _is_like_counter(forest: Forest, constant: ConstantEntry, uses: Sequence[BoundUse]) -> bool:
     """Whether an entry is used like a counter: only ports for integers and conditions that compare it read it, and the
-    script that sets it also sets a counter, or no port reads it."""
+    script that sets it also sets a counter, or there is such a condition."""
     readers = [bound.use for bound in uses if bound.use.reads]
     scripts = [use for use in readers if use.script]
     types = {normal(use.type) for use in readers if not use.script}
-    is_typed = types <= {ANY, *INTEGER_TYPES} and (not types or _sets_counter(forest, constant))
+    is_typed = types <= {ANY, *INTEGER_TYPES} and (bool(scripts) or _sets_counter(forest, constant))
     return is_typed and all(_is_compared(forest, use.node, use.name) for use in scripts)
 
 
@@ -88,15 +90,18 @@ def _is_compared(forest: Forest, node: TreeNode, name: str) -> bool:
         if not any(isinstance(expr, Name) and expr.name == name for expr in exprs):
             continue
         compared = [
-            operand
-            for expr in exprs
-            if isinstance(expr, Comparison) and not {"==", "!="} & set(expr.operators)
-            for operand in expr.operands
+            expr.operands for expr in exprs if isinstance(expr, Comparison) and not {"==", "!="} & {*expr.operators}
         ]
-        is_operand = any(isinstance(operand, Name) and operand.name == name for operand in compared)
+        is_operand = any(_is_limited(operands, name) for operands in compared)
         if script.attribute.name in CONDITIONS or not script.is_condition or not is_operand:
             return False
     return True
+
+
+def _is_limited(operands: Sequence[Expr], name: str) -> bool:
+    """Whether a comparison is between an entry and numbers."""
+    others = [operand for operand in operands if not (isinstance(operand, Name) and operand.name == name)]
+    return len(others) < len(operands) and all(isinstance(operand, Number) for operand in others)
 
 
 RULE = Rule(
