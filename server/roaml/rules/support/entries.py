@@ -7,7 +7,7 @@ import functools
 from collections import defaultdict
 from collections.abc import Mapping
 
-from roaml.forest.entries import Entries, find_entries
+from roaml.forest.entries import BoundUse, Entries, find_entries
 from roaml.forest.forest import Forest
 
 
@@ -16,6 +16,13 @@ def entries_of(forest: Forest) -> Entries:
     """The entries of a forest. The result for the last forest is cached, because several rules need it; a forest is
     immutable and compared by identity."""
     return find_entries(forest)
+
+
+def is_of_subtree(forest: Forest, bound: BoundUse) -> bool:
+    """Whether a tree is executed only as a part of the main tree, so that programs neither set nor read its own
+    entries."""
+    is_main = bound.frame.outer is None or bound.use.tree == forest.main
+    return forest.main is not None and forest.complete and not is_main and not bound.use.name.startswith("@")
 
 
 def names_of(forest: Forest, tree: str) -> frozenset[str]:

@@ -25,10 +25,9 @@ class Unread(Record, frozen=True, eq=False):
 
     Attributes:
         writer: the place that writes it.
-        meant: the entry that should probably be written instead; `None` if another place should read this one.
+        meant: the entry that should probably be written instead; `None` if it is not known.
         value: the number that the entry `meant` always has, because nothing else changes it.
-        reader: the attribute that should probably read the entry, with the path of its file; `None` if there is
-            `meant`.
+        reader: the attribute that should probably read the entry, with the path of its file; `None` if it is not known.
     """
 
     writer: BoundUse

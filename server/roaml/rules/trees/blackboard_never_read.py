@@ -15,7 +15,7 @@ from roaml.model.tree import TreeNode
 from roaml.roles import Direction, NodeKind
 from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, replacements
 from roaml.rules.support.blackboard import described, places, renamings
-from roaml.rules.support.entries import entries_of
+from roaml.rules.support.entries import entries_of, is_of_subtree
 from roaml.rules.support.forest import trees_of
 from roaml.rules.support.unread_entries import unread_entries
 from roaml.scxml.names import BLACKBOARD_WRITE_PREFIX
@@ -29,6 +29,7 @@ def check(context: TreeContext) -> Iterator[Finding]:
     yield from _instead_of_others(context)
     if system is None:
         yield from _in_vain(context)
+        yield from _lost(context)
         return
     board = system.blackboard
     read = [name for name, ports in board.items() if any(bound.port.read for bound in ports)]
@@ -111,6 +112,37 @@ def _in_vain(context: TreeContext) -> Iterator[Finding]:
             continue
         message = f"no node reads {described(use.name, use.name)}, and `{type_}` has no other effect"
         yield RULE.at(use.span, message + did_you_mean(meant), *replacements(use.span, [f"{{{n}}}" for n in meant]))
+
+
+def _lost(context: TreeContext) -> Iterator[Finding]:
+    """Report nodes that models describe, in subtrees, if all their outputs are entries of the subtree that nothing
+    reads. If an entry of the subtree is read and never written, this is reported instead."""
+    forest = trees_of(context)
+    if forest is None or any(forest.is_unknown(node) for _, _, node in forest.all_nodes):
+        return
+    by_entry, unread = entries_of(forest).by_entry, unread_entries(forest)
+    lacking = {
+        bound.use.tree
+        for uses in by_entry.values()
+        for bound in uses
+        if bound.use.reads
+        and bound.use.name not in bound.frame.remapped
+        and not any(other.use.writes is not False for other in uses)
+    }
+    lost: dict[TreeNode, Use] = {}
+    useful: set[TreeNode] = set()
+    for key, uses in by_entry.items():
+        is_read = any(bound.use.reads is not False or bound.use.remaps or bound.use.script for bound in uses)
+        is_own = all(bound.executed and is_of_subtree(forest, bound) for bound in uses) and key not in unread
+        for use in (bound.use for bound in uses if bound.use.writes and not bound.use.script):
+            known = forest.known_node(use.node)
+            if is_read or not is_own or use.tree in lacking or known is None or known.behaviour:
+                useful.add(use.node)
+            elif use.path == context.source.path:
+                lost.setdefault(use.node, use)
+    for node, use in lost.items():
+        if node not in useful:
+            yield RULE.at(use.span, f"no node reads `{use.name}`, which is a variable of this subtree only")
 
 
 def _is_misread(name: str, unwritten: Iterable[str], port: str) -> bool:

@@ -16,7 +16,7 @@ from roaml.model.tree import is_variable_name
 from roaml.roles import Direction
 from roaml.rules.rule import Rule, TreeContext, close_names, did_you_mean, replacements
 from roaml.rules.support.blackboard import described
-from roaml.rules.support.entries import entries_of
+from roaml.rules.support.entries import entries_of, is_of_subtree
 from roaml.rules.support.forest import trees_of
 from roaml.suggest import nearest_name
 
@@ -193,19 +193,13 @@ def _diverted(forest: Forest, entries: Entries, reader: Use) -> Use | None:
 
 def _unwritten(forest: Forest, bound: BoundUse, close: tuple[str, ...]) -> Finding:
     use, certain = bound.use, forest.system is not None
-    is_inner = _is_only_subtree(forest, bound)
+    is_inner = is_of_subtree(forest, bound)
     remedy = "pass it to the subtree" if is_inner else "the program that runs the tree must set it"
     hint = did_you_mean(close) or ("" if certain else f"; {remedy}")
     fixes = () if use.is_default else replacements(use.span, tuple(f"{{{name}}}" for name in close))
     severity = Severity.ERROR if certain else Severity.WARNING if close or is_inner else Severity.INFORMATION
     variable = bound.variable.removeprefix(bound.frame.board)
     return RULE.at(use.span, f"no node writes {described(variable, use.name)}{hint}", *fixes, severity=severity)
-
-
-def _is_only_subtree(forest: Forest, bound: BoundUse) -> bool:
-    """Whether a tree is executed only as a part of the main tree, so that programs do not set its own entries."""
-    is_main = bound.frame.outer is None or bound.use.tree == forest.main
-    return forest.main is not None and forest.complete and not is_main and not bound.use.name.startswith("@")
 
 
 def _unset(context: TreeContext, bound: BoundUse, entries: Entries) -> Finding | None:
