@@ -8,7 +8,6 @@ from collections.abc import Mapping
 
 from roaml.forest.entries import BoundUse, Use
 from roaml.forest.forest import Forest
-from roaml.forest.script_values import scripted_entries
 from roaml.forest.scripts import grammar_of, parsed, scripts_of
 from roaml.record import Record
 from roaml.rules.support.entries import entries_of
@@ -35,6 +34,10 @@ def constant_entries(forest: Forest) -> Mapping[str, ConstantEntry]:
     """Key of an entry -> the number that it always has, once it is set. The result for the last forest is cached,
     because several rules need it."""
     entries = entries_of(forest)
+    if not any(use.script and use.writes for use in entries.uses):
+        return {}
+    from roaml.forest.script_values import scripted_entries  # noqa: PLC0415 - few trees contain scripts
+
     constant: dict[str, ConstantEntry] = {}
     for key in scripted_entries(forest, entries):
         writers = {bound.use: bound for bound in entries.by_entry[key] if bound.use.writes}
