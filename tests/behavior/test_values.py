@@ -13,8 +13,9 @@ from roaml.expr.operators import Operator
 from roaml.expr.parse import parse
 from roaml.expr.tree import Expr
 from roaml.model.values.describe import described
-from roaml.model.values.domain import ANYTHING, Origin, ValueSet, between, exactly, join, listed, meet, widen
+from roaml.model.values.domain import ANYTHING, Origin, ValueSet, between, exactly, interval, join, listed, meet, widen
 from roaml.model.values.evaluate import Evaluator, compared
+from roaml.model.values.strides import Stride, aligned
 from roaml.text import Decoded
 
 COMPARISONS = {
@@ -117,3 +118,18 @@ def test_unknown_values_stay_unknown() -> None:
 
 def test_strings_are_described_as_literals() -> None:
     assert described(listed(["a'b\n", ""])) == "`''` or `'a\\'b\\n'`"
+
+
+@pytest.mark.parametrize("modulus", range(2, 6))
+def test_aligned_values_are_those_with_the_stride(modulus: int) -> None:
+    for values, rest in itertools.product(SETS, range(modulus)):
+        expected = [n for n in members(values) if n % modulus == rest]
+        found = aligned(values, Stride(modulus, rest))
+        assert [n for n in members(found) if n % modulus == rest] == expected, (values, rest)
+        assert not expected or (interval(found).low, interval(found).high) == (expected[0], expected[-1])
+
+
+def test_a_remainder_is_less_than_the_divisor() -> None:
+    known = {"x": between(0, 100)}
+    assert interval(Evaluator(lambda _: True).values(known, tree("x % 3"))).high == 2
+    assert interval(Evaluator(lambda _: False).values(known, tree("x % 3"))).high == 3

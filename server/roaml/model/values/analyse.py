@@ -64,6 +64,7 @@ from roaml.model.values.domain import (
 )
 from roaml.model.values.evaluate import Evaluator, Valuation, is_within, joined_valuations, literal, place_of
 from roaml.model.values.remembered import Memory, RememberedPart, effects, names_in, names_of, root, text_of
+from roaml.model.values.strides import strides
 from roaml.record import Record, field
 from roaml.roles import ProtocolPart
 from roaml.scxml.names import STATUSES
@@ -307,6 +308,7 @@ class _Interpreter(Record, eq=False, dict=True):
             functools.partial(_is_whole_in, self.whole),
             dict(STATUSES),
             {place: values for name, type_ in types.items() for place, values in values_by_type(type_, name)},
+            strides(chart, self.whole),
         )
         self.thresholds = sorted(self._thresholds())
         self.groups: dict[str, tuple[RememberedPart, list[_Group]]] = {}
@@ -315,7 +317,8 @@ class _Interpreter(Record, eq=False, dict=True):
             for channel, fields in self.arriving.items()
             if channel.part is ProtocolPart.BLACKBOARD
         }
-        self.variables = (frozenset(self.whole), *(frozenset(d.items()) for d in (self.capacities, ports)))
+        strided = dict(self.evaluator.strides)
+        self.variables = (frozenset(self.whole), *(frozenset(d.items()) for d in (self.capacities, ports, strided)))
 
     def _thresholds(self) -> set[float]:
         numbers: set[float] = set()

@@ -55,6 +55,7 @@ from roaml.model.values.domain import (
     truth,
     without,
 )
+from roaml.model.values.strides import Stride, aligned
 from roaml.record import Record, field
 from roaml.text import Span
 
@@ -96,6 +97,7 @@ class Evaluator(Record, eq=False):
         whole: whether the values of a place are integers.
         constants: names that are constants, such as `SUCCESS`.
         types: place of a variable, or of elements in it -> all values of its type. Left out if these have no bounds.
+        strides: the variables that change by multiples of a number.
         seen: the places of expressions in the file -> all values that they had, if `records` is true.
         lengths: the places of indices -> all lengths that their arrays had when they were read, as far as known.
     """
@@ -103,6 +105,7 @@ class Evaluator(Record, eq=False):
     whole: Callable[[str], bool]
     constants: dict[str, Constant] = field(default_factory=dict)
     types: Mapping[str, ValueSet] = field(default_factory=dict)
+    strides: Mapping[str, Stride] = field(default_factory=dict)
     records: bool = False
     seen: dict[Span, ValueSet] = field(default_factory=dict)
     lengths: dict[Span, ValueSet] = field(default_factory=dict)
@@ -194,6 +197,8 @@ class Evaluator(Record, eq=False):
         left, right = self.values(known, expr.left), self.values(known, expr.right)
         if left.only == frozenset() or right.only == frozenset():
             return NONE
+        if operator is Operator.REMAINDER and self._is_whole(expr.left) and self._is_whole(expr.right):
+            return _remainder(left, right)
         if operator.kind is OperatorKind.ARITHMETIC:
             return arithmetic(operator, left, right)
         if _are_same(expr.left, expr.right):
@@ -329,9 +334,11 @@ class Evaluator(Record, eq=False):
         # The elements of an array share a place, and a string or a constant has none.
         if place is None or "[" in place or not isinstance(expr, Name | Member) or place in self.constants:
             return known
+        if place in self.strides:
+            values = aligned(values, self.strides[place])
         if known.get(place, ANYTHING) == values:
             return known
-        return {**known, place: values}
+        return None if values.only == frozenset() else {**known, place: values}
 
 
 def joined_valuations(first: Valuation, second: Valuation) -> Valuation:
@@ -395,6 +402,15 @@ def arithmetic(operator: Operator, left: ValueSet, right: ValueSet) -> ValueSet:
         case Operator.REMAINDER if second.low > 0 and math.isfinite(second.high):
             return between(0, second.high, Origin.ASSUMED, Origin.ASSUMED)
     return ANYTHING
+
+
+def _remainder(left: ValueSet, right: ValueSet) -> ValueSet:
+    """The possible remainders of integers."""
+    values = arithmetic(Operator.REMAINDER, left, right)
+    if values.only is not None or not math.isfinite(values.high):
+        return values
+    greatest = values.high - 1
+    return between(0, greatest, Origin.ASSUMED, Origin.ASSUMED)
 
 
 def _listed_arithmetic(operator: Operator, left: frozenset[Constant], right: frozenset[Constant]) -> ValueSet:
