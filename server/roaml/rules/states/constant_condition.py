@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 
 from roaml.diagnostics import Finding, Severity
-from roaml.expr.operators import Operator
-from roaml.expr.tree import Binary, Expr
+from roaml.expr.operators import Operator, OperatorKind
+from roaml.expr.tree import Binary, Expr, Member, walk
 from roaml.expr.types import INTEGER_RANGES, Scalar
 from roaml.facts import Facts
 from roaml.forest.scripts import ScriptUse, parsed, scripts_of
@@ -18,6 +18,7 @@ from roaml.model.tree import TreeNode
 from roaml.model.value_types import CONDITIONS
 from roaml.model.values.describe import described
 from roaml.model.values.domain import FALSE, MAX_LISTED, TRUE, ValueSet
+from roaml.model.values.evaluate import compared
 from roaml.observers.properties import Pattern
 from roaml.rules.rule import MachineContext, PropertiesContext, Rule, TreeContext
 from roaml.rules.support.compared_numbers import (
@@ -26,6 +27,7 @@ from roaml.rules.support.compared_numbers import (
     comparisons,
     decided_junctions,
     only_ways,
+    reached,
     required,
     result_for,
 )
@@ -42,8 +44,9 @@ from roaml.rules.support.entries import entries_of
 from roaml.rules.support.enumerations import never_named
 from roaml.rules.support.forest import trees_of
 from roaml.rules.support.jani_formulas import constant_comparisons
-from roaml.rules.support.ranges import always_within
+from roaml.rules.support.ranges import always_within, is_validation
 from roaml.rules.support.sent_values import never_handled, never_sent
+from roaml.rules.support.written import written as text_of
 from roaml.rules.trees import never_ticked
 from roaml.script.tree import Comparison
 from roaml.script.tree import walk as walk_script
@@ -69,6 +72,7 @@ def check(context: MachineContext) -> Iterator[Finding]:
     yield from map(_finding, never_named(context, {*constant, *(part.span for part in unsent)}))
     yield from _beyond_type(context, constant.keys())
     yield from map(_finding, decided_values(context))
+    yield from _impossible_parts(context)
     yield from map(_finding, never_handled(context, constant.keys()))
 
 
@@ -90,6 +94,37 @@ def _beyond_type(context: MachineContext, reported: Collection[Span]) -> Iterato
                 result = by_type(node, name, type_, number)
                 if result is not None:
                     yield RULE.at(node.span, result[1])
+
+
+def _impossible_parts(context: MachineContext) -> Iterator[Finding]:
+    """Report comparisons that are only a part of an expression and never hold because of the values of variables that
+    change, as in `open_for > 3 || load > most`. `constant-expression` reports what only follows from types."""
+    for value in context.typed.values if context.system is not None else ():
+        chart = context.local_values.charts.get(value.place.chart.scope)
+        if chart is None or not isinstance(value.value, Expression) or value.value.broken:
+            continue
+        tree = value.value.tree
+        for node in walk(tree):
+            if not isinstance(node, Binary) or node.operator.kind not in (OperatorKind.EQUALITY, OperatorKind.ORDER):
+                continue
+            sides = [
+                (side, reached(known)) for side in (node.left, node.right) if (known := chart.at(side)) is not None
+            ]
+            varying = [(side, values) for side, values in sides if values.value is None and values.only != frozenset()]
+            # A test of a length often only protects the index behind it.
+            is_length = any(isinstance(side, Member) and side.name == "length" for side, _ in sides)
+            is_whole = node is tree and value.use in CONDITIONS
+            if (
+                is_whole
+                or is_length
+                or len(sides) < 2
+                or not varying
+                or compared(node.operator, sides[0][1], sides[1][1]) != FALSE
+            ):
+                continue
+            why = stated_values((text_of(context, side), values) for side, values in varying)
+            severity = Severity.INFORMATION if is_validation(tree, node, value.place.handler) else None
+            yield RULE.at(node.span, f"this comparison is never true{because(why)}", severity=severity)
 
 
 def check_properties(file: LinkedFile) -> Iterator[Finding]:
