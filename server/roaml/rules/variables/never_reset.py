@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
@@ -19,14 +19,9 @@ from roaml.model.triggers import trigger
 from roaml.model.values.domain import ValueSet
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.one_way_values import REACHED, one_way_values
 from roaml.rules.support.steps import step_of
 from roaml.rules.support.words import words_of
-
-_REACHED = {
-    1: (Operator.EQUAL, Operator.GREATER_EQUAL, Operator.GREATER),
-    -1: (Operator.EQUAL, Operator.LESS_EQUAL, Operator.LESS),
-}
-"""The sign of a step -> the comparisons that hold once the counter has reached the limit."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -40,6 +35,8 @@ def check(context: MachineContext) -> Iterator[Finding]:
         yield from _flags(context.machine, chart, assigned)
         yield from _latches(context, chart, assigned)
         yield from _resets(context, chart, assigned)
+        for found in one_way_values(context, chart):
+            yield RULE.at(found.span, found.message, related=found.related)
 
 
 class _Assigned(NamedTuple):
@@ -77,6 +74,8 @@ def _counters(chart: Chart, assigned: Mapping[str, Sequence[_Assigned]]) -> Iter
             continue
         state, (sign,) = steps[0].state, signs
         for cond, following in _tests(state, [step.statement for step in steps]):
+            if _counts_requests(chart, state, [step.handler for step in steps]):
+                continue
             if _is_limit(cond.tree, name, sign) and _returns(chart, state, following):
                 message = (
                     f"nothing resets `{name}` when it has reached this limit, so it is still there when the machine "
@@ -84,6 +83,20 @@ def _counters(chart: Chart, assigned: Mapping[str, Sequence[_Assigned]]) -> Iter
                 )
                 related = [Related(step.statement.element.name_span, "counted here") for step in steps]
                 yield RULE.at(cond.span, message, related=related, severity=_severity(name, _POSITIONS | _ONCE))
+
+
+def _counts_requests(chart: Chart, state: State, counting: Iterable[Handler | None]) -> bool:
+    """Whether a machine counts once for each request, goal or tick: `photos` on a card that nobody empties. Then the
+    limit is one for all of them together."""
+    handlers = [handler for handler in counting if handler is not None]
+    if not handlers or any(handler.trigger is not None for handler in handlers):
+        return False
+    following = [end for handler in handlers for end in _ends(handler)]
+    return not _returns(chart, state, following, without=_ASKED)
+
+
+_ASKED = (ProtocolPart.REQUEST, ProtocolPart.GOAL, ProtocolPart.BT_TICK)
+"""With what another machine asks for something."""
 
 
 def _loops(machine: Machine, chart: Chart, assigned: Mapping[str, Sequence[_Assigned]]) -> Iterator[Finding]:
@@ -212,7 +225,7 @@ def _is_limit(tree: Expr, name: str, sign: int) -> bool:
         isinstance(tree, Binary)
         and isinstance(tree.left, Name)
         and tree.left.name == name
-        and tree.operator in _REACHED[sign]
+        and tree.operator in REACHED[sign]
     )
 
 
@@ -244,8 +257,14 @@ def _bodies_of(state: State) -> Iterator[tuple[Statement, ...]]:
             yield target.body
 
 
-def _returns(chart: Chart, state: State, following: Sequence[str]) -> bool:
-    """Whether a machine can enter `state` again from one of the states `following`."""
+def _returns(
+    chart: Chart, state: State, following: Sequence[str], without: Collection[ProtocolPart | None] = ()
+) -> bool:
+    """Whether a machine can enter `state` again from one of the states `following`.
+
+    Args:
+        without: the triggers of handlers that are not taken.
+    """
     states = {other.id.value: other for other in chart.states if other.id is not None}
     own = state.id.value if state.id is not None else ""
     todo = list(following)
@@ -256,12 +275,13 @@ def _returns(chart: Chart, state: State, following: Sequence[str]) -> bool:
             return True
         if name not in seen and name in states:
             seen.add(name)
-            todo += _next(states[name])
+            todo += _next(states[name], without)
     return False
 
 
-def _next(state: State) -> list[str]:
-    return [t.state.value for handler in state.handlers if handler.effective for t in handler.targets if t.state]
+def _next(state: State, without: Collection[ProtocolPart | None] = ()) -> list[str]:
+    taken = [handler for handler in state.handlers if handler.effective and handler.trigger not in without]
+    return [t.state.value for handler in taken for t in handler.targets if t.state]
 
 
 # ------------------------------------------------------------------- flags
