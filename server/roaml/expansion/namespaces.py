@@ -5,10 +5,12 @@ number of another instance."""
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 
+from roaml.expansion.declarations import Declared, bounds_of
 from roaml.expansion.instances import ListedInstance
 from roaml.expansion.problems import ExpansionProblem, Problems
+from roaml.expr.types import INTEGER_RANGES
 from roaml.model.series import Alike, KeyedText, odd_numbers
 from roaml.model.syntax import Name, name_of
 from roaml.regex import regex
@@ -68,6 +70,56 @@ def report_inconsistent(instances: Iterable[ListedInstance], problems: Problems)
             )
             related = [(odd.other.span, f"has the number {odd.expected}")]
             problems.add(kinds[odd.text.span], odd.text.span, message, close=(odd.fixed,), related=related)
+
+
+def report_equal(
+    instances: Iterable[ListedInstance],
+    declared: Callable[[ListedInstance], Iterable[Declared]],
+    problems: Problems,
+) -> None:
+    """Report two instances of a file with the same number, if the parameter is an identifier or has no default value,
+    and has as many values from `min` to `max` as there are instances, or all others are different.
+
+    Args:
+        declared: returns the parameters of the file of an instance.
+    """
+    groups: dict[str, list[ListedInstance]] = {}
+    for instance in instances:
+        if not instance.is_plugin and not instance.is_tree:
+            groups.setdefault(instance.src.value, []).append(instance)
+    for group in groups.values():
+        for parameter in declared(group[0]) if len(group) > 1 else ():
+            _report_equal(group, parameter, problems)
+
+
+def _report_equal(group: list[ListedInstance], parameter: Declared, problems: Problems) -> None:
+    name = parameter.name.value
+    given = [attribute for instance in group for key, attribute in instance.params if key.value == name]
+    words = set(_words(name.lower()))
+    is_plain = words.isdisjoint(_IDENTIFIERS) and parameter.value is not None
+    if is_plain or parameter.type not in INTEGER_RANGES or len(given) < len(group):
+        return
+    numbers = [attribute.value.strip() for attribute in given]
+    twice = [number for number, count in Counter(numbers).items() if count > 1]
+    if len(twice) != 1 or numbers.count(twice[0]) != 2 or not all(number.isdecimal() for number in numbers):
+        return
+    low, high = bounds_of(parameter)
+    all_numbers: Sequence[int] = ()
+    if parameter.least is not None and parameter.most is not None and low is not None and high is not None:
+        all_numbers = range(int(low), int(high) + 1) if high - low + 1 == len(group) else ()
+    is_identifier = not words.isdisjoint(_IDENTIFIERS) or ("number" in words and parameter.value is None)
+    if not all_numbers and not (is_identifier and len(group) >= MIN_INSTANCES):
+        return
+    first, second = (attribute for attribute in given if attribute.value.strip() == twice[0])
+    left = [str(number) for number in all_numbers if str(number) not in numbers]
+    advice = f"; did you mean {left[0]}?" if left else "; the other instances have different ones"
+    message = f"two instances of `{group[0].src.value}` have the same `{name}`, {twice[0]}{advice}"
+    related = [(first.value_span, "the other one")]
+    problems.add(ExpansionProblem.INCONSISTENT, second.value_span, message, close=tuple(left[:1]), related=related)
+
+
+_IDENTIFIERS = frozenset(("id", "identifier", "index"))
+"""Words in the names of parameters that tell instances apart. A `number` may also count something."""
 
 
 def _report(src: str, pair: list[ListedInstance], missing: str, problems: Problems) -> None:

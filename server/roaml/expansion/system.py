@@ -13,6 +13,7 @@ from roaml.expansion.declarations import (
     PARAMETER,
     SECTIONS,
     SETTING,
+    Declared,
     Given,
     declaration_elements,
     declarations,
@@ -29,7 +30,7 @@ from roaml.expansion.instances import (
     removed_attribute,
     report_unused,
 )
-from roaml.expansion.namespaces import report_inconsistent, report_repeated
+from roaml.expansion.namespaces import report_equal, report_inconsistent, report_repeated
 from roaml.expansion.problems import ExpansionProblem, Problems
 from roaml.expansion.result import SystemExpansion
 from roaml.expansion.state import ExpansionState, named, relative
@@ -65,6 +66,7 @@ class SystemExpander:
         listed = list(instances(document, problems))
         report_repeated(listed, problems)
         report_inconsistent(listed, problems)
+        report_equal(listed, self._declared, problems)
         edits = list(self._system_edits(scope))
         trees = [instance for instance in listed if instance.is_tree]
         edits += self._listed_edits(listed, trees, scope)
@@ -117,9 +119,8 @@ class SystemExpander:
         """Expand a plugin for each tree to which it belongs. The input is replaced by one for each of them. `is_again`
         tells whether the system lists the file several times."""
         owners = [tree for tree in trees if plugin.tree is None or named(tree) == plugin.tree.value]
-        target, sources = self.state.target(plugin), self.state.sources
-        source = sources.document(target) if sources.kind(target) is FileKind.MACHINE else None
-        own = {p.name.value for p in declarations(source, Problems())} if source is not None else set()
+        target = self.state.target(plugin)
+        own = {parameter.name.value for parameter in self._declared(plugin)}
         inputs = []
         for tree in owners or [plugin]:
             instance = in_tree(plugin, tree, own) if tree is not plugin else plugin
@@ -138,6 +139,12 @@ class SystemExpander:
         kind = f'type="{type_.value}" ' if type_ is not None else ""
         texts = (f'<input {kind}src="{src}" {TREE_ATTRIBUTE}="{tree}" />' for src, tree in inputs)
         yield TextEdit(plugin.element.span, "\n        ".join(texts))
+
+    def _declared(self, instance: ListedInstance) -> Sequence[Declared]:
+        """The parameters of the machine that an input lists; none for other files."""
+        target, sources = self.state.target(instance), self.state.sources
+        source = sources.document(target) if sources.kind(target) is FileKind.MACHINE else None
+        return () if source is None else declarations(source, Problems())
 
     def _note_tree(self, name: Name | None, tree: ListedInstance, *, defines: bool) -> None:
         """Record a place with the name of a tree."""

@@ -7,13 +7,20 @@ from collections.abc import Iterator
 
 from roaml.diagnostics import Finding, Related, Severity
 from roaml.edit.elements import rename_tag
+from roaml.expr.operators import OperatorKind
+from roaml.expr.tree import Binary
 from roaml.forest.statuses import statuses_of
 from roaml.model.behavior.duties import backward, forward
 from roaml.model.behavior.explore import Behavior, BehaviorStep
 from roaml.model.behavior.phases import Phase, ProtocolEvent
+from roaml.model.machine import Handler, ReturnStatus, State
+from roaml.model.values.domain import TRUE
+from roaml.model.values.evaluate import compared
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule, TreeContext
 from roaml.rules.support.answers import behaviors, plugins
+from roaml.rules.support.compared_numbers import reached
+from roaml.rules.support.constant_conditions import because, values_in
 from roaml.rules.support.forest import trees_of
 from roaml.rules.support.node_calls import statuses_at_halt
 
@@ -25,10 +32,55 @@ def check(context: MachineContext) -> Iterator[Finding]:
     automata = plugins(context)
     if not automata or context.system is None:
         return
+    yield from _always_running(context)
     halted = any(Phase.RUNNING in statuses_at_halt(context.system, automaton) for automaton in automata)
     for behavior in behaviors(context):
         if behavior.chart is context.machine.chart:
             yield from _endless(behavior, halted)
+
+
+def _always_running(context: MachineContext) -> Iterator[Finding]:
+    """Report the condition with which a plugin returns RUNNING at each tick, as `level < enough`, if it always holds
+    for the values of the ports and for what the machines of the system send, and nothing else ends the wait."""
+    for chart in context.machine.charts:
+        values = context.values.charts.get(chart.scope)
+        for state in chart.states if values is not None else ():
+            for handler in state.handlers:
+                cond = handler.cond
+                if cond is None or values is None or not _waits(state, handler):
+                    continue
+                tree = cond.tree
+                sides = [values.at(side) for side in (tree.left, tree.right)] if isinstance(tree, Binary) else []
+                known = [reached(side) for side in sides if side is not None]
+                if not isinstance(tree, Binary) or len(known) < 2 or tree.operator.kind is not OperatorKind.ORDER:
+                    continue
+                is_counted = all(side.value is not None for side in known)
+                if not is_counted and compared(tree.operator, known[0], known[1]) == TRUE:
+                    message = (
+                        f"this condition is always true{because(values_in(values, tree))}, so the plugin returns "
+                        "RUNNING for ever; check the limit, and what is compared with it"
+                    )
+                    yield RULE.at(cond.span, message)
+
+
+def _waits(state: State, handler: Handler) -> bool:
+    """Whether a handler returns RUNNING in a state that only a later handler of a tick, or a halt, leaves."""
+    if handler.trigger is not ProtocolPart.BT_TICK or handler.cond is None or handler.cond.broken:
+        return False
+    statuses = [s.status.value for t in handler.targets for s in t.body if isinstance(s, ReturnStatus) and s.status]
+    if statuses != ["RUNNING"] or _leaves(state, handler):
+        return False
+    leaving = [other for other in state.handlers if other.effective and _leaves(state, other)]
+    triggers = {other.trigger for other in leaving} - {ProtocolPart.BT_HALT}
+    later = state.handlers[state.handlers.index(handler) + 1 :]
+    return triggers == {ProtocolPart.BT_TICK} and all(
+        other in later for other in leaving if other.trigger is ProtocolPart.BT_TICK
+    )
+
+
+def _leaves(state: State, handler: Handler) -> bool:
+    own = state.id.value if state.id is not None else ""
+    return any(target.state is None or target.state.value != own for target in handler.targets)
 
 
 def _endless(behavior: Behavior, halted: bool) -> Iterator[Finding]:

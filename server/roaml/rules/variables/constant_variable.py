@@ -87,6 +87,12 @@ def _constant(
         elif _is_counted(context, chart, name):
             message = f"`{name}` is always {shown}, because nothing assigns it, although a condition limits it"
             yield RULE.at(data.id.span, f"{message} and it is sent; assign the values that it should get")
+        elif (index := _index(context, chart, name)) is not None:
+            message = (
+                f"`{name}` is always {shown}, because nothing assigns it, although it is an index like `{index}`, "
+                "which changes; assign the values that it should get"
+            )
+            yield RULE.at(data.id.span, message)
 
 
 def _is_reset_value(context: MachineContext, chart: Chart, name: str) -> bool:
@@ -124,6 +130,31 @@ def _is_counted(context: MachineContext, chart: Chart, name: str) -> bool:
         if use in CONDITIONS
         for node in walk(tree)
     )
+
+
+_FIXED = frozenset(("base", "first", "front", "home", "origin", "root", "start"))
+"""Words in the names of constant indices."""
+
+
+def _index(context: MachineContext, chart: Chart, name: str) -> str | None:
+    """Another variable that is an index of the same array as `name` in one expression, and that changes; `None` if
+    there is none."""
+    if not _FIXED.isdisjoint(words_of(name)):
+        return None
+    assigned = _assigned(chart)
+    for value in context.typed.values:
+        if value.place.chart is not chart or not isinstance(value.value, Expression):
+            continue
+        indices = [
+            (place_of(node.object), node.index.name)
+            for node in walk(value.value.tree)
+            if isinstance(node, Index) and isinstance(node.index, Name)
+        ]
+        arrays = [array for array, index in indices if index == name]
+        for array, index in indices:
+            if array in arrays and index != name and index in assigned:
+                return index
+    return None
 
 
 def _is_side(node: Binary, name: str) -> bool:

@@ -6,10 +6,14 @@ from __future__ import annotations
 from collections.abc import Container, Iterator, Mapping, Sequence
 
 from roaml.diagnostics import Finding, Related, Severity
+from roaml.expr.infer import constant
+from roaml.expr.operators import Operator
+from roaml.expr.tree import Binary, Index, Name, walk
 from roaml.model.behavior.knowledge import variables_in
 from roaml.model.machine import (
     Assign,
     CallChild,
+    Chart,
     If,
     NoEffect,
     ReturnStatus,
@@ -18,10 +22,13 @@ from roaml.model.machine import (
     SetOutput,
     Statement,
     bodies,
+    statements,
 )
 from roaml.model.syntax import Expression, Value
+from roaml.model.values.domain import Origin, interval
 from roaml.model.values.evaluate import place_of
 from roaml.rules.rule import MachineContext, Rule
+from roaml.rules.support.steps import step_of
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -34,6 +41,43 @@ def check(context: MachineContext) -> Iterator[Finding]:
         }
         for _, _, body in bodies(chart):
             yield from _of_body(body, declared, initial)
+            yield from _full(context, chart, body)
+
+
+def _full(context: MachineContext, chart: Chart, body: tuple[Statement, ...]) -> Iterator[Finding]:
+    """Report the assignment that adds an element to a queue in a ring, as `calls[(first + waiting) % 5]`, if the queue
+    may be full, so that the oldest element is replaced."""
+    values = context.local_values.charts.get(chart.scope)
+    assigned = [s for s in statements(body) if isinstance(s, Assign) and s.location is not None]
+    counted = {
+        s.location.tree.name
+        for s in assigned
+        if s.location is not None and isinstance(s.location.tree, Name) and isinstance(s.value, Expression)
+        if step_of(s.value.tree, s.location.tree.name) > 0
+    }
+    for statement in assigned if values is not None else ():
+        tree = statement.location.tree if statement.location is not None else None
+        index = tree.index if isinstance(tree, Index) else None
+        if not isinstance(index, Binary) or index.operator is not Operator.REMAINDER or values is None:
+            continue
+        size = constant(index.right)
+        names = [part for part in walk(index.left) if isinstance(part, Name)]
+        if not isinstance(index.left, Binary) or index.left.operator is not Operator.ADD or size is None:
+            continue
+        for name in names:
+            known = values.at(name)
+            bounds = interval(known) if known is not None and name.name in counted else None
+            if bounds is None or bounds.high < size or bounds.high_from is Origin.ASSUMED:
+                continue
+            if bounds.high_from is Origin.REACHED:
+                message = (
+                    f"`{name.name}` can be {bounds.high:g} here, and {size:g} elements fill the queue: the next one "
+                    "replaces the oldest, which has not been read; add none when the queue is full"
+                )
+                yield RULE.at(index.span, message)
+            else:
+                message = f"no condition limits `{name.name}` to {size - 1:g} here; another element replaces the oldest"
+                yield RULE.at(index.span, message, severity=Severity.INFORMATION)
 
 
 def _of_body(body: Sequence[Statement], declared: Container[str], initial: Mapping[str, str]) -> Iterator[Finding]:
@@ -111,4 +155,5 @@ RULE = Rule(
     Severity.WARNING,
     "A value is assigned to a variable and replaced before anything reads it.",
     machine=check,
+    whole=True,
 )
