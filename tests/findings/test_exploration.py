@@ -350,3 +350,85 @@ def test_only_a_check_explores(tmp_path: Path, searches: list[int]) -> None:
     assert searches == []
     api.check([main])
     assert searches
+
+
+WASHER = """\
+-- main.xml --
+<roaml>
+    <parameters>
+        <max_time value="10" unit="s" reaction_time="instant" />
+        <bt_tick_rate value="1" />
+    </parameters>
+    <behavior_tree>
+        <input type="bt.cpp-xml" src="tree.xml" />
+        <input type="bt-plugin-ascxml" src="start.ascxml" />
+        <input type="bt-plugin-ascxml" src="unload.ascxml" />
+    </behavior_tree>
+    <node_models><input type="node-ascxml" src="washer.ascxml" /></node_models>
+    <properties><input type="jani" src="properties.jani" /></properties>
+</roaml>
+-- tree.xml --
+<root BTCPP_format="4"><BehaviorTree ID="Main"><Sequence>NODES</Sequence></BehaviorTree></root>
+-- start.ascxml --
+<ascxml name="Start" version="1.0" initial="idle">
+    <ros_service_client name="start" service_name="/start" type="std_srvs/Empty" />
+    <state id="idle">
+        <bt_tick target="asked"><ros_service_send_request name="start" /></bt_tick>
+        <bt_halt target="idle"><bt_return_halted /></bt_halt>
+    </state>
+    <state id="asked">
+        <ros_service_handle_response name="start" target="idle">
+            <bt_return_status status="SUCCESS" />
+        </ros_service_handle_response>
+    </state>
+</ascxml>
+-- unload.ascxml --
+<ascxml name="Unload" version="1.0" initial="idle">
+    <ros_service_client name="open" service_name="/open" type="std_srvs/Empty" />
+    <state id="idle">
+        <bt_tick target="asked"><ros_service_send_request name="open" /></bt_tick>
+        <bt_halt target="idle"><bt_return_halted /></bt_halt>
+    </state>
+    <state id="asked">
+        <ros_service_handle_response name="open" target="idle">
+            <bt_return_status status="SUCCESS" />
+        </ros_service_handle_response>
+    </state>
+</ascxml>
+-- washer.ascxml --
+<ascxml name="Washer" version="1.0" initial="empty">
+    <ros_service_server name="start" service_name="/start" type="std_srvs/Empty" />
+    <ros_service_server name="open" service_name="/open" type="std_srvs/Empty" />
+    <state id="empty">
+        <ros_service_handle_request name="start" target="full">
+            <ros_service_send_response name="start" />
+        </ros_service_handle_request>
+        <ros_service_handle_request name="open" target="empty">
+            <ros_service_send_response name="open" />
+        </ros_service_handle_request>
+    </state>
+    <state id="full">
+        <ros_service_handle_request name="open" target="empty">
+            <ros_service_send_response name="open" />
+        </ros_service_handle_request>
+    </state>
+</ascxml>
+-- properties.jani --
+{"properties": []}
+"""
+
+
+@pytest.mark.parametrize(
+    ("nodes", "severity", "says_so"),
+    [
+        ("<Start /><Start /><Unload />", Severity.WARNING, False),
+        ("<Start /><Unload />" * 2, Severity.INFORMATION, True),
+    ],
+)
+def test_a_wait_that_depends_on_an_order_is_information_if_the_order_never_occurs(
+    tmp_path: Path, nodes: str, severity: Severity, says_so: bool
+) -> None:
+    write_files(tmp_path, WASHER.replace("NODES", nodes))
+    [found] = [d for d in api.check([str(tmp_path / "main.xml")]).diagnostics if d.code == "answer-needs-time"]
+    assert found.severity is severity
+    assert ("in none of 25 simulated runs" in found.message) == says_so

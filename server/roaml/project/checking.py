@@ -34,6 +34,7 @@ from roaml.project.settings import Settings
 from roaml.project.suppress import Suppression, covering, suppressions
 from roaml.record import replace
 from roaml.rules import BY_CODE, RULES
+from roaml.rules.answers.answer_needs_time import DependsOnOrder
 from roaml.rules.elements import invalid_value
 from roaml.rules.files import file_too_large, unused_suppression
 from roaml.rules.files import internal_error as internal_error_rule
@@ -171,7 +172,14 @@ class RuleRunner:
             return None
         try:
             found = explored_findings.findings_of(self.analysis, system, self.settings.expectations)
-            return None if found is None else explored_findings.without_consequences(found, self._warned(system))
+            if found is None:
+                return None
+            static = list(self._of_system(system))
+            unobserved = explored_findings.unobserved(self.analysis, system, static)
+            replaced = {(path, f.code, f.span) for path, of_file in unobserved.items() for f in of_file}
+            codes = {f.code for path, f in static if (path, f.code, f.span) not in replaced}
+            found = explored_findings.without_consequences(found, codes)
+            return {path: (*found.get(path, ()), *unobserved.get(path, ())) for path in {**found, **unobserved}}
         except Exception as error:  # an internal error must not stop the rules
             _log_exception(error, "%s cannot be explored", system)
             return {system: (internal_error("the exploration of this system", error),)}
@@ -216,11 +224,13 @@ class RuleRunner:
         ]
         return tuple(self._published(errors))
 
-    def _warned(self, system: str) -> set[str]:
-        """The codes of the warnings of the rules about a system."""
-        subjects = (self.analysis.subject(path, system, self._inspection) for path in self.analysis.files_of(system))
-        found = (finding for subject in subjects if subject is not None for finding in self._findings(subject))
-        return {finding.code for finding in found if own_severity(finding) >= Severity.WARNING}
+    def _of_system(self, system: str) -> Iterator[tuple[str, Finding]]:
+        """The paths of the files of a system, and the warnings and errors of the rules in them."""
+        for path in self.analysis.files_of(system):
+            subject = self.analysis.subject(path, system, self._inspection)
+            for finding in self._findings(subject) if subject is not None else ():
+                if own_severity(finding) >= Severity.WARNING:
+                    yield path, finding
 
     def findings(self, path: str, system: str | None) -> tuple[Finding, ...]:
         """The findings of the rules in the file `path` as a part of `system`. If `system` is `None`, the file is not in
@@ -339,9 +349,11 @@ class RuleRunner:
 
 
 def _without_weaker(findings: dict[Finding, None], explored: Iterable[Finding]) -> dict[Finding, None]:
-    """The findings without those at the places of errors of the same rules that an exploration has found: these say
-    more."""
-    certain = {(f.code, f.span) for f in explored if f.severity is Severity.ERROR}
+    """The findings without those at the places where an exploration has found errors of the same rules, or that a wait
+    does not occur: these say more."""
+    certain = {
+        (f.code, f.span) for f in explored if f.severity is Severity.ERROR or isinstance(f.facts, DependsOnOrder)
+    }
     return {f: None for f in findings if (f.code, f.span) not in certain}
 
 

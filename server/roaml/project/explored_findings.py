@@ -170,6 +170,30 @@ def _late(analysis: Analysis, path: str, nodes: ByNumber, reached: Reached) -> l
     return list(late_children(analysis, path, nodes, reached))
 
 
+def unobserved(
+    analysis: Analysis, path: str, findings: Iterable[tuple[str, Finding]]
+) -> Mapping[str, tuple[Finding, ...]]:
+    """Path of a file -> what replaces the findings in it about waits that depend on the order of requests, if simulated
+    runs of the system never stand still.
+
+    Args:
+        findings: the paths of files, and the findings of the rules in them.
+    """
+    waits = [
+        (file, finding) for file, finding in findings if isinstance(finding.facts, answer_needs_time.DependsOnOrder)
+    ]
+    if not waits:
+        return {}
+    from roaml.project.simulation import runs_without_standstill  # noqa: PLC0415 - few systems have such findings
+
+    expanded = analysis.expanded(path)
+    runs = runs_without_standstill(analysis if expanded is None else expanded.analysis, path)
+    replaced: dict[str, tuple[Finding, ...]] = {}
+    for file, finding in waits if runs else ():
+        replaced[file] = (*replaced.get(file, ()), answer_needs_time.unobserved(finding, runs))
+    return replaced
+
+
 def without_consequences(
     found: Mapping[str, tuple[Finding, ...]], others: Collection[str]
 ) -> Mapping[str, tuple[Finding, ...]]:

@@ -14,13 +14,15 @@ from roaml.jani.model import Model
 from roaml.jani.reaction import ReactionError, reacting
 from roaml.lower.system import lower
 from roaml.project.analysis import Analysis
-from roaml.project.exploration import Reached, reached_by, ways_taken
+from roaml.project.exploration import Reached, reached_by, ways_taken, with_reactions
 from roaml.project.explored_steps import ExploredWay
-from roaml.project.translation import program_of
+from roaml.project.translation import network_of, program_of
 from roaml.record import replace
 from roaml.smc.batch import TraceProblem
+from roaml.smc.end import End
 from roaml.smc.fault import FaultError
 from roaml.smc.model import ModelChecker
+from roaml.smc.program import TRUE
 from roaml.smc.record import Recorder, Recording
 from roaml.smc.registers import BOOL
 from roaml.to_jani import translate
@@ -74,6 +76,28 @@ def _runs(model: Model) -> Iterator[Reached]:
     """What growing numbers of runs of a model reach."""
     for checker, taken, runs in _taken(model):
         yield reached_by(model, checker, taken, _ways_of, simulated=runs)
+
+
+def runs_without_standstill(analysis: Analysis, path: str) -> int:
+    """The number of simulated runs of a system in which machines never wait for each other for ever; 0 if they do in
+    some run, or if the system cannot be simulated."""
+    number = sum(runs for runs, _ in BATCHES)
+    for model, _ in with_reactions(translate(network_of(analysis, path), (), ())):
+        try:
+            checker = ModelChecker(model, (), marks(model))
+        except FaultError:
+            return 0
+        recorder = Recorder(checker, checker.stuck, 0, BATCHES[-1][1])
+        for run in range(number):
+            recording = Recording(run)
+            recorder.rush(recording)
+            if recording.verdict == TRUE or recording.problem is not None or recording.end in _STANDSTILLS:
+                return 0
+            checkpoint()
+    return number
+
+
+_STANDSTILLS = (End.STUCK, End.DEADLOCK)
 
 
 def _ways_of(model: Model) -> list[ExploredWay] | None:

@@ -6,17 +6,23 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from roaml.diagnostics import Finding, Related, Severity, Symbol
+from roaml.facts import Facts
 from roaml.model.behavior.duties import distances, entering, unfinished
 from roaml.model.behavior.explore import Behavior, BehaviorStep
 from roaml.model.behavior.instants import EventDelay, Instants, is_readable
 from roaml.model.behavior.phases import HALT, TICK, Duty, DutyKind, ProtocolEvent
 from roaml.model.machine import Handler
 from roaml.model.system import System, SystemAutomaton
+from roaml.record import replace
 from roaml.roles import ProtocolPart, SymbolKind
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.answers import behaviors, place, plugins
 from roaml.rules.support.asynchronous import rewritten
 from roaml.rules.support.event_names import channel_named, named
+
+
+class DependsOnOrder(Facts, frozen=True):
+    """The wait begins only if requests arrive in a certain order."""
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -98,7 +104,18 @@ def _finding(
         advice = "handle the request in that state as well"
     message += f"; the clock stops when the next tick is due, so both may wait for ever; {advice}"
     fixes = rewritten(context, handler) if duty is TICK and not _not_taken(delay) else ()
-    return RULE.at(place(handler), message, *fixes, related=_related(delay))
+    facts = DependsOnOrder() if _not_taken(delay) else None
+    return RULE.at(place(handler), message, *fixes, related=_related(delay), facts=facts)
+
+
+def unobserved(finding: Finding, runs: int) -> Finding:
+    """The finding, if it depends on an order that does not occur in simulated runs.
+
+    Args:
+        runs: the number of runs.
+    """
+    message = f"{finding.message} (this occurs in none of {runs} simulated runs of this system)"
+    return replace(finding, message=message, severity=Severity.INFORMATION)
 
 
 def _not_taken(delay: EventDelay) -> bool:
@@ -150,4 +167,5 @@ RULE = Rule(
     "A tick or halt ends only after time has passed, which can stop the clock for ever.",
     machine=check,
     whole=True,
+    facts=DependsOnOrder,
 )
