@@ -56,6 +56,9 @@ def main() -> int:
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"{', '.join(BENCHMARKS)}; all if none is given")
     parser.add_argument("--plot", type=Path, metavar="FILE", help="draw how translations grow, as SVG")
     parser.add_argument("--plots", type=Path, metavar="DIR", help="draw how verification grows, as SVG files")
+    parser.add_argument("--record", type=Path, metavar="FILE",
+                        help="keep the numbers of state-counts, and continue from them")  # fmt: skip
+    parser.add_argument("--page", type=Path, metavar="FILE", help="replace the table of state-counts in a page")
     options = parser.parse_args()
     names = options.names or [name for name in BENCHMARKS if scan.program() or name not in scan.BENCHMARKS]
     unknown = [name for name in names if name not in BENCHMARKS]
@@ -64,7 +67,8 @@ def main() -> int:
     rows = []
     for name in names:
         print(f"{name} …", file=sys.stderr, flush=True)
-        rows += BENCHMARKS[name]()
+        is_counted = name in reductions.BENCHMARKS
+        rows += reductions.rows(options.record, options.page) if is_counted else BENCHMARKS[name]()
     if options.plot:
         options.plot.write_text(translate.diagram(), encoding="utf-8")
     for name, text in verify.diagrams().items() if options.plots else ():

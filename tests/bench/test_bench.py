@@ -16,6 +16,7 @@ from bench.keystrokes import keys, word_keys
 from bench.layouts import graphs
 from bench.pictures import machine
 from bench.planted import groups, judged, mistakes
+from bench.reductions import HEADING, Counted, Size, with_table
 from bench.report import Row, percentile, seconds, table
 from bench.requests import REQUESTS, REST, idle_times
 from bench.server import started
@@ -158,3 +159,22 @@ def test_a_planted_mistake_is_judged_by_the_line_of_its_finding() -> None:
     assert judged(mistake)[0] == "found"
     assert judged(replace(mistake, places=("</ascxml>",)))[0] == "elsewhere"
     assert judged(replace(mistake, old="<datamodel>", new="<datamodel>", after=""))[0] == "silent"
+
+
+def test_the_table_of_the_numbers_of_states_is_replaced_and_nothing_else() -> None:
+    known, more = Size(3_646, False, 0.1), Size(2_000_000, True, 4.1)
+    found = [
+        Counted("models/uc2/Main/main_bug.xml", "p", "any", more, known),
+        Counted("models/uc2/Main/main_bug.xml", "p", "instant", known, known),
+        Counted("models/plain/main.xml", "q", "any", known, known),
+    ]
+    table = (
+        "| --- | --- | --- | --- | --- | --- |\n"
+        "| `uc2/main_bug` | `p` | more than 2,000,000 | 3,646 | 3,646 | 3,646 |\n"
+        "| `plain` | `q` | 3,646 | 3,646 | no timers | no timers |\n"
+    )
+    old = f"Before.\n\n{HEADING}\n| --- |\n| an old row |\n\nAfter.\n"
+    new = f"Before.\n\n{HEADING}\n{table}\nAfter.\n"
+    assert with_table(old, found) == new == with_table(new, found)
+    with pytest.raises(ValueError, match="the page has no table"):
+        with_table("Before.\n", found)
