@@ -188,14 +188,23 @@ def _block(
 def _quantile_text(quantile: RewardQuantile) -> str:
     low, high, limit = (number(value, is_probability=False) for value in (quantile.low, quantile.high, quantile.value))
     if math.isinf(quantile.value):
-        text = f"no limit is known, because too few reach the condition; it is at least {low}"
+        text = "no limit is known, because "
+        if quantile.cut:
+            those = "all" if quantile.cut == quantile.traces else f"{quantile.cut:,}"
+            text += f"{those} were cut after {quantile.max_steps:,} steps"
+        else:
+            text += "too few reach the condition"
+        if not math.isinf(quantile.low):
+            text += f"; it is at least {low}"
     elif low == limit == high:
         text = f"at most {limit}"
     elif math.isinf(quantile.high):
         text = f"at most about {limit} (an estimate; the true limit is {low} or more)"
     else:
         text = f"at most about {limit} (an estimate; the true limit is from {low} to {high})"
-    return f"{100 * quantile.share:g} % of the traces: {text}; from {quantile.traces:,} traces with uniform choices"
+    remark = f" ({quantile.remark})" if quantile.remark else ""
+    basis = f"from {quantile.traces:,} traces with uniform choices{remark}"
+    return f"{100 * quantile.share:g} % of the traces: {text}; {basis}"
 
 
 def _conditional_lines(result: Result) -> list[str]:

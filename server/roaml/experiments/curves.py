@@ -18,9 +18,10 @@ from collections.abc import Callable, Iterable, Sequence
 
 from roaml.experiments.bands import BandKind
 from roaml.experiments.quantiles import value_of_rank
-from roaml.experiments.traces import TraceEnd, trajectories, variable_named
+from roaml.experiments.traces import LEAST_TRACES, TraceEnd, Trajectories, trajectories, variable_named
 from roaml.figures.plot import LinePlot, PlotAxis, PlotPoint, Series
 from roaml.record import Record, replace
+from roaml.smc.affordable import Affordable
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import FALSE, TRUE, UNKNOWN
@@ -34,7 +35,9 @@ MEDIAN_PLACES = 60
 DEFAULT_EPSILON = 0.02
 """Half the width of a simultaneous band, if it is not given."""
 MEDIAN_TRACES = 1000
-"""The number of traces for the median of a variable, if it is not given."""
+"""The number of traces for the median of a variable, if it is not given and they are not long."""
+MEDIAN_STEPS = 10_000_000
+"""The number of steps of these traces together. Reading a variable takes many times as long as a step."""
 
 
 class CurvePoint(Record, frozen=True):
@@ -56,6 +59,7 @@ class Curve(Record, frozen=True):
         undecided: the number of traces that were cut.
         subject: what the curve is about; curves with the same subject have the same color. "" for a color of its own.
         is_dashed: whether it is drawn as a dashed line.
+        remark: why there are fewer traces than usual, as a phrase; "" if there are not.
     """
 
     name: str
@@ -67,6 +71,7 @@ class Curve(Record, frozen=True):
     undecided: int
     subject: str = ""
     is_dashed: bool = False
+    remark: str = ""
 
     @property
     def band_words(self) -> str:
@@ -74,7 +79,9 @@ class Curve(Record, frozen=True):
         what = "the whole curve" if self.band is BandKind.SIMULTANEOUS else "each value by itself"
         confidence = f"{self.confidence:g} confidence ({self.band.value})"
         cut = f"; {self.undecided:,} traces were cut, which widens the band" if self.undecided else ""
-        return f"{self.traces:,} traces with uniform choices; the shaded band contains {what} with {confidence}{cut}"
+        remark = f" ({self.remark})" if self.remark else ""
+        traces = f"{self.traces:,} traces with uniform choices{remark}"
+        return f"{traces}; the shaded band contains {what} with {confidence}{cut}"
 
 
 def traces_for(options: Options, default: float = DEFAULT_EPSILON) -> int:
@@ -138,20 +145,27 @@ def verdict_curves(
         options: the confidence, the number of traces (`traces_for`), the limit of steps and the seed.
         clock: the variables with the seconds and nanoseconds of the time; `None` to count steps.
     """
-    count = traces_for(options)
-    ends = list(trajectories(checker, property_, options, clock).ends(count))
+    traces = trajectories(checker, property_, options, clock)
+    chosen = _chosen(traces, traces_for(options), options)
+    ends = list(traces.ends(chosen.traces))
     name, question = property_.question.name, property_.question
     if question.is_reward:
         label = f"{name}: distribution of the reward"
-        return (distribution(ends, _reward_of, TRUE, label, "reward", band, options.confidence),)
+        curve = distribution(ends, _reward_of, TRUE, label, "reward", band, options.confidence)
+        return (replace(curve, remark=chosen.remark),)
     across = "steps" if clock is None else "time (s)"
     curves = []
     for verdict, words in ((TRUE, "decided, holds"), (FALSE, "decided, fails")):
         if any(end.verdict == verdict for end in ends):
             label = f"{name}: {words}"
             curve = distribution(ends, _time_of, verdict, label, across, band, options.confidence)
-            curves.append(replace(curve, subject=name, is_dashed=verdict == FALSE))
+            curves.append(replace(curve, subject=name, is_dashed=verdict == FALSE, remark=chosen.remark))
     return tuple(curves)
+
+
+def _chosen(traces: Trajectories, wanted: int, options: Options, max_steps: int | None = None) -> Affordable:
+    """How many traces are generated: as many as are asked for, otherwise fewer if they are long."""
+    return Affordable(wanted, wanted) if options.max_traces is not None else traces.affordable(wanted, max_steps)
 
 
 def _time_of(end: TraceEnd) -> float:
@@ -178,9 +192,13 @@ def median_curves(
     Raises:
         ValueError: there is no such variable.
     """
-    count = options.max_traces or MEDIAN_TRACES
     storage = variable_named(checker, variable)
-    paths = list(trajectories(checker, checker.stuck, options, clock).values(storage, count))
+    if options.max_traces is None:
+        options = replace(options, max_steps=min(options.max_steps, MEDIAN_STEPS // LEAST_TRACES))
+    traces = trajectories(checker, checker.stuck, options, clock)
+    chosen = _chosen(traces, options.max_traces or MEDIAN_TRACES, options, MEDIAN_STEPS)
+    count = chosen.traces
+    paths = list(traces.values(storage, count))
     end = max((path[-1][0] for path, _ in paths), default=0.0)
     times = [end * i / (MEDIAN_PLACES - 1) for i in range(MEDIAN_PLACES)] if end else [0.0]
     across = "steps" if clock is None else "time (s)"
@@ -201,7 +219,8 @@ def median_curves(
         medians.append(CurvePoint(time, _quantile(known, 0.5), low, high))
         fifth.append(_plain(time, _quantile(known, 0.05)))
         ninety_fifth.append(_plain(time, _quantile(known, 0.95)))
-    curves = [Curve(f"median of {variable}", across, tuple(medians), band, options.confidence, count, cut)]
+    name = f"median of {variable}"
+    curves = [Curve(name, across, tuple(medians), band, options.confidence, count, cut, remark=chosen.remark)]
     for points, share_words in ((fifth, "5"), (ninety_fifth, "95")):
         name = f"{share_words} % of the traces are below"
         curves.append(Curve(name, across, tuple(points), band, options.confidence, count, cut))

@@ -15,6 +15,7 @@ import math
 from collections.abc import Iterable, Sequence
 
 from roaml.experiments.traces import TraceEnd, trajectories
+from roaml.record import replace
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import FALSE, UNKNOWN
@@ -22,7 +23,7 @@ from roaml.smc.run import Options
 from roaml.verification.results import RewardQuantile
 
 QUANTILE_TRACES = 10_000
-"""The number of traces, if it is not given."""
+"""The number of traces, if it is not given and they are not long."""
 
 
 def reward_quantiles(
@@ -31,14 +32,18 @@ def reward_quantiles(
     """The quantiles of a reward.
 
     Args:
-        options: the confidence, that of all intervals together; the number of traces (`max_traces`), the limit of steps
-            and the seed.
+        options: the confidence, that of all intervals together; the number of traces (`max_traces`; `None` for
+            `QUANTILE_TRACES`, or fewer if they are long), the limit of steps and the seed.
 
     Raises:
         FaultError: a trace executes an undefined operation.
     """
-    ends = trajectories(checker, property_, options, None).ends(options.max_traces or QUANTILE_TRACES)
-    return quantiles_of(ends, shares, options.confidence, is_conditional=property_.question.is_conditional)
+    traces = trajectories(checker, property_, options, None)
+    chosen = traces.affordable(QUANTILE_TRACES) if options.max_traces is None else None
+    ends = traces.ends(options.max_traces or QUANTILE_TRACES if chosen is None else chosen.traces)
+    found = quantiles_of(ends, shares, options.confidence, is_conditional=property_.question.is_conditional)
+    remark = "" if chosen is None else chosen.remark
+    return tuple(replace(quantile, max_steps=options.max_steps, remark=remark) for quantile in found)
 
 
 def quantiles_of(
@@ -67,6 +72,7 @@ def quantiles_of(
             value_of_rank(known, _greatest_rank(count, share, error) - cut),
             value_of_rank(known, count + 1 - _greatest_rank(count, 1 - share, error)),
             count,
+            cut,
         )
         for share in shares
         if count

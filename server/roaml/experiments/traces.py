@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from roaml.record import Record
+from roaml.smc.affordable import Affordable, affordable
 from roaml.smc.end import End
 from roaml.smc.goal import CompiledProperty
 from roaml.smc.model import ModelChecker
@@ -16,6 +17,8 @@ from roaml.smc.run import Options
 from roaml.suggest import close_names, did_you_mean
 
 NANOSECONDS = 1e-9
+LEAST_TRACES = 100
+"""The number of traces that are generated even if they have more than `affordable.MAX_STEPS` steps together."""
 
 
 class TraceEnd(NamedTuple):
@@ -33,6 +36,20 @@ class Trajectories(Record, frozen=True):
     checker: ModelChecker
     recorder: Recorder
     clock: tuple[Storage, ...]
+
+    def affordable(self, wanted: int, max_steps: int | None = None) -> Affordable:
+        """How many traces are generated if nobody has asked for a number.
+
+        Args:
+            wanted: the number if traces are short.
+            max_steps: the number of steps of all traces together; `None` for that of `affordable`.
+        """
+        return affordable(wanted, LEAST_TRACES, self._length, max_steps)
+
+    def _length(self, trace: int) -> int:
+        """The number of steps of a trace, also of one that fails."""
+        self.recorder.rush(Recording(trace))
+        return self.recorder.steps_and_reward()[0]
 
     def ends(self, count: int) -> Iterator[TraceEnd]:
         """The ends of the first traces.

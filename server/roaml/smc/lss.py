@@ -22,6 +22,7 @@ from typing import NamedTuple
 
 from roaml.exhaustive import Vocabulary
 from roaml.record import Record, field, replace
+from roaml.smc import affordable
 from roaml.smc.batch import Payload, Task
 from roaml.smc.goal import Question
 from roaml.smc.pool import Pool, Pulse
@@ -33,6 +34,8 @@ INITIAL_SCHEDULERS = 256
 """The initial number of memoryless schedulers."""
 FIRST_ROUND_TRACES = 16
 """The number of traces for each scheduler in the first round; it doubles in each further round."""
+LEAST_SCHEDULERS = 4
+"""The number of schedulers that are tried even if traces are very long."""
 MIN_ROUNDS_IF_CERTAIN = 3
 """The number of rounds after which the search ends if all traces of a scheduler have failed (minimum) or succeeded
 (maximum)."""
@@ -166,12 +169,14 @@ def search(
     Raises:
         TraceFaultError: a trace failed.
     """
-    state.tried = len(schedulers)
     report = watch or (lambda _: None)
     usual = answer(
         payload, question, replace(options, method=EstimationMethod.FIXED, max_traces=UNIFORM_TRACES), pool, pulse=pulse
     ).tally
-    longest = min(options.max_steps, _longest(usual.steps / usual.traces))
+    usual_steps = usual.steps / usual.traces
+    schedulers = schedulers[: affordable_schedulers(len(schedulers), usual_steps)]
+    state.tried = len(schedulers)
+    longest = min(options.max_steps, _longest(usual_steps))
     for side in Side:
         state.side, state.round, state.best = side, 0, None
         best = _best(payload, replace(options, max_steps=longest), pool, schedulers, state, report, pulse)
@@ -179,6 +184,19 @@ def search(
         plain = sampling_options(options)
         tally = state.selected[side].tally
         answer(payload, question, plain, pool, tally, lambda _: report(state), pulse, scheduler=best)
+
+
+def affordable_schedulers(count: int, length: float) -> int:
+    """How many of `count` schedulers are tried: so many that the traces of the selection have about
+    `affordable.MAX_STEPS` steps together, at least `LEAST_SCHEDULERS`. Each round has as many traces as the first one.
+
+    Args:
+        length: the average length of a trace with uniform choices.
+    """
+    most = affordable.MAX_STEPS / FIRST_ROUND_TRACES / length
+    while count > LEAST_SCHEDULERS and count * (count - 1).bit_length() > most:
+        count -= 1
+    return count
 
 
 def _longest(length: float) -> int:

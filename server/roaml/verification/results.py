@@ -403,6 +403,8 @@ class RewardQuantile(Record, frozen=True):
         value: the estimate; infinite if too few traces reach the condition.
         low, high: the interval.
         traces: the number of traces from which it was estimated.
+        cut: the number of these that were cut after `max_steps` steps, so that their rewards are not known.
+        remark: why there are fewer traces than usual, as a phrase; "" if there are not.
     """
 
     share: float
@@ -410,6 +412,9 @@ class RewardQuantile(Record, frozen=True):
     low: float
     high: float
     traces: int
+    cut: int = 0
+    max_steps: int = 0
+    remark: str = ""
 
 
 class Result(Record, frozen=True):

@@ -23,6 +23,7 @@ from roaml.scxml.names import (
     TreeEventKind,
     tree_event_name,
 )
+from roaml.smc.affordable import affordable
 from roaml.smc.kernel import Kernel
 from roaml.smc.model import ModelChecker
 from roaml.smc.names import Storage
@@ -36,9 +37,6 @@ TRACES = 1000
 LEAST_TRACES = 100
 """The default number of traces of a tree whose runs are long, and hence take more than `MAX_STEPS` steps in all."""
 MAX_STEPS = 30_000_000
-_PILOTS = 5
-"""How many further traces determine how long runs are. They are not part of the measurements, so that the number of
-traces does not depend on these."""
 QUANTILES = (0.5, 0.9, 0.99)
 COUNTERS = ("recoveries", "failed_attempts")
 SUCCESS, FAILURE, RUNNING, SKIPPED, HELD = 1, 2, 3, 4, 5
@@ -230,8 +228,7 @@ class _Measuring:
 
     def affordable(self) -> int:
         """The default number of traces, which is smaller if runs are long."""
-        steps = max(1, sum(self.trace(TRACES + pilot)[1] for pilot in range(_PILOTS)) // _PILOTS)
-        return min(TRACES, max(LEAST_TRACES, MAX_STEPS // steps))
+        return affordable(TRACES, LEAST_TRACES, lambda number: self.trace(number)[1], MAX_STEPS).traces
 
     def trace(self, number: int) -> tuple[int, int, bool, bool]:
         """The result of a trace: the status that the tree returned last (0 if it has not ended), the number of steps,
