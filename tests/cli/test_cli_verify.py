@@ -942,6 +942,81 @@ def test_the_sentence_of_a_property_in_jani_names_topics_as_ros_does(command: Co
     assert "  `/r0/arm/arrived.valid ∧ /r0/arm/arrived.data = 1` holds at some time.\n" in out
 
 
+def test_the_sentence_of_a_property_in_jani_names_nodes_of_the_tree_and_statuses(
+    command: Command, tmp_path: Path
+) -> None:
+    tree = """<root BTCPP_format="4">
+  <BehaviorTree ID="T"><Sequence><AlwaysSuccess/><AlwaysSuccess/></Sequence></BehaviorTree>
+</root>
+"""
+    system = """<roaml>
+  <parameters><max_time value="2" unit="s" /></parameters>
+  <behavior_tree><input type="bt.cpp-xml" src="bt.xml" /></behavior_tree>
+  <properties><input type="jani" src="p.jani" /></properties>
+</roaml>
+"""
+    done = op("=", "bt_1000_response__status", 1)
+    first = op("∧", "bt_1001_response.valid", op("≠", "bt_1001_response__status", 2))
+    goals = {"done": op("F", done), "first": op("F", first)}
+    listed = [{"name": name, "expression": probability(goal)} for name, goal in goals.items()]
+    for name, text in (("main.xml", system), ("bt.xml", tree), ("p.jani", json.dumps({"properties": listed}))):
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    out = command("verify", "main.xml").out
+    assert "  `Sequence.status = SUCCESS` holds at some time.\n" in out
+    node = "AlwaysSuccess (bt_1001)"
+    assert f"  `{node} response.valid ∧ {node}.status ≠ FAILURE` holds at some time.\n" in out
+    assert "nodes of the behavior tree: Sequence (bt.xml:2), bt_1001 is AlwaysSuccess (bt.xml:2)\n" in out
+
+
+def test_the_sentence_of_a_property_in_jani_names_services_and_their_fields(command: Command, tmp_path: Path) -> None:
+    system = """<roaml>
+  <parameters><max_time value="2" unit="s" /></parameters>
+  <node_models>
+    <input type="node-ascxml" src="server.ascxml" /><input type="node-ascxml" src="client.ascxml" />
+  </node_models>
+  <properties><input type="jani" src="p.jani" /></properties>
+</roaml>
+"""
+    service = 'name="open" service_name="/door/open" type="std_srvs/SetBool"'
+    server = f"""<ascxml name="Door" version="1.0" initial="s">
+  <ros_service_server {service} />
+  <state id="s">
+    <ros_service_handle_request name="open" target="s">
+      <ros_service_send_response name="open">
+        <field name="success" expr="true" /><field name="message" expr="''" />
+      </ros_service_send_response>
+    </ros_service_handle_request>
+  </state>
+</ascxml>
+"""
+    client = f"""<ascxml name="Robot" version="1.0" initial="s">
+  <ros_service_client {service} />
+  <state id="s">
+    <onentry>
+      <ros_service_send_request name="open"><field name="data" expr="true" /></ros_service_send_request>
+    </onentry>
+    <ros_service_handle_response name="open" target="end" />
+  </state>
+  <state id="end" />
+</ascxml>
+"""
+    asked, answered = "srv_door__open_req_client_Robot", "srv_door__open_response_client_Robot"
+    goal = op(
+        "F", op("∧", f"{asked}__ros_fields__data", op("∧", f"{answered}.valid", f"{answered}__ros_fields__success"))
+    )
+    properties = json.dumps({"properties": [{"name": "p", "expression": probability(goal)}]})
+    for name, text in (
+        ("main.xml", system),
+        ("server.ascxml", server),
+        ("client.ascxml", client),
+        ("p.jani", properties),
+    ):
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    out = command("verify", "main.xml").out
+    answer = "Robot: /door/open response"
+    assert f"  `Robot: /door/open request.data ∧ {answer}.valid ∧ {answer}.success` holds at some time.\n" in out
+
+
 def test_the_comment_of_a_property_in_jani_is_its_sentence(command: Command, robot: Path) -> None:
     path = robot / "properties.jani"
     written = json.loads(path.read_text(encoding="utf-8"))

@@ -170,7 +170,7 @@ def test_a_minimum_that_a_scheduler_is_known_to_miss_is_refuted(command: Command
     else:
         [line] = warnings
         assert line.startswith(
-            "  warning: the order of steps matters; the minimum is not greater than the value with sampled scheduler "
+            "  warning: the order of steps matters; the bound of the minimum is from sampled scheduler "
         )
         assert first.partition(" and ")[2].partition(",")[0] not in line, "the first line contains the bound"
     assert "expected ≥ 0.9: NOT MET" in done.out

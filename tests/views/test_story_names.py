@@ -9,7 +9,7 @@ import drive_robot
 from roaml import api
 from roaml.scxml.names import InterfaceEvent, InterfaceEventKind, client_of, read_interface_event
 from roaml.verification.counterexample import counterexample
-from roaml.views.event_words import event_phrase, goal_phrases, message_phrases
+from roaml.views.event_words import event_phrase, goal_phrases
 
 
 def story(folder: Path, name: str) -> list[str]:
@@ -61,8 +61,3 @@ def test_an_interface_and_a_client_contain_the_separator() -> None:
     request = InterfaceEvent(InterfaceEventKind.REQUEST, "a_client_b")
     assert read_interface_event(event, ["y", "x client y"]) == request
     assert client_of("srv_a_client_b_request", ["b"]) == ""
-
-
-def test_variables_that_properties_read_are_fields_of_messages() -> None:
-    names = ["topic_level_msg.valid", "topic_level_msg__ros_fields__pose__x", "topic_on_msg.valid", "Arm.way"]
-    assert message_phrases(names, {"Arm"}) == ["/level.pose.x", "/on", "Arm.way"]

@@ -15,7 +15,7 @@ from roaml.exhaustive import Vocabulary, assert_never
 from roaml.experiments.changes import ValueChange, ValueVerdict
 from roaml.experiments.enough import Met
 from roaml.experiments.points import ExperimentPoint, PointKind
-from roaml.experiments.results import ESTIMATE_NOTE, UNKNOWN_EXTREME, cell, exact_note
+from roaml.experiments.results import cell, estimate_note, exact_note
 from roaml.figures.plot import page
 from roaml.figures.svg import CHANGE_STYLES
 from roaml.ide.diagrams.changes import PartChange
@@ -214,10 +214,10 @@ def _notes(report: ComparisonReport) -> list[str]:
     if any(point.kind is PointKind.EXACT for point in points):
         notes.append(exact_note(points))
     if any(point.kind is PointKind.ESTIMATE for point in points):
-        unknown = "" if report.only_uniform else UNKNOWN_EXTREME
+        meaning = estimate_note(points, only_uniform=report.only_uniform)
         notes.append(
-            f"{ESTIMATE_NOTE}{unknown}: the intervals of all values and differences are right together with "
-            f"{report.confidence:g} confidence; a change is significant if its interval does not contain 0"
+            f"{meaning}: the intervals of all values and differences are right together with {report.confidence:g} "
+            "confidence; a change is significant if its interval does not contain 0"
         )
     limited = {f"`{point.name}`: {point.note}" for point in points if point.note}
     return [*notes, *sorted(limited)]

@@ -58,9 +58,9 @@ def below_headline(question: Question, choices: Choices | None) -> str:
         return ""
     if not bound_text(question, known):
         return remark(question, choices)
-    other = "greater" if is_minimised(question) else "smaller"
-    where = f"with {known.scheduler}" if known.method is ExtremeMethod.SAMPLING else "if machines react at once"
-    return f"warning: the order of steps matters; the {extreme_of(question)} is not {other} than the value {where}"
+    is_sampled = known.method is ExtremeMethod.SAMPLING
+    basis = f"from {known.scheduler}" if is_sampled else "the value if machines react at once"
+    return f"warning: the order of steps matters; the bound of the {extreme_of(question)} is {basis}"
 
 
 def _known(question: Question, extreme: Extreme) -> str:

@@ -326,25 +326,31 @@ def _measure(task: _Task) -> list[ExperimentPoint]:
     points = {}
     for name, refused in checker.refused.items():
         points[name] = unknown_point(task.setting, name, refused.message)
+    limits: dict[str, str] = {}
     for property_ in checker.compiled_properties:
         point = _exact(task, checker, property_)
-        if point is not None:
+        if isinstance(point, ExperimentPoint):
             points[property_.question.name] = point
+        else:
+            limits[property_.question.name] = point
     rest = [name for name in task.names if name not in points]
     if rest:
         verifier = verifier_of(target, rest, task.options.sampling, only_uniform=True)
-        points |= _estimated(task, verifier, rest)
+        estimated = _estimated(task, verifier, rest)
+        points |= {name: replace(point, limit=limits.get(name, "")) for name, point in estimated.items()}
     return [points[name] for name in task.names]
 
 
-def _exact(task: _Task, checker: ModelChecker, property_: CompiledProperty) -> ExperimentPoint | None:
-    """The point with exact values; `None` if traces are needed."""
+def _exact(task: _Task, checker: ModelChecker, property_: CompiledProperty) -> ExperimentPoint | str:
+    """The point with exact values; if traces are needed, the name of the limit that ended the search, or ""."""
     options, question = task.options, property_.question
+    limit = ""
     try:
         if options.is_exhaustive:
             exact: Exact | None = exact_values(checker, property_, task.limits, only_uniform=options.only_uniform)
         elif options.exact:
-            exact = attempt(checker, property_, task.limits, only_uniform=options.only_uniform).exact
+            search = attempt(checker, property_, task.limits, only_uniform=options.only_uniform)
+            exact, limit = search.exact, search.limit
         else:
             exact = None
     except UndecidedError as error:
@@ -352,10 +358,10 @@ def _exact(task: _Task, checker: ModelChecker, property_: CompiledProperty) -> E
     except FaultError as fault:
         return unknown_point(task.setting, question.name, fault.message)
     if exact is None:
-        return None
+        return limit
     if options.only_uniform and exact.uniform is None:
         reason = "choices were left out, so the value under uniform choices is not known; traces can estimate it"
-        return unknown_point(task.setting, question.name, reason) if options.is_exhaustive else None
+        return unknown_point(task.setting, question.name, reason) if options.is_exhaustive else limit
     return exact_point(
         task.setting,
         question,

@@ -12,7 +12,7 @@ from roaml.record import Record
 from roaml.smc.goal import Question
 from roaml.smc.run import Answer
 from roaml.smc.statistics import Bounds
-from roaml.verification.headline import too_wide
+from roaml.verification.headline import too_wide, undecided_reason
 from roaml.verification.number_text import without_noise
 from roaml.verification.results import is_close, is_same
 from roaml.verification.schedulers import is_minimised
@@ -48,6 +48,8 @@ class ExperimentPoint(Record, frozen=True):
         traces: the number of traces; 0 for an exact value.
         note: what limits the meaning of the value, or why there is none.
         slopes: the derivatives by parameters, if they are requested and exist.
+        limit: of an estimate, the option whose limit ended the search for exact values, such as `max-states`; "" if
+            none did.
     """
 
     setting: Setting
@@ -64,6 +66,7 @@ class ExperimentPoint(Record, frozen=True):
     traces: int = 0
     note: str = ""
     slopes: tuple[tuple[str, float], ...] = ()
+    limit: str = ""
 
     @property
     def key(self) -> str:
@@ -87,6 +90,7 @@ class ExperimentPoint(Record, frozen=True):
             "traces": self.traces,
             "note": self.note,
             "slopes": dict(self.slopes),
+            "limit": self.limit,
         }
 
 
@@ -115,6 +119,7 @@ def point_from_json(data: dict[str, Any]) -> ExperimentPoint:
         int(data["traces"]),
         str(data["note"]),
         tuple((str(name), float(slope)) for name, slope in data["slopes"].items()),
+        str(data.get("limit", "")),
     )
 
 
@@ -201,7 +206,7 @@ def estimated_point(setting: Setting, answer: Answer, stuck: int = 0) -> Experim
     tally = answer.tally
     notes = []
     if tally.undecided:
-        notes.append(f"{tally.undecided:,} of {tally.traces:,} traces undecided")
+        notes.append(f"{tally.undecided:,} of {tally.traces:,} traces undecided, because {undecided_reason(answer)}")
     if stuck:
         notes.append(f"{stuck:,} of {tally.traces:,} traces got stuck")
     if answer.question.is_conditional and not tally.traces:

@@ -23,13 +23,26 @@ MAX_LINES = 6
 COLUMNS = ("value", "low", "high", "kind", "schedulers", "minimum", "maximum", "uniform", "states", "traces", "note")
 
 ESTIMATE_NOTE = "estimates from traces with uniform choices"
-UNKNOWN_EXTREME = " (the minimum and maximum over all schedulers are undecided)"
 EXACT_NOTES = {
     Schedulers.ALL: "the same for all schedulers",
     Schedulers.MINIMUM: "the minimum over all schedulers where these differ",
     Schedulers.MAXIMUM: "the maximum over all schedulers where these differ",
     Schedulers.UNIFORM: "those under uniform choices where schedulers differ",
 }
+
+
+def estimate_note(points: Iterable[ExperimentPoint], *, only_uniform: bool) -> str:
+    """What the estimates among points mean, and which limits ended the searches for exact values.
+
+    Args:
+        only_uniform: whether the value under uniform choices is requested.
+    """
+    if only_uniform:
+        return ESTIMATE_NOTE
+    limits = [f"--{limit}" for limit in dict.fromkeys(point.limit for point in points) if limit]
+    stopped = f"searches stopped at the limit {' or '.join(limits)}; a higher one, or --exhaustive, lets them go on"
+    where = f", because {stopped}"
+    return f"{ESTIMATE_NOTE} (the minimum and maximum over all schedulers are undecided{where if limits else ''})"
 
 
 def exact_note(points: Sequence[ExperimentPoint]) -> str:
@@ -163,7 +176,7 @@ class ExperimentResult(Record, frozen=True):
         if PointKind.ESTIMATE in kinds:
             sampling = self.options.sampling
             notes.append(
-                f"{ESTIMATE_NOTE}{'' if self.options.only_uniform else UNKNOWN_EXTREME}: "
+                f"{estimate_note(self.points, only_uniform=self.options.only_uniform)}: "
                 f"{sampling.confidence:g} confidence for each point by itself, seed {sampling.seed}"
             )
         limited: dict[str, list[ExperimentPoint]] = {}

@@ -63,6 +63,12 @@ def read_tree_event(event: str) -> TreeEvent | None:
     return TreeEvent(int(match[1]), TreeEventKind(match[2])) if match else None
 
 
+def is_status(variable: str) -> bool:
+    """Whether a variable of the model contains the status that a node of a tree has returned last."""
+    event, _, field = variable.rpartition("__")
+    return field == "status" and read_tree_event(event) is not None
+
+
 def tree_event_name(node: int | str, kind: TreeEventKind) -> str:
     """The name of an event between a node of a tree and its parent.
 
@@ -271,6 +277,11 @@ def _ends_after(separator: str, text: str) -> Iterator[str]:
 def without_client(event: str, client: str) -> str:
     """The name of an event of a service or action without the name of its client; `client` may be ""."""
     return event.removesuffix(f"{_CLIENT}{safe_name(client)}") if client else event
+
+
+def is_acceptance(event: str, client: str) -> bool:
+    """Whether an event with the answer to the goal of an action accepts it; `client` is as for `without_client`."""
+    return without_client(event, client).rpartition("_")[2].startswith("accept")
 
 
 _CLIENT = "_client_"

@@ -213,13 +213,13 @@ def estimate_text(answer: Answer) -> str:
         value = UNDECIDED if is_open else with_interval(answer.value, answer.bounds, is_probability=not is_reward)
         counts = f"{tally.traces:,} traces: {tally.successes:,} {good}, {answer.failures:,} {bad}"
         if tally.undecided:
-            counts += f", {_undecided(answer)}"
+            counts += f", {undecided_reason(answer)}"
         return f"{value} from {counts}"
     if _is_open(answer):
-        return f"{UNDECIDED}: {_undecided(answer)}"
+        return f"{UNDECIDED}: {undecided_reason(answer)}"
     results = [f"{tally.successes:,} of {tally.traces:,} traces {good}"]
     results += [f"{answer.failures:,} {bad}"] if answer.failures else []
-    results.append(_undecided(answer))
+    results.append(undecided_reason(answer))
     bounds = _between(answer)
     confidence = "" if bounds == UNDECIDED else f" ({answer.options.confidence:g} confidence)"
     return f"{bounds}{confidence}: {', '.join(results)}"
@@ -244,7 +244,7 @@ def _between(answer: Answer) -> str:
             return UNDECIDED
 
 
-def _undecided(answer: Answer) -> str:
+def undecided_reason(answer: Answer) -> str:
     """The number of undecided traces, why they are undecided, and the remedy."""
     cut = answer.tally.ended(End.CUT)
     open_ = answer.tally.undecided - cut

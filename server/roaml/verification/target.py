@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from roaml.comparison import Comparison
 from roaml.jani.constants import constant_values
-from roaml.jani.expressions import Name
+from roaml.jani.expressions import Binary, Integer, Name
 from roaml.jani.model import Model
 from roaml.jani.nesting import is_nested
 from roaml.jani.node import Node, Origin
 from roaml.jani.properties import Property, walk
 from roaml.jani.sentences import sentence
 from roaml.record import Record, field, replace
-from roaml.scxml.names import CLOCK_VARIABLES, FLAG, assumptions_of
+from roaml.scxml.names import CLOCK_VARIABLES, STATUS_NAMES, assumptions_of, is_status
 from roaml.text import SourceFile
 from roaml.verification.expectations import Expectation, expectation_of
 from roaml.views.ends import is_translation
@@ -121,28 +121,35 @@ def own_words(target: VerificationTarget, name: str) -> str:
 
 
 class _Sentences:
-    """Sentences for the properties of a model, with the names of topics as in ROS and the values of constants."""
+    """Sentences for the properties of a model, with names for users, such as those of topics, nodes of the tree and
+    their statuses, and the values of constants."""
 
     def __init__(self, model: Model) -> None:
         self._constants = constant_values(model)
-        self._clients = frozenset(a.name for a in model.automata) if is_translation(model) else None
+        self._names: Mapping[str, str] = {}
+        self._statuses: frozenset[str] = frozenset()
+        if is_translation(model):
+            from roaml.views.actors import names_of  # noqa: PLC0415 - models that are no systems have no topics
+            from roaml.views.shared_names import operand_names  # noqa: PLC0415 - as above
+
+            self._names = operand_names((variable.name for variable in model.variables), names_of(model.automata))
+            self._statuses = frozenset(name for variable, name in self._names.items() if is_status(variable))
 
     def __call__(self, property_: Property) -> str:
-        if self._clients is None:
+        if not self._names:
             return sentence(property_.expression, self._constants)
-        from roaml.jani.rewrite import rewrite  # noqa: PLC0415 - models that are no systems have no topics
+        from roaml.jani.rewrite import rewrite  # noqa: PLC0415 - as above
 
         return sentence(rewrite(property_.expression, self._in_words), self._constants)
 
     def _in_words(self, node: Node) -> Node:
-        if self._clients is None or not isinstance(node, Name):
-            return node
-        from roaml.views.event_words import message_phrases  # noqa: PLC0415 - as above
-
-        (phrase,) = message_phrases((node.identifier,), self._clients)
-        if not phrase.startswith("/"):  # a clause, such as `a request to /adder`, is no operand
-            return node
-        return replace(node, identifier=f"{phrase}.{FLAG}" if node.identifier.endswith(f".{FLAG}") else phrase)
+        match node:
+            case Name(identifier) if identifier in self._names:
+                return replace(node, identifier=self._names[identifier])
+            case Binary(left=Name(identifier), right=Integer(value) as number):
+                if identifier in self._statuses and value in STATUS_NAMES:  # parts are rewritten first
+                    return replace(node, right=Name(STATUS_NAMES[value], origin=number.origin))
+        return node
 
 
 def asking(target: VerificationTarget, names: Iterable[str]) -> VerificationTarget:

@@ -4,12 +4,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection
 
 from roaml.scxml.events import Role
 from roaml.scxml.names import (
-    FIELD_PREFIX,
-    FLAG,
     TIMER_PREFIX,
     InterfaceEvent,
     InterfaceEventKind,
@@ -17,6 +15,7 @@ from roaml.scxml.names import (
     cancel_request,
     client_of,
     entry_name,
+    is_acceptance,
     is_blackboard_answer,
     is_blackboard_event,
     is_blackboard_request,
@@ -25,7 +24,6 @@ from roaml.scxml.names import (
     read_interface_event,
     read_tree_event,
     safe_name,
-    without_client,
     written_entry,
 )
 
@@ -98,24 +96,9 @@ def interface_phrase(event: str, clients: Collection[str]) -> str:
         return ""
     name = _ros_name(interface)
     if interface.kind is InterfaceEventKind.GOAL_ANSWER:
-        answer = without_client(event, client_of(event, clients)).rpartition("_")[2]
-        return f"the {'acceptance' if answer.startswith('accept') else 'rejection'} of a goal of {name}"
+        answer = "acceptance" if is_acceptance(event, client_of(event, clients)) else "rejection"
+        return f"the {answer} of a goal of {name}"
     return f"{_SHORT_PHRASES[interface.kind]}{name}"
-
-
-def message_phrases(variables: Iterable[str], clients: Collection[str]) -> list[str]:
-    """Phrases for variables that properties read, such as `/level.data` for a field of the last message on a topic, and
-    `/level` for whether there is one, which is left out beside a field. Other names are kept.
-
-    Args:
-        clients: the names of the automata of the system.
-    """
-    phrases = []
-    for name in variables:
-        event, is_field, field = name.partition(f"__{FIELD_PREFIX}")
-        phrase = interface_phrase(event.removesuffix(f".{FLAG}"), clients)
-        phrases.append(name if not phrase else f"{phrase}.{field.replace('__', '.')}" if is_field else phrase)
-    return [p for p in dict.fromkeys(phrases) if not any(other.startswith(f"{p}.") for other in phrases)]
 
 
 def blackboard_phrase(event: str) -> str:

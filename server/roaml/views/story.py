@@ -12,15 +12,16 @@ from typing import NamedTuple
 from roaml.durations import moment
 from roaml.jani.node import Origin
 from roaml.regex import regex
-from roaml.scxml.names import read_tree_event
+from roaml.scxml.names import is_status
 from roaml.smc.end import End
 from roaml.smc.story import Story, outcome
+from roaml.views.actors import names_of
 from roaml.views.cause import cause
-from roaml.views.event_words import message_phrases
 from roaml.views.folding import LeftOut, Repetition, Shown, folded, without_middle
 from roaml.views.marked import marked
 from roaml.views.observed import reads_observer
 from roaml.views.parting import Parting
+from roaml.views.shared_names import read_names
 from roaml.views.trace_names import trace_name
 from roaml.views.turn_words import chances, details, message_text, scheduling, what
 from roaml.views.turns import Turn, turns
@@ -155,15 +156,10 @@ def heading(story: Story) -> str:
     text = summary(story)
     if story.is_whole:
         return text
-    automata = {automaton.name for automaton in story.automata}
-    read = [name for name in story.variables if not reads_observer(name, automata) and not _is_status(name)]
-    variables = message_phrases(read, automata)
+    automata = names_of(story.automata)
+    read = [name for name in story.variables if not reads_observer(name, automata) and not is_status(name)]
+    variables = read_names(read, automata)
     return text + (f" (it reads {', '.join(variables)})" if variables else "")
-
-
-def _is_status(name: str) -> bool:
-    """Whether a variable contains what a node of the tree has returned."""
-    return read_tree_event(name.partition("__")[0]) is not None
 
 
 def as_mermaid(story: Story, place_of: PlaceOf, first: int = 0) -> str:
