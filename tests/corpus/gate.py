@@ -392,7 +392,8 @@ class JudgeLimits(NamedTuple):
         """As a sentence of the page."""
         return (
             f"Limits for each property and reaction time: {self.states:,} states of the search, {self.seconds} s of "
-            f"CPU time, and {self.memory} GB for Storm."
+            f"CPU time, and {self.memory} GB for Storm.\nA cell without an answer names the limit that was reached, "
+            "which is lower where a system was compared within less."
         )
 
 
@@ -492,7 +493,8 @@ def main() -> int:
         return _run_plain()
     JUDGE[0] = JudgeLimits(options.storm_seconds, options.storm_memory, options.max_states)
     if options.page:
-        options.page.write_text(page(read(options.resume), JUDGE[0].text), encoding="utf-8")
+        names = map(conformance.label, conformance.systems())
+        options.page.write_text(page(read(options.resume), JUDGE[0].text, names), encoding="utf-8")
         return 0
     steps = {name: step for name, step in STEPS.items() if not options.step or name in options.step}
     with tempfile.TemporaryDirectory() as folder:

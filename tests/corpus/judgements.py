@@ -22,7 +22,7 @@ and the maximum that `verify --exhaustive` computes, those that [Storm](https://
 [translated JANI](jani.md), and an estimate from 200 traces, whose bounds must contain the value under uniform choices.
 It does so for four [reaction times](semantics.md#reaction-time): `any`, a duration of two steps of the clock, of one
 step, and `instant`. It also compares the reaction times with each other: a shorter one must not widen the range from
-minimum to maximum. Systems that are not listed were not compared.
+minimum to maximum.
 """
 
 
@@ -76,11 +76,12 @@ def read(files: Iterable[Path]) -> list[tuple[str, Judgement]]:
     return [(system, judgement) for (system, _, _), judgement in found.items()]
 
 
-def page(rows: Iterable[tuple[str, Judgement]], limits: str) -> str:
+def page(rows: Iterable[tuple[str, Judgement]], limits: str, names: Iterable[str] = ()) -> str:
     """The page in Markdown.
 
     Args:
         limits: of the search and of Storm, as a sentence.
+        names: all systems that are to be compared, in their order; those without a judgement are named.
     """
     systems: dict[tuple[str, str], dict[str, Judgement]] = {}
     networks: list[Judgement] = []
@@ -89,8 +90,12 @@ def page(rows: Iterable[tuple[str, Judgement]], limits: str) -> str:
             networks.append(judgement)
         else:
             systems.setdefault((system, judgement.name), {})[judgement.column] = judgement
+    places = {name: place for place, name in enumerate(names)}
+    systems = dict(sorted(systems.items(), key=lambda item: places.get(item[0][0], len(places))))
+    missing = sorted(places.keys() - {system for system, _ in systems}, key=places.__getitem__)
     listed = [judgement for columns in systems.values() for judgement in columns.values()]
     parts = [TITLE, limits, "", '<a id="systems"></a>', "", "## 1. Systems", "", *_counts(listed), "", *_list(systems)]
+    parts += ["", f"Not compared: {', '.join(missing)}." if missing else "All conformance systems are listed."]
     parts += ["", '<a id="networks"></a>', "", "## 2. Random networks", "", *_counts(networks), *_reasons(networks)]
     return "\n".join([*parts, ""])
 

@@ -34,6 +34,15 @@ def test_the_page_lists_systems_and_counts_networks(tmp_path: Path) -> None:
     assert "\n1 without a comparison: stopped.\n" in networks
 
 
+def test_the_page_names_the_systems_that_were_not_compared(tmp_path: Path) -> None:
+    file = record(tmp_path / "a.resume", "second", Judgement("p", "any", EQUAL))
+    record(file, "first", Judgement("q", "any", EQUAL))
+    text = page(read([file]), "Limits.", ["first", "second", "third", "fourth"])
+    assert text.index("| first, q |") < text.index("| second, p |")
+    assert "\nNot compared: third, fourth.\n" in text
+    assert "\nAll conformance systems are listed.\n" in page(read([file]), "Limits.", ["second", "first"])
+
+
 def test_a_later_judgement_replaces_an_earlier_one(tmp_path: Path) -> None:
     first = record(tmp_path / "a.resume", "robot", Judgement("p", "any", TOO_LARGE, "Storm: more than 60 s"))
     second = record(tmp_path / "b.resume", "robot", Judgement("p", "any", EQUAL, searched=1, storm=2))
