@@ -122,6 +122,36 @@ def test_a_variable_of_a_node_is_named_before_the_messages_that_contain_it(tmp_p
     assert advice(variables[1:]) == "shorten the time (max_time)"
 
 
+def test_a_message_that_grows_has_the_name_of_its_topic(tmp_path: Path) -> None:
+    """No variable of a machine grows: two machines count with their messages only."""
+    node = """<ascxml name="{name}" version="1.0" initial="s">
+  <ros_topic_publisher name="out" topic="/robot/{out}" type="std_msgs/Int32" />
+  <ros_topic_subscriber name="in" topic="/robot/{received}" type="std_msgs/Int32" />
+  <state id="s">
+    {start}
+    <ros_topic_callback name="in" target="wait">
+      <ros_topic_publish name="out"><field name="data" expr="_msg.data + 1" /></ros_topic_publish>
+    </ros_topic_callback>
+  </state>
+  <state id="wait">
+    <ros_topic_callback name="in" target="wait">
+      <ros_topic_publish name="out"><field name="data" expr="_msg.data + 1" /></ros_topic_publish>
+    </ros_topic_callback>
+  </state>
+</ascxml>
+"""
+    first = '<onentry><ros_topic_publish name="out"><field name="data" expr="0" /></ros_topic_publish></onentry>'
+    (tmp_path / "source.ascxml").write_text(node.format(name="A", out="ping", received="pong", start=first))
+    (tmp_path / "sink.ascxml").write_text(node.format(name="B", out="pong", received="ping", start=""))
+    (tmp_path / "main.xml").write_text(SYSTEM["main.xml"].replace('value="100000"', 'value="1"'))
+    properties = SYSTEM["properties.jani"].replace("topic_counts_msg", "topic_robot__ping_msg")
+    (tmp_path / "properties.jani").write_text(properties)
+    target = api.as_target(api.load(str(tmp_path / "main.xml")))
+    names = [variable.name for variable in limited(api.checker(target.model), 3000)]
+    assert "/robot/ping.data" in names
+    assert all(name.startswith("/robot/") for name in names)
+
+
 @pytest.mark.parametrize(
     ("has_maximum", "text"),
     [

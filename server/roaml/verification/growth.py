@@ -13,7 +13,9 @@ from roaml.scxml.names import CLOCK
 from roaml.smc.model import ModelChecker
 from roaml.smc.names import Storage
 from roaml.smc.registers import INT
+from roaml.views.actors import names_of
 from roaml.views.ends import is_event, is_translation
+from roaml.views.shared_names import shared_names
 from roaml.views.variables import variable_phrases
 
 if TYPE_CHECKING:
@@ -134,7 +136,10 @@ def advice(variables: Sequence[GrowingVariable]) -> str:
 def _named(checker: ModelChecker, spread: Spread) -> GrowingVariable:
     values, least, greatest, limited = spread.values, spread.least, spread.greatest, spread.has_maximum
     if spread.instance is None:
-        return GrowingVariable(spread.name, "", values, least, greatest, has_maximum=limited)
+        shared = spread.name
+        if is_translation(checker.model):
+            shared = shared_names([shared], names_of(checker.model.automata))[shared]
+        return GrowingVariable(shared, "", values, least, greatest, has_maximum=limited)
     automaton = checker.legend.layout.instances[spread.instance].automaton
     events = {automaton.name for automaton in checker.model.automata if is_event(automaton)}
     name = variable_phrases(automaton, events.__contains__).get(spread.name, spread.name)
