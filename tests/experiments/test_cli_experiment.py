@@ -66,7 +66,7 @@ def test_estimates_are_not_those_of_all_schedulers(tmp_path: Path, capsys: pytes
 def test_what_is_undecided_has_the_limit_that_ended_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     model = write(tmp_path, retry())
     _, text, _ = called(capsys, model, *GRID, "--max-states", "1")
-    reason = "because searches stopped at the limit --max-states; a higher one, or --exhaustive, lets them go on"
+    reason = "because searches stopped at the limit max-states: raise it, or explore all states"
     assert f"(the minimum and maximum over all schedulers are undecided, {reason}): 0.95 confidence" in text
     _, text, _ = called(capsys, model, *GRID, "--method", "fixed", "--max-traces", "100", "--max-steps", "1")
     assert "100 traces undecided, because " in text

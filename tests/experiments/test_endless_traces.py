@@ -38,7 +38,7 @@ def test_quantiles_of_endless_traces(endless: str, capsys: pytest.CaptureFixture
     assert run(asked) in (0, 1)
     assert (
         "50 % of the traces: no limit is known, because all were cut after 1,000 steps; from 200 traces with uniform "
-        "choices (200 instead of 10,000 traces, because they are long; --max-traces asks for more)\n"
+        "choices (200 instead of 10,000 traces, because they are long; set max_traces for more)\n"
     ) in capsys.readouterr().out
     run([*asked, "--max-traces", "300"])
     assert "cut after 1,000 steps; from 300 traces with uniform choices\n" in capsys.readouterr().out
@@ -51,7 +51,7 @@ def test_plots_of_endless_traces(endless: str, tmp_path: Path) -> None:
     assert run(asked) in (0, 1)
     written = [path.read_text(encoding="utf-8") for path in sorted(tmp_path.glob("plot*.html"))]
     for wanted in ("1,000", "4,612"):  # for the median, and for the width of a band
-        assert any(f" instead of {wanted} traces, because they are long; --max-traces" in text for text in written)
+        assert any(f" instead of {wanted} traces, because they are long; set max_traces" in text for text in written)
 
 
 def test_the_search_for_schedulers_of_endless_traces(endless: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -81,6 +81,6 @@ def test_the_number_of_traces_depends_on_further_traces_only() -> None:
 
     chosen = affordable(1_000, 5, steps_of, 600)
     assert (chosen.traces, asked) == (600 // 30, [1_000, 1_001, 1_002, 1_003, 1_004])
-    assert chosen.remark == "20 instead of 1,000 traces, because they are long; --max-traces asks for more"
+    assert chosen.remark == "20 instead of 1,000 traces, because they are long; set max_traces for more"
     assert affordable(1_000, 50, steps_of, 600).traces == 50
     assert affordable(10, 5, lambda _: 0, 600).remark == ""

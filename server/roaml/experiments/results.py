@@ -39,8 +39,8 @@ def estimate_note(points: Iterable[ExperimentPoint], *, only_uniform: bool) -> s
     """
     if only_uniform:
         return ESTIMATE_NOTE
-    limits = [f"--{limit}" for limit in dict.fromkeys(point.limit for point in points) if limit]
-    stopped = f"searches stopped at the limit {' or '.join(limits)}; a higher one, or --exhaustive, lets them go on"
+    limits = [limit for limit in dict.fromkeys(point.limit for point in points) if limit]
+    stopped = f"searches stopped at the limit {' or '.join(limits)}: raise it, or explore all states"
     where = f", because {stopped}"
     return f"{ESTIMATE_NOTE} (the minimum and maximum over all schedulers are undecided{where if limits else ''})"
 

@@ -30,7 +30,7 @@ class Affordable(Record, frozen=True):
         """Why there are fewer traces, and what to do, as a phrase; "" if there are not."""
         if self.traces == self.wanted:
             return ""
-        return f"{self.traces:,} instead of {self.wanted:,} traces, because they are long; --max-traces asks for more"
+        return f"{self.traces:,} instead of {self.wanted:,} traces, because they are long; set max_traces for more"
 
 
 def affordable(wanted: int, least: int, steps_of: Callable[[int], int], max_steps: int | None = None) -> Affordable:

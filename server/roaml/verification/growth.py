@@ -13,9 +13,7 @@ from roaml.scxml.names import CLOCK
 from roaml.smc.model import ModelChecker
 from roaml.smc.names import Storage
 from roaml.smc.registers import INT
-from roaml.views.actors import names_of
 from roaml.views.ends import is_event, is_translation
-from roaml.views.shared_names import shared_names
 from roaml.views.variables import variable_phrases
 
 if TYPE_CHECKING:
@@ -138,6 +136,9 @@ def _named(checker: ModelChecker, spread: Spread) -> GrowingVariable:
     if spread.instance is None:
         shared = spread.name
         if is_translation(checker.model):
+            from roaml.views.actors import names_of  # noqa: PLC0415 - messages seldom grow alone
+            from roaml.views.shared_names import shared_names  # noqa: PLC0415 - as above
+
             shared = shared_names([shared], names_of(checker.model.automata))[shared]
         return GrowingVariable(shared, "", values, least, greatest, has_maximum=limited)
     automaton = checker.legend.layout.instances[spread.instance].automaton
