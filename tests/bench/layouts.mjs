@@ -16,7 +16,7 @@ const OPTIONS = {
     "elk.edgeLabels.placement": "CENTER",
     "elk.layered.nodePlacement.strategy": "BRANDES_KOEPF",
     "elk.spacing.nodeNode": "28",
-    "elk.layered.spacing.nodeNodeBetweenLayers": "30",
+    "elk.layered.spacing.nodeNodeBetweenLayers": "22",
 };
 const done = [];
 for (const { nodes, links, aspect } of JSON.parse(await text(process.stdin))) {

@@ -326,6 +326,16 @@ def test_parts_that_are_not_connected_are_placed_so_that_they_suit_the_page() ->
     assert sizes[0.01].height > sizes[0.8].height
 
 
+@pytest.mark.parametrize("direction", LayoutDirection)
+def test_parts_that_are_not_connected_are_read_like_text(direction: LayoutDirection) -> None:
+    nodes = {name: Extent(100, 50) for name in "abc"}
+    boxes = Boxes({"a": "A", "b": "B", "c": "C"}, {name: Extent(60, 20) for name in "ABC"})
+    for layout in (layered(nodes, [], direction, 1.3), nested(nodes, [], boxes, direction, 1.3)):
+        places = {name: layout.nodes[name] for name in nodes}
+        assert places["a"].y == places["b"].y < places["c"].y
+        assert places["a"].x < places["b"].x
+
+
 SHAPES = ("chain", "ring", "star", "hub", "tree", "returns")
 
 

@@ -23,11 +23,11 @@ from roaml.figures.layout.tracks import assign_tracks
 from roaml.figures.layout.vertices import Vertex, VertexKind
 from roaml.record import Record, field
 
-LAYER_DISTANCE = 26.0
-TRACK_MARGIN = 14.0
+LAYER_DISTANCE = 18.0
+TRACK_MARGIN = 11.0
 TRACK_DISTANCE = 9.0
 """Distances between layers, in pixels: the minimum distance of two layers; of a track from a layer; of two tracks."""
-MAX_RATIO = 2.5
+MAX_RATIO = 2.0
 """The ratio of the sides of a part above which it is wrapped. Frames and headings are added to parts, so it is smaller
 than the ratio that a drawing may have, which is 3."""
 WRAPPED_RATIO = 1.3
@@ -57,10 +57,14 @@ def layered(nodes: Mapping[str, Extent], links: Sequence[Link], direction: Layou
     Args:
         aspect: the desired ratio of width to height, for packing.
     """
-    if direction is LayoutDirection.RIGHT:
-        turned = {name: size.turned for name, size in nodes.items()}
-        return layered(turned, [link.turned for link in links], LayoutDirection.DOWN, 1 / aspect).turned
-    parts = [(_part(nodes, names, indexes, links, aspect), indexes) for names, indexes in components(nodes, links)]
+    is_right = direction is LayoutDirection.RIGHT
+    if is_right:
+        nodes = {name: size.turned for name, size in nodes.items()}
+        links = [link.turned for link in links]
+    parts = []
+    for names, indexes in components(nodes, links):
+        part = _part(nodes, names, indexes, links, 1 / aspect if is_right else aspect)
+        parts.append((part.turned if is_right else part, indexes))
     return pack(parts, len(links), aspect)
 
 

@@ -152,15 +152,21 @@ class _Nested:
             (component(sizes, names, indexes, links, boundary), indexes) for names, indexes in components(sizes, links)
         ]
         if not leaving:
-            return pack(parts, len(links), self.aspect)
+            return self._packed(parts, len(links))
         closed = [part for part in parts if part[0].nodes.keys().isdisjoint(tops | bottoms)]
         open_parts = [part for part in parts if not part[0].nodes.keys().isdisjoint(tops | bottoms)]
         if closed:
             own = sorted(index for _, indexes in closed for index in indexes)
             place = {index: position for position, index in enumerate(own)}
             local = [(layout, [place[index] for index in indexes]) for layout, indexes in closed]
-            open_parts.append((pack(local, len(own), self.aspect), own))
+            open_parts.append((self._packed(local, len(own)), own))
         return _in_a_row(open_parts, links, bottoms)
+
+    def _packed(self, parts: Sequence[tuple[Layout, Sequence[int]]], links: int) -> Layout:
+        """Parts in rows as readers see them, also if the layout will be turned."""
+        if not self.is_turned:
+            return pack(parts, links, self.aspect)
+        return pack([(layout.turned, indexes) for layout, indexes in parts], links, 1 / self.aspect).turned
 
     def _link(self, index: int, ends: tuple[str, str], *, is_labelled: bool) -> Link:
         """The part of a link between two children of a box."""

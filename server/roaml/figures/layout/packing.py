@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Iterable, Iterator, Sequence
 
 from roaml.figures.geometry import Box, Extent, Point
@@ -46,19 +45,13 @@ def components(names: Iterable[str], links: Sequence[Link]) -> Iterator[tuple[li
     )
 
 
-def shelves(sizes: Sequence[Extent], aspect: float, distance: float = DISTANCE) -> tuple[list[Point], Extent]:
-    """Place boxes in rows, in their order. Return the place of each box, and the size of all rows.
+def rows_within(sizes: Sequence[Extent], limit: float, distance: float) -> tuple[list[Point], Extent]:
+    """The places of boxes in rows, in their order, and the size of all rows.
 
     Args:
-        aspect: the desired ratio of width to height.
+        limit: the maximum width of a row with several boxes, in pixels.
         distance: the distance between boxes, in pixels.
     """
-    area = sum((size.width + distance) * (size.height + distance) for size in sizes)
-    return _rows(sizes, max([size.width for size in sizes] + [math.sqrt(area * aspect)]), distance)
-
-
-def _rows(sizes: Sequence[Extent], limit: float, distance: float) -> tuple[list[Point], Extent]:
-    """The places of boxes in rows that are at most `limit` pixels wide, and the size of all rows."""
     places: list[Point] = []
     x = y = height = width = 0.0
     for size in sizes:
@@ -70,23 +63,28 @@ def _rows(sizes: Sequence[Extent], limit: float, distance: float) -> tuple[list[
     return places, Extent(width, y + height)
 
 
-def _best_rows(sizes: Sequence[Extent], aspect: float) -> tuple[list[Point], Extent]:
-    """The places of boxes in rows whose number suits a page of a ratio best, and the size of all rows."""
-    widths = itertools.accumulate(size.width + DISTANCE for size in sizes)
+def best_rows(sizes: Sequence[Extent], aspect: float, distance: float = DISTANCE) -> tuple[list[Point], Extent]:
+    """The places of boxes in rows whose number suits a page best, in their order, and the size of all rows.
+
+    Args:
+        aspect: the ratio of width to height of the page.
+        distance: the distance between boxes, in pixels.
+    """
+    widths = itertools.accumulate(size.width + distance for size in sizes)
     least = max((size.width for size in sizes), default=0.0)
-    candidates = (_rows(sizes, max(least, width), DISTANCE) for width in itertools.islice(widths, MAX_IN_ROW))
+    candidates = (rows_within(sizes, max(least, width), distance) for width in itertools.islice(widths, MAX_IN_ROW))
     return min(candidates, key=lambda rows: max(rows[1].width, rows[1].height * aspect), default=([], Extent(0.0, 0.0)))
 
 
 def pack(parts: Sequence[tuple[Layout, Sequence[int]]], links: int, aspect: float) -> Layout:
-    """Several layouts side by side, as one layout.
+    """Several layouts side by side and in rows below each other, in their order, as one layout.
 
     Args:
         parts: each layout, with the indexes of its links in the whole graph.
         links: the number of links of the whole graph.
         aspect: the desired ratio of width to height.
     """
-    places, size = _best_rows([layout.size for layout, _ in parts], aspect)
+    places, size = best_rows([layout.size for layout, _ in parts], aspect)
     boxes: dict[str, Box] = {}
     routes: dict[int, Route] = {}
     for (layout, indexes), (dx, dy) in zip(parts, places, strict=True):

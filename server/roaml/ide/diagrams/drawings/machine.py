@@ -21,7 +21,7 @@ from roaml.figures.drawing import Drawing, Group, Item, Outline, Polyline, Shape
 from roaml.figures.geometry import Box, Extent
 from roaml.figures.layout import Boxes, Layout, LayoutDirection, Link, Route, nested
 from roaml.figures.layout.graph import at_origin
-from roaml.figures.layout.packing import shelves
+from roaml.figures.layout.packing import best_rows
 from roaml.ide.diagrams.diagram import DetailKind, DiagramEdge, DiagramNodeKind, EdgeKind, Picture
 from roaml.ide.diagrams.drawings.cards import Card, Row, TextLine, is_shortened, paragraph, title
 from roaml.ide.diagrams.drawings.changes import is_marked, kind_of, signed, tone_of
@@ -57,7 +57,7 @@ def draw_machine(picture: Picture, direction: LayoutDirection) -> Drawing:
     frames = [index for index, node in enumerate(picture.nodes) if node.kind is DiagramNodeKind.THREAD]
     charts = [_Chart(picture, "").drawing(direction)]
     charts += [_framed(picture, frame, direction) for frame in frames]
-    places, size = shelves([chart.size for chart in charts], _ASPECT[direction])
+    places, size = best_rows([chart.size for chart in charts], _ASPECT[direction])
     groups: list[Group] = []
     nodes: dict[int, Box] = {}
     for chart, (dx, dy) in zip(charts, places, strict=True):

@@ -9,20 +9,22 @@ from roaml.figures.assembly import moved
 from roaml.figures.drawing import Drawing, Group, Outline, Shape, Tone
 from roaml.figures.geometry import Box, Extent
 from roaml.figures.layout import LayoutDirection
-from roaml.figures.layout.packing import shelves
+from roaml.figures.layout.packing import best_rows
 from roaml.ide.diagrams.diagram import DiagramNode, DiagramNodeKind, Picture
 from roaml.ide.diagrams.drawings.cards import Card, Row, paragraph, title
 from roaml.ide.diagrams.drawings.machine import draw_machine
 from roaml.record import replace
 
 _MARGIN = 18.0
+_DISTANCE = 24.0
+"""The distance between the frames of machines, which have margins of their own, in pixels."""
 _TITLE_WIDTH = 400.0
 _ASPECT = {LayoutDirection.RIGHT: 1.8, LayoutDirection.DOWN: 0.8}
 
 
 def draw_system(picture: Picture, direction: LayoutDirection) -> Drawing:
     drawings = [_framed(picture, index, direction) for index in _frames(picture)]
-    places, size = shelves([drawing.size for drawing in drawings], _ASPECT[direction])
+    places, size = best_rows([drawing.size for drawing in drawings], _ASPECT[direction], _DISTANCE)
     groups: list[Group] = []
     nodes: dict[int, Box] = {}
     for drawing, (dx, dy) in zip(drawings, places, strict=True):

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from roaml.figures.drawing import MAX_ROUNDING, Drawing, Group, Item, Outline, Polyline, Shape, Tone
 from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.layout import LayoutDirection, Route, tidy_tree
-from roaml.figures.layout.packing import shelves
+from roaml.figures.layout.packing import rows_within
 from roaml.ide.diagrams.diagram import DetailKind, DiagramNode, DiagramNodeKind, EdgeKind, Picture, TreeNodeTitle
 from roaml.ide.diagrams.drawings.cards import Card, Row, TextLine, is_shortened, paragraph, title
 from roaml.ide.diagrams.drawings.changes import is_marked, kind_of, signed, tone_of
@@ -94,9 +94,8 @@ def with_blackboard(
     boxes = dict(tree)
     if not variables:
         return boxes, size
-    area = sum((width + 16) * (height + 16) for width, height in variables.values())
-    width = max(size.width, 240.0)
-    places, shelf = shelves(list(variables.values()), width * width / area, 16.0)
+    width = max(size.width, 240.0, *(entry.width for entry in variables.values()))
+    places, shelf = rows_within(list(variables.values()), width, 16.0)
     top = size.height + _BLACKBOARD_DISTANCE if tree else 0.0
     for (name, own), (x, y) in zip(variables.items(), places, strict=True):
         boxes[name] = Box(x, top + y, *own)
