@@ -139,6 +139,8 @@ def test_lanes_have_the_nodes_of_pictures(client: Client) -> None:
     client.begin(BUG, seed=3)
     timeline = client.ask("timeline", axis="steps", width=800, names=True)
     nodes = client.ask("pictures")["nodes"]
+    assert all(word in timeline["legend"] for word in ("IDLE", "states, in order of entry"))
+    assert timeline["legendHeight"] >= 20
     lanes = timeline["lanes"]
     assert any(lane[0].endswith("arm.ascxml#") for lane in lanes)
     for node in nodes:

@@ -19,7 +19,18 @@ from roaml.figures.text import text_width
 from roaml.record import replace
 from roaml.simulation import Session
 from roaml.simulation.state import NodeStatus
-from roaml.timeline import Axis, LaneKind, Timeline, View, draw_names, draw_timeline, extent, position_of, step_at
+from roaml.timeline import (
+    Axis,
+    LaneKind,
+    Timeline,
+    View,
+    draw_legend,
+    draw_names,
+    draw_timeline,
+    extent,
+    position_of,
+    step_at,
+)
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 ROBOT = EXAMPLES / "assembly_robot" / "main_with_bug.xml"
@@ -364,10 +375,50 @@ def test_messages_are_at_their_times_and_no_status_is_a_sliver(path: Path) -> No
     end = extent(timeline, Axis.TIME)
     drawing = draw_timeline(timeline, View(Axis.TIME, 0.0, end, 960.0))
     times = {timeline.times[message.received] / end * 960.0 for message in timeline.messages}
+    marks = [item.box for _, item in drawing.walk() if isinstance(item, Shape) and item.role == "pulse"]
+    assert marks
+    for mark in marks:
+        assert any(abs(mark.x + 1.0 - x) < 0.01 for x in times)
     arrows = [item for _, item in drawing.walk() if isinstance(item, Polyline) and item.role == "message"]
     assert arrows
     for arrow in arrows:
-        assert any(abs(arrow.points[-1].x - x) < 0.01 for x in times)
+        assert any(abs(arrow.points[-1].x - x) < 16.01 for x in times)
     bars = [item.box for _, item in drawing.walk() if isinstance(item, Shape) and item.role == "busy"]
     assert bars
     assert all(bar.width >= 3.0 and bar.right <= 960.01 for bar in bars)
+
+
+@pytest.mark.parametrize("end", [1.5, 3.05])
+def test_arrows_of_messages_at_one_time_are_beside_each_other(end: float) -> None:
+    """A request and its response have opposite arrows. At the right border, they are moved to the left."""
+    session = api.session(api.load(str(DELIVERY)), seed=3)
+    session.until_decided(2_000)
+    timeline = timeline_of(session)
+    drawing = draw_timeline(timeline, View(Axis.TIME, 0.0, end, 960.0))
+    arrows = []
+    for group in drawing.groups:
+        lines = [item.points for item in group.items if isinstance(item, Polyline) and item.role == "message"]
+        if lines and 0.0 <= lines[0][0].x <= 960.0:
+            ends = [point.y for line in lines for point in line]
+            arrows.append((lines[0][0].x, min(ends), max(ends), {line[0].y < line[1].y for line in lines}))
+    directions = [down for *_, down in arrows]
+    assert {True} in directions
+    assert {False} in directions
+    for (x, top, bottom, _), (other, upper, lower, _) in itertools.combinations(arrows, 2):
+        assert abs(x - other) > 7.9 or bottom < upper or lower < top
+
+
+def test_a_legend_explains_the_colors() -> None:
+    session = api.session(api.load(str(DELIVERY)), seed=3)
+    session.until_decided(2_000)
+    drawing = draw_legend(timeline_of(session), 300.0)
+    texts = _texts(drawing)
+    assert [text.text for text in texts] == ["states, in order of entry", "IDLE", "RUNNING", "SUCCESS", "FAILURE"]
+    assert all(text.box.right <= 300.0 and text.box.bottom <= drawing.size.height for text in texts)
+    tones = [group.tone for group in drawing.groups if isinstance(group.items[0], Shape)]
+    assert tones == [Tone.ROS, Tone.TREE, Tone.IDLE, Tone.RUNNING, Tone.SUCCESS, Tone.FAILURE]
+    # The style sheet of pictures hides elements of the class `legend` that are empty, as rectangles are.
+    assert "legend" not in svg_scene(drawing)
+    # What has not occurred is not explained.
+    start = draw_legend(timeline_of(api.session(api.load(str(DELIVERY)), seed=3)), 300.0)
+    assert "FAILURE" not in [text.text for text in _texts(start)]

@@ -25,6 +25,7 @@ from roaml.timeline import (
     Mark,
     Timeline,
     View,
+    draw_legend,
     draw_names,
     draw_timeline,
     extent,
@@ -38,6 +39,8 @@ MAX_WIDTH = 20_000
 """The maximum width of a drawing in pixels."""
 NAMES_WIDTH = 180.0
 """The width of the names of rows, in pixels."""
+LEGEND_WIDTH = 480.0
+"""The width of the legend, in pixels: narrower than most views, which do not scroll it."""
 
 T = TypeVar("T")
 
@@ -80,8 +83,11 @@ class TimelineRequests:
         view = _view(arguments, timeline, debugger)
         names: dict[str, Any] = {}
         if arguments.flag("names", False):
+            colors = draw_legend(timeline, LEGEND_WIDTH)
             names = {
                 "names": svg_scene(draw_names(timeline, NAMES_WIDTH, view.curves)),
+                "legend": svg_scene(colors),
+                "legendHeight": colors.size.height,
                 "plots": [plot.name for plot in timeline.plots],
                 "lanes": list(nodes_of_automata(debugger, (lane.automaton for lane in timeline.lanes))),
             }

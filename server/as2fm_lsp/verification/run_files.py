@@ -14,7 +14,7 @@ from roaml.figures.geometry import Extent
 from roaml.figures.svg import TIMELINE_STYLES, svg_file
 from roaml.simulation import Session
 from roaml.simulation.table import rows
-from roaml.timeline import Axis, Timeline, View, draw_names, draw_timeline, position_of
+from roaml.timeline import Axis, Timeline, View, draw_legend, draw_names, draw_timeline, position_of
 from roaml.verification.target import VerificationTarget
 from roaml.views.actors import names_of
 from roaml.views.shared_names import shared_names
@@ -47,8 +47,11 @@ def timeline_svg(session: Session, title: str, theme: str) -> str:
 def stretch_svg(timeline: Timeline, view: View, title: str, theme: str) -> str:
     """The part of a timeline that `view` selects, with the names of its rows, as SVG."""
     names, rows = draw_names(timeline, NAMES_WIDTH), draw_timeline(timeline, view)
-    size = Extent(NAMES_WIDTH + rows.size.width, rows.size.height)
-    groups = (*names.groups, *(moved(group, NAMES_WIDTH, 0.0) for group in rows.groups))
+    width, top = NAMES_WIDTH + rows.size.width, rows.size.height
+    colors = draw_legend(timeline, width)
+    size = Extent(width, top + colors.size.height)
+    beside = (moved(group, NAMES_WIDTH, 0.0) for group in rows.groups)
+    groups = (*names.groups, *beside, *(moved(group, 0.0, top) for group in colors.groups))
     return svg_file(Drawing(size, groups, {}), title, theme, TIMELINE_STYLES)
 
 

@@ -17,10 +17,12 @@ from roaml.figures.drawing import Area, Drawing, Group, Item, Outline, Polyline,
 from roaml.figures.geometry import Box, Extent, Point
 from roaml.figures.text import ELLIPSIS, SMALL, text_width
 from roaml.record import Record
-from roaml.timeline.record import Lane, LaneKind, Plot, SentMessage, Timeline
+from roaml.timeline.record import IDLE, Lane, LaneKind, Plot, SentMessage, Timeline
 
 LANE, PLOT, AXIS, MESSAGES = 26.0, 54.0, 24.0, 38.0
 """The heights of a lane, a plot, the axis, and the row with the names of messages, in pixels."""
+_LEGEND_DISTANCE, _LEGEND_LINE, _SWATCH = 12.0, 20.0, 12.0
+"""The distance of the legend from what is above it, the height of its lines, and the size of its colors, in pixels."""
 CURVES, CURVE_NAME = 120.0, 16.0
 """The minimum height of a row with several curves, and the height of the name of each, in pixels."""
 MESSAGES_NAME = "messages: ● sent, ▾ received"
@@ -42,6 +44,10 @@ _LEAST = 5.0
 without arrows whose distance is smaller."""
 _SAMPLE = 50
 """The number of states drawn as one that are examined for a common color."""
+_BESIDE = 8.0
+"""The distance of the arrows of messages at one instant that would cover each other, in pixels."""
+_MOST_BESIDE = 3
+"""The maximum number of such arrows beside each other; further ones are at their instant."""
 _ARROW_DISTANCE = 10.0
 """The minimum average distance of messages that are drawn with arrows, in pixels."""
 _MACHINE_TONES = (Tone.ROS, Tone.TREE, Tone.BLACKBOARD, Tone.ACTION, Tone.CHANCE)
@@ -136,6 +142,43 @@ def draw_names(timeline: Timeline, width: float, curves: Collection[str] = ()) -
     return Drawing(Extent(width, height_of(timeline, curves)), tuple(groups), {})
 
 
+class LegendEntry(Record, frozen=True):
+    """What the color of a state or status means; `tones` are several if the colors have one meaning together."""
+
+    tones: tuple[Tone, ...]
+    words: str
+
+
+def legend(timeline: Timeline) -> tuple[LegendEntry, ...]:
+    """The meaning of the colors of the rows: the states of machines, and the statuses of nodes that have occurred."""
+    machines = [lane for lane in timeline.lanes if lane.kind is LaneKind.MACHINE]
+    statuses = {state for lane in timeline.lanes if lane.kind is LaneKind.NODE for state in lane.ranks}
+    entries = []
+    if count := max((len(lane.ranks) for lane in machines), default=0):
+        words = "states, in order of entry"
+        entries.append(LegendEntry(_MACHINE_TONES[:count], words))
+    shown = (IDLE, *_STATUS_TONES)
+    return (*entries, *(LegendEntry((_status_tone(name),), name) for name in shown if name in statuses))
+
+
+def draw_legend(timeline: Timeline, width: float) -> Drawing:
+    """The legend in lines that are at most `width` pixels wide."""
+    groups = []
+    x, top = 4.0, _LEGEND_DISTANCE
+    for entry in legend(timeline):
+        size = _SWATCH * len(entry.tones) + 6.0 + text_width(entry.words, SMALL)
+        if x > 4.0 and x + size > width:
+            x, top = 4.0, top + _LEGEND_LINE
+        for number, tone in enumerate(entry.tones):
+            box = Box(x + _SWATCH * number, top + (_LEGEND_LINE - _SWATCH) / 2, _SWATCH, _SWATCH)
+            groups.append(Group("color", tone, (Shape(box, Outline.RECTANGLE, "span"),)))
+        start = x + _SWATCH * len(entry.tones) + 6.0
+        text = _text(entry.words, start, top + _LEGEND_LINE / 2, width, "muted")
+        groups.append(Group("color", Tone.PLAIN, (text,)))
+        x += size + 18.0
+    return Drawing(Extent(width, top + _LEGEND_LINE if groups else 0.0), tuple(groups), {})
+
+
 def draw_timeline(timeline: Timeline, view: View) -> Drawing:
     """The axis with the rows below it, without the names of the rows."""
     painter = _Painter(timeline, view)
@@ -148,7 +191,13 @@ class _Painter:
         self._view = view
         self._scale = view.width / max(view.end - view.start, 1e-9)
         self._end = self._x(timeline.count)
-        self._arrow_places = self._placed_arrows()
+        self._first_message, last = self._visible_messages()
+        visible = timeline.messages[self._first_message : last]
+        self._has_arrows = bool(visible) and len(visible) <= view.width / _ARROW_DISTANCE
+        ranges = [self._crossed(message) for message in visible] if self._has_arrows else []
+        self._shifts = self._beside_each_other(ranges)
+        """How far the arrow of each visible message is beside the instant of the message, in pixels."""
+        self._arrow_places = [(x + shift, *rows) for (x, *rows), shift in zip(ranges, self._shifts, strict=True)]
         self.height = height_of(timeline, view.curves)
 
     def _x(self, step: int) -> float:
@@ -304,11 +353,11 @@ class _Painter:
         """The ends of the first part of a state, between the arrows that cross it, that is at least `width` wide;
         otherwise of the widest part."""
         middle = y + _SPAN / 2
-        arrows = [
+        arrows = sorted(
             place
             for place, top, bottom in self._arrow_places
             if x - _TEXT_MARGIN <= place < end and top <= middle <= bottom
-        ]
+        )
         starts = [place + _TEXT_MARGIN for place in (x, *arrows)]
         ends = [*(place - _TEXT_MARGIN for place in arrows), end - 3.0]
         parts = list(zip(starts, ends, strict=True))
@@ -337,7 +386,7 @@ class _Painter:
         mark."""
         messages = self._timeline.messages
         first, last = self._visible_messages()
-        has_arrows = bool(self._arrow_places)
+        has_arrows = self._has_arrows
         free_from = -math.inf
         number = named = first
         while number < last:
@@ -359,7 +408,7 @@ class _Painter:
             items += texts
             free_from = max(free_from, end + 6.0, *(text.box.right + 6.0 for text in texts))
             if has_arrows:
-                items += self._arrows(marked[0])
+                items += self._arrows(marked[0], self._shifts[number - 1 - self._first_message])
             # There, the message is in the ROS graph, and the next step is at the line that receives it.
             step = marked[0].received - 1 if len(marked) == 1 else None
             yield Group("event", Tone.PLAIN, tuple(items), hint=self._message_hint(name, marked), step=step)
@@ -370,18 +419,24 @@ class _Painter:
         first = bisect_left(messages, self._first_step(0.0), key=_received)
         return first, bisect_right(messages, self._first_step(self._view.width + 1.0), key=_received)
 
-    def _placed_arrows(self) -> list[tuple[float, float, float]]:
-        """The horizontal position of the arrow of each visible message, and the vertical range that it crosses; empty
-        if there are too many."""
-        first, last = self._visible_messages()
-        if last - first > self._view.width / _ARROW_DISTANCE:
-            return []
-        messages = self._timeline.messages[first:last]
-        crossed = [[_middle(lane) for lane in (message.sender, *message.receivers)] for message in messages]
-        return [
-            (self._x(message.received), min(lanes) - _DOT, max(lanes) + _DOT)
-            for message, lanes in zip(messages, crossed, strict=True)
-        ]
+    def _crossed(self, message: SentMessage) -> tuple[float, float, float]:
+        """The horizontal position of the arrow of a message, and the vertical range that it crosses."""
+        lanes = [_middle(lane) for lane in (message.sender, *message.receivers)]
+        return self._x(message.received), min(lanes) - _DOT, max(lanes) + _DOT
+
+    def _beside_each_other(self, ranges: Sequence[tuple[float, float, float]]) -> list[float]:
+        """How far each arrow is beside its place, so that it covers no other one at the same instant: to the right, or
+        to the left at the right border."""
+        places: list[tuple[float, float, float]] = []
+        shifts = []
+        for x, top, bottom in ranges:
+            side = 1 if x + _MOST_BESIDE * _BESIDE < self._view.width else -1
+            taken = {place for place, upper, lower in places if upper < bottom and top < lower}
+            candidates = (side * _BESIDE * number for number in range(_MOST_BESIDE))
+            shift = next((s for s in candidates if all(abs(x + s - place) >= _BESIDE for place in taken)), 0.0)
+            places.append((x + shift, top, bottom))
+            shifts.append(shift)
+        return shifts
 
     def _behind_mark(self, number: int, last: int) -> int:
         """The number of the first message after the mark that begins with a message."""
@@ -397,13 +452,13 @@ class _Painter:
             x = self._x(messages[following - 1].received)
         return following
 
-    def _arrows(self, message: SentMessage) -> Iterator[Item]:
+    def _arrows(self, message: SentMessage, shift: float) -> Iterator[Item]:
         """The lines from the sender to the receivers, with a dot at the sender."""
-        start = Point(self._x(message.sent), _middle(message.sender))
+        start = Point(self._x(message.sent) + shift, _middle(message.sender))
         others = [receiver for receiver in message.receivers if receiver != message.sender]
         for receiver in others:
             middle = _middle(receiver)
-            end = Point(self._x(message.received), middle - math.copysign(_HEAD_DISTANCE, middle - start.y))
+            end = Point(self._x(message.received) + shift, middle - math.copysign(_HEAD_DISTANCE, middle - start.y))
             yield Polyline((start, end), True, "message", is_round=False)
         if others:
             yield Shape(Box(start.x - _DOT / 2, start.y - _DOT / 2, _DOT, _DOT), Outline.PILL, "dot")
@@ -553,8 +608,12 @@ def _middle(index: int) -> float:
 
 def _tone(lane: Lane, state: str) -> Tone:
     if lane.kind is LaneKind.NODE:
-        return _STATUS_TONES.get(state, Tone.IDLE)
+        return _status_tone(state)
     return _MACHINE_TONES[lane.ranks[state] % len(_MACHINE_TONES)]
+
+
+def _status_tone(status: str) -> Tone:
+    return _STATUS_TONES.get(status, Tone.IDLE)
 
 
 def _text(text: str, x: float, middle: float, width: float, role: str, *, bold: bool = False) -> TextItem:

@@ -28,6 +28,9 @@ export interface TileRequest {
 export interface Tile {
     readonly scene: string;
     readonly names?: string;
+    /** The meaning of the colors, with `names`. */
+    readonly legend?: string;
+    readonly legendHeight?: number;
     /** The names of the curves, with `names`. */
     readonly plots?: readonly string[];
     /** The ids of the nodes in pictures that belong to each lane, with `names`; one that ends with # is a beginning. */

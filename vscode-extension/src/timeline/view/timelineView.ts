@@ -42,6 +42,7 @@ export class TimelineView {
     private readonly body = div("body");
     private readonly names = div("names");
     private readonly rows = div("rows");
+    private readonly colors = div("colors");
     private readonly drawing = div("drawing");
     private readonly cursor = div("cursor-line");
     private readonly selected = div("selected-stretch");
@@ -84,7 +85,7 @@ export class TimelineView {
         this.marked.hidden = true;
         this.rows.append(this.litLane, this.drawing, this.selected, this.marked, this.cursor);
         this.body.append(this.names, this.rows);
-        root.append(this.bar, this.body, this.notice);
+        root.append(this.bar, this.body, this.colors, this.notice);
         this.listen();
         new ResizeObserver(() => {
             this.refresh();
@@ -106,6 +107,7 @@ export class TimelineView {
                 this.tile = undefined;
                 this.drawing.replaceChildren();
                 this.names.replaceChildren();
+                this.colors.replaceChildren();
                 this.notice.textContent = this.words?.nothing ?? "";
                 this.root.classList.remove("shown");
                 break;
@@ -270,6 +272,8 @@ export class TimelineView {
         this.notice.textContent = "";
         this.drawing.innerHTML = picture(tile.scene, tile.width, tile.height);
         if (tile.names !== undefined) this.names.innerHTML = picture(tile.names, NAMES_WIDTH, tile.height);
+        if (tile.legend !== undefined)
+            this.colors.innerHTML = picture(tile.legend, LEGEND_WIDTH, tile.legendHeight ?? 0);
         if (tile.plots) this.curves.offer(tile.plots);
         if (tile.lanes) this.lanes = tile.lanes;
         this.light(this.lit);
@@ -461,6 +465,8 @@ export class TimelineView {
 }
 
 const NAMES_WIDTH = 180;
+/** The width of the legend, as the debug adapter draws it, in pixels. */
+const LEGEND_WIDTH = 480;
 
 function div(name: string): HTMLDivElement {
     const made = document.createElement("div");
