@@ -177,7 +177,7 @@ test("the first view is smaller at its sides so that it cuts off nothing", () =>
     const rows = Array.from({ length: 20 }, (_, row) => ({ x: 100, y: row * 60, width: 80, height: 30 }));
     for (let height = 400; height < 460; height += 7) {
         const frame = { sight: { x: 0, y: 7, scale: 1 }, width: 140, height };
-        const { top, bottom, left, right } = trimsOf(rows, frame);
+        const { top, bottom, left, right } = trimsOf(rows, [], frame);
         const [upper, lower] = [7 + top, 7 + height - bottom];
         const cut = rows.filter((row) => [upper, lower].some((at) => row.y < at && row.y + row.height > at));
         assert.deepEqual(cut, [], `height ${height}`);
@@ -185,12 +185,16 @@ test("the first view is smaller at its sides so that it cuts off nothing", () =>
         assert.ok(right > 40 && bottom < 40);
     }
     // Nor does it show the border of what is just outside.
-    assert.ok(trimsOf([{ x: 0, y: 100, width: 50, height: 50 }], { ...SMALL, height: 101 }).bottom > 0);
+    assert.ok(trimsOf([{ x: 0, y: 100, width: 50, height: 50 }], [], { ...SMALL, height: 101 }).bottom > 0);
+    // Rather a label is cut off than a node: its line stays.
+    const node = { x: 0, y: 60, width: 50, height: 50 };
+    const label = { x: 0, y: 105, width: 50, height: 30 };
+    assert.deepEqual(trimsOf([node], [label], { ...SMALL, height: 120 }), NO_BANDS);
     // What fits as a whole is not changed, and what is much too large is cut off.
     const all = { sight: { x: 0, y: -10, scale: 1 }, width: 400, height: 1300 };
-    assert.deepEqual(trimsOf(rows, all), NO_BANDS);
+    assert.deepEqual(trimsOf(rows, [], all), NO_BANDS);
     const large = [{ x: 20, y: 0, width: 1000, height: 1000 }];
-    assert.deepEqual(trimsOf(large, { ...all, width: 500, height: 500 }), NO_BANDS);
+    assert.deepEqual(trimsOf(large, [], { ...all, width: 500, height: 500 }), NO_BANDS);
 });
 
 test("the part of a window beside its bands", () => {

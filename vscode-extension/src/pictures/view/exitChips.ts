@@ -29,6 +29,8 @@ const HEIGHT = 19;
 const NEAR: Readonly<Record<Side, number>> = { top: 50, bottom: 50, left: 12, right: 12 };
 /** The minimum distance of the ends of a chip from the lines that lead to it, in pixels. */
 const ROUND: Readonly<Record<Side, number>> = { top: 8, bottom: 8, left: 5, right: 5 };
+/** The sizes of the smallest bands with chips, in pixels: in narrower ones, no name could be read. */
+const LEAST: Readonly<Record<Side, number>> = { top: HEIGHT, bottom: HEIGHT, left: 80, right: 80 };
 const ARROWS: Readonly<Record<Side, readonly [out: string, into: string]>> = {
     top: ["↑", "↓"],
     bottom: ["↓", "↑"],
@@ -172,7 +174,7 @@ export class ExitChips {
         this.leaders.replaceChildren();
         for (const side of SIDES) {
             const own = exits.filter((exit) => exit.side === side);
-            if (own.length === 0 || bands[side] < HEIGHT) continue;
+            if (own.length === 0 || bands[side] < LEAST[side]) continue;
             const [low, high] = isRow(side)
                 ? [bands.left + GAP, width - bands.right - GAP]
                 : [bands.top + GAP, height - Math.max(bands.bottom, mapHeight(side, map)) - GAP];

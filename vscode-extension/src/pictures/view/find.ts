@@ -266,9 +266,16 @@ const TRIMS: Bands = { top: 60, bottom: 100, left: 60, right: 150 };
 /** The part of the border of a box that is outside of it, in pixels. */
 const BORDER = 1;
 
-/** By how much a view is made smaller at its sides, so that these cut off as few boxes as possible, in pixels. */
-export function trimsOf(boxes: readonly Box[], { sight, width, height }: Frame): Bands {
-    const seen = boxes.map((box) => ({
+/** What a label counts compared with a node: if it is cut off, it is hidden, and its line stays. */
+const LABEL = 0.25;
+/** What a box counts that a smaller view leaves out, compared with one that it cuts off. */
+const LEFT_OUT = 0.5;
+
+/** By how much a view is made smaller at its sides, so that these cut off as few nodes and labels as possible, in
+ * pixels. */
+export function trimsOf(nodes: readonly Box[], labels: readonly Box[], { sight, width, height }: Frame): Bands {
+    const seen = [...nodes, ...labels].map((box, index) => ({
+        weight: index < nodes.length ? 1 : LABEL,
         left: (box.x - sight.x) * sight.scale - BORDER,
         right: (box.x + box.width - sight.x) * sight.scale + BORDER,
         top: (box.y - sight.y) * sight.scale - BORDER,
@@ -281,16 +288,21 @@ export function trimsOf(boxes: readonly Box[], { sight, width, height }: Frame):
         const isRow = side === "top" || side === "bottom";
         const near = seen
             .filter((box) => (isRow ? box.right > low && box.left < high : box.bottom > upper && box.top < lower))
-            .map((box): readonly [number, number] => {
-                if (side === "top") return [box.top, box.bottom];
-                if (side === "left") return [box.left, box.right];
+            .map(({ weight, left, right, top, bottom }): readonly [number, number, number] => {
+                if (side === "top") return [top, bottom, weight];
+                if (side === "left") return [left, right, weight];
                 return side === "bottom"
-                    ? [height - box.bottom, height - box.top]
-                    : [width - box.right, width - box.left];
+                    ? [height - bottom, height - top, weight]
+                    : [width - right, width - left, weight];
             });
-        const cut = (trim: number) => near.filter(([start, end]) => start < trim && end > trim).length;
+        const cost = (trim: number) =>
+            near.reduce((sum, [start, end, weight]) => {
+                if (start >= trim || end <= 0) return sum;
+                if (end > trim) return sum + weight;
+                return start < 0 ? sum : sum + weight * LEFT_OUT;
+            }, 0);
         const places = [0, ...near.map(([, end]) => end + 1).filter((end) => end > 0 && end <= TRIMS[side])];
-        trims[side] = places.sort(ascending).reduce((best, place) => (cut(place) < cut(best) ? place : best));
+        trims[side] = places.sort(ascending).reduce((best, place) => (cost(place) < cost(best) ? place : best));
     }
     return trims;
 }

@@ -45,7 +45,7 @@ import {
 import { breakpointOf } from "../breakpoints";
 import { filled, isOf, paint, shareOf, summaryOf } from "./coverage";
 import { ExitChips } from "./exitChips";
-import { NO_BANDS, type Bands } from "./exits";
+import { NO_BANDS, SIDES, type Bands } from "./exits";
 import { Minimap } from "./minimap";
 import { MockPane } from "./mocks";
 import { menuOf } from "./menu";
@@ -370,14 +370,16 @@ export class PictureView {
         const start = fitLegibly(drawing, width, height, this.least);
         let sight = start;
         let bands = this.bandsAt(start);
-        // A view beside bands may show another part, which needs further bands.
-        for (let pass = 0; pass < 2; pass++) {
+        // A view beside bands may show another part, which needs further bands. They only grow, up to those of all sides.
+        for (let before: Bands = NO_BANDS; before !== bands;) {
             const frame = beside(start, width, height, bands);
             sight = pan(this.firstView(drawing, boxes, frame), -bands.left, -bands.top);
-            bands = largerOf(bands, this.bandsAt(sight));
+            before = bands;
+            const needed = largerOf(bands, this.bandsAt(sight));
+            if (SIDES.some((side) => needed[side] > before[side])) bands = needed;
         }
         const shown = beside(sight, width, height, this.bandsAt(sight));
-        this.look(sight, trimsOf([...drawing.nodes, ...this.labels], shown));
+        this.look(sight, trimsOf(drawing.nodes, this.labels, shown));
     }
 
     /** The first view of a drawing that does not fit into a window. */
