@@ -81,7 +81,7 @@ export function walkthroughPictures(stage: Stage): void {
             await row.locator(".codicon-testing-failed-icon").waitFor();
             await window.run("View: Focus Problems");
             await page.locator(".panel .composite-bar .action-label", { hasText: "Properties" }).click();
-            const sentences = page.locator(".panel .monaco-list-row", { hasText: /never_empty: 0, exact/ });
+            const sentences = page.locator(".panel .monaco-list-row", { hasText: /0, exact.* · never_empty/ });
             await sentences.first().waitFor();
             await page
                 .locator(".view-line", { hasText: /docks_only_when_low.*exact/ })

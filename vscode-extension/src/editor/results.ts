@@ -5,7 +5,8 @@
  */
 
 import * as vscode from "vscode";
-import { VERIFY, type Property, type ResultView, type VerifiableSystem } from "../protocol";
+import { SHOW_FIRST_ERROR, VERIFY, type Property, type ResultView, type VerifiableSystem } from "../protocol";
+import { shortened } from "../verification/shortened";
 import { COMPARE_RUNS, SHOW_COUNTEREXAMPLE, SHOW_WITNESS } from "./client";
 import { jump } from "./pictureSource";
 import type { Asked, PropertyTests } from "./tests";
@@ -33,6 +34,9 @@ interface Line {
 }
 
 type Row = SystemRow | PropertyRow | Line;
+
+/** The maximum number of characters of a sentence, so that its result is visible beside it. */
+const MAX_SENTENCE = 80;
 
 const ICONS: Readonly<Record<ResultView["mark"], readonly [icon: string, color: string]>> = {
     passed: ["pass", "testing.iconPassed"],
@@ -94,16 +98,24 @@ export class ResultsView implements vscode.Disposable, vscode.TreeDataProvider<R
             item.id = row.system.uri;
             item.contextValue = "system";
             item.iconPath = new vscode.ThemeIcon("symbol-namespace");
+            const obstacles = this.tests.obstaclesOf(row.system.uri);
+            if (obstacles.length > 0) {
+                item.description = vscode.l10n.t("not verified, errors: {0}", obstacles.length);
+                item.tooltip = obstacles.join("\n");
+                item.iconPath = new vscode.ThemeIcon("error", new vscode.ThemeColor("testing.iconErrored"));
+                item.command = { command: SHOW_FIRST_ERROR, title: item.description, arguments: [row.system.uri] };
+            }
             return item;
         }
         const { name, comment, view, stale } = row.shown;
-        const sentence = comment === "" ? name : comment;
-        const item = new vscode.TreeItem(sentence, view ? Collapsed : None);
+        const sentence = sentenceOf(row);
+        const item = new vscode.TreeItem(shortened(sentence, MAX_SENTENCE), view ? Collapsed : None);
         item.id = `${row.system}#${name}`;
         const isRunning = this.tests.isBeingVerified(row);
         const known = view?.words ?? vscode.l10n.t("not verified");
         const words = isRunning ? vscode.l10n.t("Verifying…") : known;
-        item.description = comment === "" ? words : `${name}: ${words}`;
+        // The result is visible also if the name is cut off.
+        item.description = comment === "" ? words : `${words} · ${name}`;
         item.tooltip = [sentence, ...(view ? [view.since, ...view.lines] : [words])].filter((line) => line).join("\n");
         const [icon, color] = view ? ICONS[view.mark] : ["circle-outline", "disabledForeground"];
         item.iconPath = isRunning
@@ -166,8 +178,16 @@ function contextOf(view: ResultView | undefined): string {
     return ["property", ...Object.entries(has).flatMap(([name, applies]) => (applies ? [name] : []))].join(" ");
 }
 
-function linesOf({ system, property }: PropertyRow, view: ResultView): Line[] {
+/** What a property requires, or its name if its file does not say so. */
+function sentenceOf({ shown: { name, comment } }: PropertyRow): string {
+    return comment === "" ? name : comment;
+}
+
+function linesOf(row: PropertyRow, view: ResultView): Line[] {
+    const { system, property } = row;
+    const sentence = sentenceOf(row);
     const lines: Line[] = view.lines.map((text) => ({ kind: "line", text, icon: "blank" }));
+    if (sentence.length > MAX_SENTENCE) lines.unshift({ kind: "line", text: sentence, icon: "quote" });
     if (view.since !== "") lines.unshift({ kind: "line", text: view.since, icon: "history" });
     const shows = (command: string, title: string, icon: string): Line => ({
         kind: "line",

@@ -41,6 +41,8 @@ export class PropertyTests implements vscode.Disposable {
     private readonly judged = new Map<string, string>();
     private readonly running = new Set<string>();
     private readonly stale = new Set<string>();
+    /** Why systems were not verified when they were asked last. */
+    private readonly obstacles = new Map<string, readonly string[]>();
     /** Settings of the verification that is started next. */
     private options: object = {};
     private readonly toldStuck = new WeakMap<vscode.TestRun, Set<string>>();
@@ -81,7 +83,10 @@ export class PropertyTests implements vscode.Disposable {
             this.verifying,
             profile,
             debug,
-            server.onModels(soon),
+            server.onModels(() => {
+                this.obstacles.clear();
+                soon();
+            }),
             // A tree without a system is listed when it is open.
             vscode.languages.onDidChangeDiagnostics(soon),
         ];
@@ -122,6 +127,11 @@ export class PropertyTests implements vscode.Disposable {
 
     isBeingVerified({ system, property }: Asked): boolean {
         return this.running.has(testId(system, property));
+    }
+
+    /** Why a system was not verified when it was asked last: the errors in its files. */
+    obstaclesOf(system: string): readonly string[] {
+        return this.obstacles.get(system) ?? [];
     }
 
     dispose(): void {
@@ -271,6 +281,7 @@ export class PropertyTests implements vscode.Disposable {
                 if (item && answer?.stuck?.example)
                     this.show(run, item, { system, property: result.property }, result, answer.stuck);
             }
+            this.obstacles.set(system, answer?.errors.map(({ message }) => message) ?? []);
             for (const item of open.values()) {
                 const wrong = answer?.errors.map((error) => this.wrong(error)) ?? [];
                 if (wrong.length > 0) run.errored(item, wrong);
