@@ -38,6 +38,9 @@ type Row = SystemRow | PropertyRow | Line;
 /** The maximum number of characters of a sentence, so that its result is visible beside it. */
 const MAX_SENTENCE = 80;
 
+/** The icon of what could not be verified. */
+const ERROR = ["issues", "testing.iconErrored"] as const;
+
 const ICONS: Readonly<Record<ResultView["mark"], readonly [icon: string, color: string]>> = {
     passed: ["pass", "testing.iconPassed"],
     failed: ["error", "testing.iconFailed"],
@@ -102,22 +105,29 @@ export class ResultsView implements vscode.Disposable, vscode.TreeDataProvider<R
             if (obstacles.length > 0) {
                 item.description = vscode.l10n.t("not verified, errors: {0}", obstacles.length);
                 item.tooltip = obstacles.join("\n");
-                item.iconPath = new vscode.ThemeIcon("error", new vscode.ThemeColor("testing.iconErrored"));
+                const [icon, color] = ERROR;
+                item.iconPath = new vscode.ThemeIcon(icon, new vscode.ThemeColor(color));
                 item.command = { command: SHOW_FIRST_ERROR, title: item.description, arguments: [row.system.uri] };
             }
             return item;
         }
         const { name, comment, view, stale } = row.shown;
         const sentence = sentenceOf(row);
-        const item = new vscode.TreeItem(shortened(sentence, MAX_SENTENCE), view ? Collapsed : None);
+        const obstacles = this.obstaclesOf(row);
+        const isOpened = view !== undefined || obstacles.length > 0;
+        const item = new vscode.TreeItem(shortened(sentence, MAX_SENTENCE), isOpened ? Collapsed : None);
         item.id = `${row.system}#${name}`;
         const isRunning = this.tests.isBeingVerified(row);
-        const known = view?.words ?? vscode.l10n.t("not verified");
+        const unknown = obstacles.length > 0 ? vscode.l10n.t("cannot be verified") : vscode.l10n.t("not verified");
+        const known = view?.words ?? unknown;
         const words = isRunning ? vscode.l10n.t("Verifying…") : known;
         // The result is visible also if the name is cut off.
         item.description = comment === "" ? words : `${words} · ${name}`;
-        item.tooltip = [sentence, ...(view ? [view.since, ...view.lines] : [words])].filter((line) => line).join("\n");
-        const [icon, color] = view ? ICONS[view.mark] : ["circle-outline", "disabledForeground"];
+        item.tooltip = [sentence, ...(view ? [view.since, ...view.lines] : [words, ...obstacles])]
+            .filter((line) => line)
+            .join("\n");
+        const noResult = obstacles.length > 0 ? ERROR : (["circle-outline", "disabledForeground"] as const);
+        const [icon, color] = view ? ICONS[view.mark] : noResult;
         item.iconPath = isRunning
             ? new vscode.ThemeIcon("loading~spin")
             : new vscode.ThemeIcon(icon, new vscode.ThemeColor(stale ? "disabledForeground" : color));
@@ -137,7 +147,14 @@ export class ResultsView implements vscode.Disposable, vscode.TreeDataProvider<R
                 return { kind: "property", system, property: shown.name, shown, ...run };
             });
         }
-        return row.kind === "property" && row.shown.view ? linesOf(row, row.shown.view) : [];
+        if (row.kind !== "property") return [];
+        if (row.shown.view) return linesOf(row, row.shown.view);
+        return this.obstaclesOf(row).map((text) => ({ kind: "line", text, icon: "blank" }));
+    }
+
+    /** Why a property without a result was not verified. */
+    private obstaclesOf({ system, property, shown }: PropertyRow): readonly string[] {
+        return shown.view ? [] : this.tests.obstaclesOf(system, property);
     }
 
     dispose(): void {

@@ -41,7 +41,7 @@ export class PropertyTests implements vscode.Disposable {
     private readonly judged = new Map<string, string>();
     private readonly running = new Set<string>();
     private readonly stale = new Set<string>();
-    /** Why systems were not verified when they were asked last. */
+    /** Why systems, and properties by the ids of their tests, were not verified when that was tried last. */
     private readonly obstacles = new Map<string, readonly string[]>();
     /** Settings of the verification that is started next. */
     private options: object = {};
@@ -129,9 +129,10 @@ export class PropertyTests implements vscode.Disposable {
         return this.running.has(testId(system, property));
     }
 
-    /** Why a system was not verified when it was asked last: the errors in its files. */
-    obstaclesOf(system: string): readonly string[] {
-        return this.obstacles.get(system) ?? [];
+    /** Why a system, or one of its properties, was not verified when that was tried last: the errors in its files, or
+     * that of the property. */
+    obstaclesOf(system: string, property?: string): readonly string[] {
+        return this.obstacles.get(property === undefined ? system : testId(system, property)) ?? [];
     }
 
     dispose(): void {
@@ -269,6 +270,7 @@ export class PropertyTests implements vscode.Disposable {
             const item = open.get(result.property);
             if (!item) return;
             open.delete(result.property);
+            this.obstacles.set(item.id, result.error ? [result.error.message] : []);
             item.busy = false;
             this.show(run, item, { system, property: result.property }, result);
         };
