@@ -388,9 +388,10 @@ def test_messages_are_at_their_times_and_no_status_is_a_sliver(path: Path) -> No
     assert all(bar.width >= 3.0 and bar.right <= 960.01 for bar in bars)
 
 
-@pytest.mark.parametrize("end", [1.5, 3.05])
+@pytest.mark.parametrize("end", [1.5, 3.05, 8.0])
 def test_arrows_of_messages_at_one_time_are_beside_each_other(end: float) -> None:
-    """A request and its response have opposite arrows. At the right border, they are moved to the left."""
+    """A request and its response have opposite arrows. At the right border and at the end of the run, they are moved to
+    the left."""
     session = api.session(api.load(str(DELIVERY)), seed=3)
     session.until_decided(2_000)
     timeline = timeline_of(session)
@@ -401,6 +402,7 @@ def test_arrows_of_messages_at_one_time_are_beside_each_other(end: float) -> Non
         if lines and 0.0 <= lines[0][0].x <= 960.0:
             ends = [point.y for line in lines for point in line]
             arrows.append((lines[0][0].x, min(ends), max(ends), {line[0].y < line[1].y for line in lines}))
+    assert all(x <= extent(timeline, Axis.TIME) / end * 960.0 + 0.01 for x, *_ in arrows)
     directions = [down for *_, down in arrows]
     assert {True} in directions
     assert {False} in directions

@@ -426,11 +426,11 @@ class _Painter:
 
     def _beside_each_other(self, ranges: Sequence[tuple[float, float, float]]) -> list[float]:
         """How far each arrow is beside its place, so that it covers no other one at the same instant: to the right, or
-        to the left at the right border."""
+        to the left at the end of the run."""
         places: list[tuple[float, float, float]] = []
         shifts = []
         for x, top, bottom in ranges:
-            side = 1 if x + _MOST_BESIDE * _BESIDE < self._view.width else -1
+            side = 1 if x + _MOST_BESIDE * _BESIDE < min(self._view.width, self._end) else -1
             taken = {place for place, upper, lower in places if upper < bottom and top < lower}
             candidates = (side * _BESIDE * number for number in range(_MOST_BESIDE))
             shift = next((s for s in candidates if all(abs(x + s - place) >= _BESIDE for place in taken)), 0.0)
