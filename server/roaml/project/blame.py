@@ -16,7 +16,7 @@ from roaml.project.exploration import Reached
 from roaml.project.explored_steps import ClientRequests, ExploredStep, ExploredSteps, requests_of
 from roaml.project.obstacles import Obstacle, is_contradictory, obstacles
 from roaml.rules.states import never_taken
-from roaml.rules.trees.never_ticked import SUCCEEDS
+from roaml.rules.support.next_child import SUCCEEDS
 from roaml.scxml.names import (
     NODE_AUTOMATON,
     SERVICE_HANDLER_PREFIX,

@@ -15,6 +15,7 @@ from roaml.model.tree import TreeNode
 from roaml.project.analysis import Analysis
 from roaml.project.exploration import Reached, ReachedFaultError, explored
 from roaml.project.optional_branches import ByNumber, ends_only_in_failure, is_required, reactive
+from roaml.rules.support import next_child
 from roaml.rules.trees import never_ticked
 from roaml.text import Location
 
@@ -44,16 +45,16 @@ def never_ticked_nodes(
         if before is None or instance.source in places or before.number not in ticked or instance.number not in known:
             continue
         parent = by_number[before.parent] if before.parent is not None else None
-        needed = never_ticked.needed(parent.plugin) if parent is not None else None
+        needed = next_child.needed(parent.plugin) if parent is not None else None
         if needed is None or not all(
-            _decides(system, leaf, is_condition=needed is never_ticked.FAILS) for leaf in _leaves(before, by_number)
+            _decides(system, leaf, is_condition=needed is next_child.FAILS) for leaf in _leaves(before, by_number)
         ):
             continue
         is_missed = not _is_needed(system, by_number, reached, instance, before)
         if is_missed and not missed(instance):
             continue
         is_harmless = is_missed and not _has_failing_action(system, by_number, reached)
-        blame.is_tree_at_fault |= needed is never_ticked.FAILS
+        blame.is_tree_at_fault |= needed is next_child.FAILS
         node, earlier = _written(analysis, instance.source), _written(analysis, before.source)
         if node is None or earlier is None:
             continue

@@ -21,6 +21,7 @@ from roaml.model.values.domain import FALSE, MAX_LISTED, TRUE, ValueSet
 from roaml.model.values.evaluate import compared
 from roaml.observers.properties import Pattern
 from roaml.rules.rule import MachineContext, PropertiesContext, Rule, TreeContext
+from roaml.rules.support import next_child
 from roaml.rules.support.compared_numbers import (
     by_type,
     compared_constants,
@@ -47,7 +48,6 @@ from roaml.rules.support.jani_formulas import constant_comparisons
 from roaml.rules.support.ranges import always_within, is_validation
 from roaml.rules.support.sent_values import never_handled, never_sent
 from roaml.rules.support.written import written as text_of
-from roaml.rules.trees import never_ticked
 from roaml.script.tree import Comparison
 from roaml.script.tree import walk as walk_script
 from roaml.text import Decoded, Span
@@ -244,10 +244,10 @@ def _effect_around(use: ScriptUse, above: Mapping[TreeNode, tuple[TreeNode, int]
         if parent.type_name == "Inverter" and not parent.scripts:
             node, succeeds = parent, not succeeds
             continue
-        needed = never_ticked.needed(parent.type_name)
-        if needed == never_ticked.SUCCEEDS and not succeeds:
+        needed = next_child.needed(parent.type_name)
+        if needed == next_child.SUCCEEDS and not succeeds:
             return f"`{behind[0].type_name}` is never ticked" if behind else f"`{parent.type_name}` never succeeds"
-        if needed == never_ticked.FAILS and succeeds and behind:
+        if needed == next_child.FAILS and succeeds and behind:
             return f"`{behind[0].type_name}` is never ticked"
         if parent.type_name in _BRANCHING and index == 0 and len(behind) > succeeds:
             return f"`{behind[1 if succeeds else 0].type_name}` is never ticked"

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Iterator
+from typing import TypeAlias
 
 from roaml.regex import regex
 
@@ -59,6 +61,17 @@ def difference(name: str, other: str) -> tuple[str, str] | None:
     words, others = words_of(name), words_of(other)
     different = [pair for pair in zip(words, others, strict=False) if pair[0] != pair[1]]
     return different[0] if len(words) == len(others) and len(different) == 1 else None
+
+
+Hole: TypeAlias = "tuple[int, tuple[str, ...]]"
+"""The position of a word that is left out of a name, and the other words."""
+
+
+def holes(name: str) -> Iterator[tuple[Hole, str]]:
+    """The words of a name, each with what remains without it. Two names that differ in one word have one in common."""
+    words = _words(name)
+    for index, word in enumerate(words):
+        yield (index, (*words[:index], *words[index + 1 :])), word
 
 
 def with_word(path: str, old: str, new: str) -> str | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import itertools
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 
 from roaml.diagnostics import Finding, Fix, Related, Severity
 from roaml.forest.entries import Use
@@ -17,7 +17,7 @@ from roaml.rules.rule import Rule, TreeContext, replacements
 from roaml.rules.support.entries import entries_of
 from roaml.rules.support.forest import trees_of
 from roaml.rules.support.unread_entries import unread_entries
-from roaml.rules.support.words import difference, words_of
+from roaml.rules.support.words import Hole, difference, holes, words_of
 from roaml.text import Location, TextEdit
 
 
@@ -66,21 +66,35 @@ def _unread(context: TreeContext, forest: Forest) -> Iterator[Finding]:
     for use in entries_of(forest).uses:
         uses[use.tree, use.name].append(use)
     own = {node for _, node in forest.own_nodes}
-    unread = [key for key, of_entry in uses.items() if all(use.reads is False and use.writes for use in of_entry)]
+    unread: dict[tuple[str, Hole], list[tuple[str, str]]] = defaultdict(list)
+    for (tree, name), of_entry in uses.items():
+        if all(use.reads is False and use.writes for use in of_entry):
+            for hole, word in holes(name):
+                unread[tree, hole].append((name, word))
     for (tree, name), of_entry in uses.items():
         readers = [use for use in of_entry if use.reads]
         for use in readers if len(readers) > 1 else ():
-            words = set(words_of(use.port))
-            for other_tree, other in unread if use.node in own and not use.writes else ():
-                different = difference(other, name) if other_tree == tree else None
-                if different is not None and different[0] in words and different[1] not in words:
-                    message = (
-                        f"the port `{use.port}` reads `{{{name}}}`, although nothing reads `{{{other}}}`; did you mean "
-                        "that?"
-                    )
-                    related = [Related(uses[tree, other][0].span, f"`{other}` is written")]
-                    fixes = replacements(use.span, (f"{{{other}}}",))
-                    yield RULE.at(use.span, message, *fixes, related=related if use.path == context.source.path else [])
+            if use.node not in own or use.writes:
+                continue
+            for other in _meant(unread, tree, name, use.port):
+                message = (
+                    f"the port `{use.port}` reads `{{{name}}}`, although nothing reads `{{{other}}}`; did you mean "
+                    "that?"
+                )
+                related = [Related(uses[tree, other][0].span, f"`{other}` is written")]
+                fixes = replacements(use.span, (f"{{{other}}}",))
+                yield RULE.at(use.span, message, *fixes, related=related if use.path == context.source.path else [])
+
+
+def _meant(
+    unread: Mapping[tuple[str, Hole], Sequence[tuple[str, str]]], tree: str, name: str, port: str
+) -> Iterator[str]:
+    """The unread entries of a tree with the word of a port in the place of another word of the entry `name`."""
+    words = words_of(port)
+    for hole, own in holes(name):
+        for other, word in unread.get((tree, hole), ()):
+            if word != own and word in words and own not in words:
+                yield other
 
 
 def _passed_over(context: TreeContext, forest: Forest) -> Iterator[Finding]:

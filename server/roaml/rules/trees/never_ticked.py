@@ -10,22 +10,6 @@ from roaml.diagnostics import Finding, Related, Severity
 from roaml.model.tree import TreeNode
 from roaml.rules.rule import Rule
 
-SUCCEEDS, FAILS = "SUCCESS", "FAILURE"
-_NEEDED = {
-    "Sequence": SUCCEEDS,
-    "AsyncSequence": SUCCEEDS,
-    "ReactiveSequence": SUCCEEDS,
-    "SequenceWithMemory": SUCCEEDS,
-    "Fallback": FAILS,
-    "AsyncFallback": FAILS,
-    "ReactiveFallback": FAILS,
-}
-
-
-def needed(plugin: str) -> str | None:
-    """The status of a child after which a node ticks the next one; `None` if this depends on more than the status."""
-    return _NEEDED.get(plugin)
-
 
 def finding(
     node: TreeNode,
