@@ -67,7 +67,7 @@ def test_the_number_of_schedulers(monkeypatch: pytest.MonkeyPatch) -> None:
     assert affordable_schedulers(324, 1.0) == 324
     assert affordable_schedulers(324, 1e9) == LEAST_SCHEDULERS
     assert affordable_schedulers(2, 1e9) == 2
-    numbers = [affordable_schedulers(324, length) for length in (1.0, 10.0, 100.0, 1_000.0, 10_000.0)]
+    numbers = [affordable_schedulers(324, length) for length in (0.0, 1.0, 10.0, 100.0, 1_000.0, 10_000.0)]
     assert numbers == sorted(numbers, reverse=True)
     assert len(set(numbers)) > 3
 

@@ -194,7 +194,7 @@ def affordable_schedulers(count: int, length: float) -> int:
     """
     from roaml.smc import affordable  # noqa: PLC0415 - most verifications search for no schedulers
 
-    most = affordable.MAX_STEPS / FIRST_ROUND_TRACES / length
+    most = affordable.MAX_STEPS / FIRST_ROUND_TRACES / max(length, 1)
     while count > LEAST_SCHEDULERS and count * (count - 1).bit_length() > most:
         count -= 1
     return count
