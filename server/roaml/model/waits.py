@@ -10,7 +10,7 @@ from fractions import Fraction
 from roaml.expr.infer import constant, constant_fraction
 from roaml.expr.operators import Operator
 from roaml.expr.tree import Binary, Expr, Name, walk
-from roaml.model.machine import Assign, Chart, Handler, If, Machine, ReturnStatus, State, Statement, statements
+from roaml.model.machine import Assign, Chart, Handler, If, Machine, ReturnStatus, Statement, statements
 from roaml.model.syntax import Expression, PortRead, Value
 from roaml.model.triggers import trigger
 from roaml.record import Record
@@ -205,14 +205,18 @@ class _Steps(Record, frozen=True):
 def _at_ticks(chart: Chart) -> Iterator[tuple[str, bool, tuple[Statement, ...]]]:
     """The bodies that a machine executes at most once for each tick of a timer, each with the name of the timer and
     whether it is an `<onentry>`."""
+    entering: dict[str, set[str]] = {}
     for handler in (h for state in chart.states for h in state.handlers):
         timer = _timer(handler)
-        for target in handler.targets if timer else ():
-            yield timer, False, target.body
+        for target in handler.targets:
+            if target.state is not None:
+                entering.setdefault(target.state.value, set()).add(timer)
+            if timer:
+                yield timer, False, target.body
     initial = chart.initial.value if chart.initial is not None else ""
     for state in chart.states:
         if state.entry is not None and state.id is not None and state.id.value != initial:
-            timers = {_timer(handler) for handler in _entering(chart, state)}
+            timers = entering.get(state.id.value, set())
             if len(timers) == 1 and "" not in timers:
                 (timer,) = timers
                 yield timer, True, state.entry.statements
@@ -221,14 +225,6 @@ def _at_ticks(chart: Chart) -> Iterator[tuple[str, bool, tuple[Statement, ...]]]
 def _timer(handler: Handler) -> str:
     """The timer for whose tick a handler waits; "" for other handlers."""
     return handler.handle.value if handler.trigger is ProtocolPart.TICK and handler.handle is not None else ""
-
-
-def _entering(chart: Chart, state: State) -> Iterator[Handler]:
-    for handler in (h for other in chart.states for h in other.handlers):
-        if any(
-            t.state is not None and state.id is not None and t.state.value == state.id.value for t in handler.targets
-        ):
-            yield handler
 
 
 def _step(statement: Statement) -> tuple[str, Fraction] | None:

@@ -76,6 +76,8 @@ def holes(name: str) -> Iterator[tuple[Hole, str]]:
 
 def with_word(path: str, old: str, new: str) -> str | None:
     """A path whose last name contains the word `old` once, with `new` in its place; otherwise `None`."""
+    if old not in path.lower():  # the usual case
+        return None
     begin = path.rfind(".") + 1
     matches = [match for match in _WORD.finditer(path, begin) if match.group().lower() == old]
     if len(matches) != 1:
