@@ -11,7 +11,7 @@ from roaml.expr.infer import constant
 from roaml.expr.operators import Operator, OperatorKind
 from roaml.expr.tree import Binary, Expr, is_draw, walk
 from roaml.jani import expressions as jani
-from roaml.jani.operators import BinaryOperator
+from roaml.jani.operators import BinaryOperator, Signature
 from roaml.jani.properties import BinaryFormula, Formula
 from roaml.jani.properties import walk as walk_formula
 from roaml.model.property_file import WrittenProperty, WrittenScope
@@ -26,6 +26,8 @@ from roaml.text import Span
 _JOINING = (Operator.AND, Operator.OR)
 
 _JOINING_IN_JANI = (BinaryOperator.AND, BinaryOperator.OR)
+_COMPARING = (Signature.EQUALITY, Signature.ORDER)
+_CONSTANTS = (jani.Integer, jani.Real)
 
 
 def check(context: MachineContext) -> Iterator[Finding]:
@@ -145,10 +147,15 @@ def check_jani(context: PropertiesContext) -> Iterator[Finding]:
     for property_ in context.properties:
         nested: set[int] = set()
         for node in walk_formula(property_.expression):
+            if isinstance(node, jani.Binary) and node.operator.signature in _COMPARING and node.left == node.right:
+                yield from _same_sides(context, node)
             if _joining(node) is None or id(node) in nested:
                 continue
             first: dict[str, tuple[Formula, Span]] = {}
-            for operand in _operands_in_jani(node, nested):
+            operands = list(_operands_in_jani(node, nested))
+            if _joining(node) == BinaryOperator.AND.symbol:
+                yield from _equal_to_several(context, operands)
+            for operand in operands:
                 if operand.origin is None:
                     continue
                 span = operand.origin.span
@@ -157,6 +164,30 @@ def check_jani(context: PropertiesContext) -> Iterator[Finding]:
                 earlier, place = first.setdefault(text, (operand, span))
                 if earlier is not operand and earlier == operand:
                     yield _finding(span, place, str(_joining(node)), "this operand")
+
+
+def _same_sides(context: PropertiesContext, node: jani.Binary) -> Iterator[Finding]:
+    if node.left.origin is not None and node.right.origin is not None:
+        left, right = node.left.origin.span, node.right.origin.span
+        message = f"`{context.source.text[right.start : right.end]}` is compared with itself; did you mean another?"
+        yield RULE.at(right, message, related=[Related(left, "the same operand")])
+
+
+def _equal_to_several(context: PropertiesContext, operands: Sequence[Formula]) -> Iterator[Finding]:
+    """Report an operand of a chain of `∧` that requires another constant for what an earlier one has compared."""
+    first: dict[jani.Expression, tuple[object, Span]] = {}
+    for operand in operands:
+        if not isinstance(operand, jani.Binary) or operand.operator is not BinaryOperator.EQUAL:
+            continue
+        for tested, other in ((operand.left, operand.right), (operand.right, operand.left)):
+            place = tested.origin.span if tested.origin is not None else None
+            if place is None or isinstance(tested, _CONSTANTS) or not isinstance(other, _CONSTANTS):
+                continue
+            value, earlier = first.setdefault(tested, (other.value, place))
+            if value != other.value:
+                text = context.source.text[place.start : place.end]
+                message = f"`{text}` must also be equal to {value} in this `∧`; did you mean another variable?"
+                yield RULE.at(place, message, related=[Related(earlier, "compared here, too")])
 
 
 def _repeated(tree: Expr) -> Iterator[Finding]:
