@@ -68,10 +68,12 @@ def check(
 
     Args:
         paths: the files and folders to check.
-        ros_paths, settings, texts: as for `read`.
+        ros_paths: folders with ROS interface packages, in addition to the configured ones.
+        settings: the settings; if not given, the configuration file around the first path is read.
+        texts: path -> text or bytes that replace the content of the file.
 
     Raises:
-        PathError: as for `read`.
+        PathError: a path does not exist or cannot be read, and `texts` has no text for it.
     """
     found = read(paths, ros_paths, settings, texts)
     checker = found.snapshot.checker

@@ -52,7 +52,7 @@ class ComparedVersion(Record, frozen=True):
 
     Attributes:
         path: the file of the system, machine or tree.
-        settings: as for `read`.
+        settings: as for `check`.
         texts: path -> content that replaces that of the file.
         mocks: the mocks that the picture of a tree without a system shows; `None` for those beside it.
     """
@@ -88,7 +88,7 @@ def compare_structure(old: ComparedVersion, new: ComparedVersion, ros_paths: Ite
 
     Args:
         old, new: the versions: two systems, two machines or two trees. JANI models have no pictures.
-        ros_paths: as for `read`.
+        ros_paths: as for `check`.
 
     Raises:
         PathError: a path does not exist or cannot be read.

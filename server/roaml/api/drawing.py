@@ -97,7 +97,7 @@ def draw(
         outline: draw a tree in a narrow column: a row for each node, with its children indented below it.
         interfaces: draw each topic, service and action of a large ROS graph as a node. By default, if the graph has
             more than 60 nodes, most of them are rows of the node that publishes or serves them.
-        ros_paths, settings, texts: as for `read`.
+        ros_paths, settings, texts: as for `check`.
 
     Raises:
         DrawingError: the file contains nothing of this kind, or nothing that matches.

@@ -46,7 +46,7 @@ def mock_system(
     """Create mocks for the leaves of a system that have no plugin. No file is written.
 
     Args:
-        settings, ros_paths, texts: as for `read`.
+        settings, ros_paths, texts: as for `check`.
 
     Raises:
         PathError: the path cannot be read, or is not a system file.

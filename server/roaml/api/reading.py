@@ -42,13 +42,10 @@ def read(
     not compute the findings of all files, and it does not explore the states of the systems.
 
     Args:
-        paths: the files and folders to read.
-        ros_paths: folders with ROS interface packages, in addition to the configured ones.
-        settings: the settings; if not given, the configuration file around the first path is read.
-        texts: path -> text or bytes that replace the content of the file.
+        paths, ros_paths, settings, texts: as for `check`.
 
     Raises:
-        PathError: a path does not exist or cannot be read, and `texts` has no text for it.
+        PathError: as for `check`.
     """
     named = [os.path.abspath(path) for path in paths]
     texts = {os.path.abspath(path): text for path, text in (texts or {}).items()}

@@ -102,7 +102,7 @@ def load(
 
     Args:
         path: the system file.
-        ros_paths, settings, texts: as for `read`.
+        ros_paths, settings, texts: as for `check`.
         overrides: parameters that replace those in the system file.
         parameters: name of a parameter that the models declare -> its value, such as `{"capacity": 80}`; the name
             `INSTANCE.NAME` is that of one instance (docs/spec/parameters.md#values).
@@ -160,7 +160,7 @@ def values_of_parameters(
     path: str, ros_paths: Iterable[str], settings: Settings, texts: Mapping[str, str | bytes]
 ) -> dict[str, str]:
     """Name of a parameter of a system -> the text of its value, even if the system has errors. The arguments are those
-    of `read`."""
+    of `check`."""
     return _parameters(read([path], ros_paths, settings, texts).snapshot.analysis, os.path.abspath(path))
 
 

@@ -48,7 +48,7 @@ def load_tree(
     Args:
         path: the file of the tree.
         options: its mocks and parameters.
-        settings, texts: as for `read`.
+        settings, texts: as for `check`.
 
     Raises:
         PathError: the path cannot be read, or is not a file of trees.
