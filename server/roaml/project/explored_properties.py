@@ -11,7 +11,6 @@ too long, the finding says what it assumes.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from typing import TYPE_CHECKING
 
 from roaml.comparison import Comparison
 from roaml.diagnostics import Finding
@@ -29,9 +28,6 @@ from roaml.smc.kernel import Kernel
 from roaml.smc.model import ModelChecker
 from roaml.smc.program import TRUE, UNKNOWN
 from roaml.views.ends import marks, observer_outputs
-
-if TYPE_CHECKING:
-    pass
 
 TRACES, TRACE_STEPS = 20, 10_000
 """The number of random traces of each property, and their maximum length."""
