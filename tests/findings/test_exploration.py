@@ -352,7 +352,30 @@ def test_only_a_check_explores(tmp_path: Path, searches: list[int]) -> None:
     assert searches
 
 
-WASHER = """\
+ASKING = """\
+-- FILE.ascxml --
+<ascxml name="NAME" version="1.0" initial="idle">
+    <ros_service_client name="asked" service_name="/SERVICE" type="std_srvs/Empty" />
+    <state id="idle">
+        <bt_tick target="waits"><ros_service_send_request name="asked" /></bt_tick>
+        <bt_halt target="idle"><bt_return_halted /></bt_halt>
+    </state>
+    <state id="waits">
+        <ros_service_handle_response name="asked" target="idle">
+            <bt_return_status status="SUCCESS" />
+        </ros_service_handle_response>
+    </state>
+</ascxml>
+"""
+"""A plugin that asks a service at each tick."""
+
+
+def asking(file: str, name: str, service: str) -> str:
+    return ASKING.replace("FILE", file).replace("NAME", name).replace("SERVICE", service)
+
+
+WASHER = f"""\
+{asking("start", "Start", "start")}{asking("unload", "Unload", "open")}\
 -- main.xml --
 <roaml>
     <parameters>
@@ -369,32 +392,6 @@ WASHER = """\
 </roaml>
 -- tree.xml --
 <root BTCPP_format="4"><BehaviorTree ID="Main"><Sequence>NODES</Sequence></BehaviorTree></root>
--- start.ascxml --
-<ascxml name="Start" version="1.0" initial="idle">
-    <ros_service_client name="start" service_name="/start" type="std_srvs/Empty" />
-    <state id="idle">
-        <bt_tick target="asked"><ros_service_send_request name="start" /></bt_tick>
-        <bt_halt target="idle"><bt_return_halted /></bt_halt>
-    </state>
-    <state id="asked">
-        <ros_service_handle_response name="start" target="idle">
-            <bt_return_status status="SUCCESS" />
-        </ros_service_handle_response>
-    </state>
-</ascxml>
--- unload.ascxml --
-<ascxml name="Unload" version="1.0" initial="idle">
-    <ros_service_client name="open" service_name="/open" type="std_srvs/Empty" />
-    <state id="idle">
-        <bt_tick target="asked"><ros_service_send_request name="open" /></bt_tick>
-        <bt_halt target="idle"><bt_return_halted /></bt_halt>
-    </state>
-    <state id="asked">
-        <ros_service_handle_response name="open" target="idle">
-            <bt_return_status status="SUCCESS" />
-        </ros_service_handle_response>
-    </state>
-</ascxml>
 -- washer.ascxml --
 <ascxml name="Washer" version="1.0" initial="empty">
     <ros_service_server name="start" service_name="/start" type="std_srvs/Empty" />
@@ -414,7 +411,7 @@ WASHER = """\
     </state>
 </ascxml>
 -- properties.jani --
-{"properties": []}
+{{"properties": []}}
 """
 
 
