@@ -13,7 +13,7 @@ from roaml.model.machine import Assign, Chart, If, Param, RosSend, Send, SetOutp
 from roaml.model.syntax import Expression, Value
 from roaml.model.values.evaluate import place_of
 from roaml.roles import ProtocolPart
-from roaml.rules.support.words import with_word, words_of
+from roaml.rules.support.words import holes, with_word
 from roaml.text import Span
 
 _INITIATED = (ProtocolPart.MESSAGE, ProtocolPart.REQUEST, ProtocolPart.GOAL)
@@ -54,10 +54,9 @@ def copied_names(chart: Chart, known: Iterable[str]) -> Iterator[CopiedName]:
     names = frozenset(known)
     similar: dict[tuple[object, ...], list[tuple[str, SimilarPart]]] = {}
     for part in _parts(chart):
-        words = words_of(part.name) if part.uses else []
-        for number, word in enumerate(words if len(words) > 1 else ()):
-            key = (part.kind, number, *words[:number], *words[number + 1 :])
-            similar.setdefault(key, []).append((word, part))
+        for hole, word in holes(part.name) if part.uses else ():
+            if hole.others:
+                similar.setdefault((part.kind, hole), []).append((word, part))
     for group in similar.values():
         for number, (own, part) in enumerate(group):
             for word, other in group[max(0, number - _NEAR) : number + _NEAR + 1]:

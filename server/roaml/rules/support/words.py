@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Iterator
-from typing import TypeAlias
 
+from roaml.record import Record
 from roaml.regex import regex
 
 _WORD = regex(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
@@ -63,15 +63,23 @@ def difference(name: str, other: str) -> tuple[str, str] | None:
     return different[0] if len(words) == len(others) and len(different) == 1 else None
 
 
-Hole: TypeAlias = "tuple[int, tuple[str, ...]]"
-"""The position of a word that is left out of a name, and the other words."""
+class Hole(Record, frozen=True):
+    """A name without one of its words.
+
+    Attributes:
+        position: the number of words before it.
+        others: the other words.
+    """
+
+    position: int
+    others: tuple[str, ...]
 
 
 def holes(name: str) -> Iterator[tuple[Hole, str]]:
     """The words of a name, each with what remains without it. Two names that differ in one word have one in common."""
     words = _words(name)
     for index, word in enumerate(words):
-        yield (index, (*words[:index], *words[index + 1 :])), word
+        yield Hole(index, (*words[:index], *words[index + 1 :])), word
 
 
 def with_word(path: str, old: str, new: str) -> str | None:

@@ -66,11 +66,11 @@ def _unread(context: TreeContext, forest: Forest) -> Iterator[Finding]:
     for use in entries_of(forest).uses:
         uses[use.tree, use.name].append(use)
     own = {node for _, node in forest.own_nodes}
-    unread: dict[tuple[str, Hole], list[tuple[str, str]]] = defaultdict(list)
+    unread: dict[tuple[str, Hole, str], list[str]] = defaultdict(list)
     for (tree, name), of_entry in uses.items():
         if all(use.reads is False and use.writes for use in of_entry):
             for hole, word in holes(name):
-                unread[tree, hole].append((name, word))
+                unread[tree, hole, word].append(name)
     for (tree, name), of_entry in uses.items():
         readers = [use for use in of_entry if use.reads]
         for use in readers if len(readers) > 1 else ():
@@ -86,15 +86,12 @@ def _unread(context: TreeContext, forest: Forest) -> Iterator[Finding]:
                 yield RULE.at(use.span, message, *fixes, related=related if use.path == context.source.path else [])
 
 
-def _meant(
-    unread: Mapping[tuple[str, Hole], Sequence[tuple[str, str]]], tree: str, name: str, port: str
-) -> Iterator[str]:
+def _meant(unread: Mapping[tuple[str, Hole, str], Sequence[str]], tree: str, name: str, port: str) -> Iterator[str]:
     """The unread entries of a tree with the word of a port in the place of another word of the entry `name`."""
-    words = words_of(port)
+    words = dict.fromkeys(words_of(port))
     for hole, own in holes(name):
-        for other, word in unread.get((tree, hole), ()):
-            if word != own and word in words and own not in words:
-                yield other
+        for word in words if own not in words else ():
+            yield from unread.get((tree, hole, word), ())
 
 
 def _passed_over(context: TreeContext, forest: Forest) -> Iterator[Finding]:

@@ -21,7 +21,7 @@ from roaml.model.values.evaluate import is_within, literal, place_of
 from roaml.roles import ProtocolPart
 from roaml.rules.rule import MachineContext, Rule
 from roaml.rules.support.assignments import is_unchanged
-from roaml.rules.support.words import difference, words_of
+from roaml.rules.support.words import Hole, difference, holes, words_of
 from roaml.text import Span
 
 _RECEIVED = (ProtocolPart.MESSAGE, ProtocolPart.REQUEST, ProtocolPart.GOAL)
@@ -180,12 +180,12 @@ def _similar(
     chart: Chart,
     name: str,
     assigned: Mapping[str, Sequence[Assign]],
-    alike: Mapping[tuple[object, ...], Sequence[str]],
+    alike: Mapping[Hole, Sequence[str]],
 ) -> Assign | None:
     """An assignment of a value that is not constant to a variable of the same type whose name differs in a
     number, or in which different requests store different data."""
     types = context.typed.variables.get(chart.scope, {})
-    for other in (other for key in _keys(name) for other in alike.get(key, ())[:_MAX_ALIKE]):
+    for other in (other for hole, _ in holes(name) for other in alike.get(hole, ())[:_MAX_ALIKE]):
         statements, words = assigned[other], difference(name, other)
         if words is None or types.get(other) != types.get(name):
             continue
@@ -199,18 +199,13 @@ _MAX_ALIKE = 8
 """How many similar variables are compared with one that nothing assigns."""
 
 
-def _by_words(names: Iterable[str]) -> dict[tuple[object, ...], list[str]]:
-    """The names that differ in one word only, by the number of this word and the others."""
-    result: dict[tuple[object, ...], list[str]] = {}
+def _by_words(names: Iterable[str]) -> dict[Hole, list[str]]:
+    """The names that differ in one word only, by what they have in common."""
+    result: dict[Hole, list[str]] = {}
     for name in names:
-        for key in _keys(name):
-            result.setdefault(key, []).append(name)
+        for hole, _ in holes(name):
+            result.setdefault(hole, []).append(name)
     return result
-
-
-def _keys(name: str) -> Iterator[tuple[object, ...]]:
-    words = words_of(name)
-    yield from ((number, *words[:number], *words[number + 1 :]) for number in range(len(words)))
 
 
 def _is_for_two(chart: Chart, received: Sequence[Assign]) -> bool:
